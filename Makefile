@@ -10,6 +10,7 @@
 #   make check   ruff, mypy, import-linter, the page's type check, generated files current
 #   make bench   the figures the project promises, measured on this machine
 #   make soak    an hour of processes over DDS: does anything grow, get lost or hang?
+#   make soak-editor  an hour of random edits: does the memory of the language server grow?
 #   make docs    the documentation site in site/
 #   make reference  record anew what ros/xacro and urdfdom make of the descriptions in the tests
 #   make release  wheel, source distribution, bill of materials and changelog in dist/, built twice and tried
@@ -52,7 +53,7 @@ LOCKED := .build/constraints.txt
 RELEASE_TOOLS := .build/release-tools$(if $(VERSION),-$(VERSION))
 PAGE_SOURCES := $(shell find frontend -path frontend/node_modules -prune -o -type f -print)
 
-.PHONY: demo test test-base test-page test-editor test-program test-quick test-python coverage test-browser test-ros test-zenoh-sdk test-train check bench soak fuzz reference release docs page lock format clean
+.PHONY: demo test test-base test-page test-editor test-program test-quick test-python coverage test-browser test-ros test-zenoh-sdk test-train check bench soak soak-editor fuzz reference release docs page lock format clean
 
 # Ctrl-C is how the demo ends (status 130), which is no error; the shell has to outlive it to say so.
 demo: $(VENV)/.ready
@@ -156,6 +157,7 @@ check: $(VENV)/.dev
 	$(BIN)/python tools/page_tables.py --check
 	$(BIN)/python tools/substituted_names.py --check
 	$(BIN)/python tools/node_parameters.py --check
+	$(BIN)/python tools/simulator_plugins.py --check
 	$(BIN)/python tools/catalogues.py check
 	$(BIN)/python tools/plain_words.py
 	$(BIN)/python tools/rule_reference.py --check
@@ -168,6 +170,9 @@ bench: $(VENV)/.dev page
 
 soak: $(VENV)/.dev page
 	$(BIN)/python -m benchmarks.soak $(ARGS)
+
+soak-editor: $(VENV)/.dev
+	$(BIN)/python -m benchmarks.soak_editor $(ARGS)
 
 fuzz: .build/fuzz/venv/.ready
 	PYTHONPATH=src:. nice -n 15 .build/fuzz/venv/bin/python -m fuzz $(ARGS)

@@ -1,6 +1,7 @@
-"""Entry point of ``python -m linkwright.node_program PACKAGE EXECUTABLE ARGUMENTS``; see `linkwright.nodes.process`.
+"""Entry point of ``python -m linkwright.node_program PACKAGE EXECUTABLE ARGUMENTS``.
 
-It is outside the package of the nodes so that Ctrl-C ends it quietly while that package is being loaded.
+See `linkwright.nodes.process`. This module is outside the package of the nodes, so that Ctrl-C ends it quietly while
+that package is being loaded.
 """
 
 import sys

@@ -219,7 +219,7 @@ def test_output_that_takes_nothing_is_one_error(robot: Path, redirection: str, r
     found, printed = statuses(QUICK, robot.parent, redirection)
     assert found == dict.fromkeys(QUICK, 1)
     assert printed.count(f"error[CLI202]: cannot write to standard output: {reason}") == len(QUICK)
-    assert "bug of ours" not in printed
+    assert "bug in Linkwright" not in printed
     assert "Exception ignored" not in printed
 
 
@@ -259,7 +259,7 @@ def test_an_input_that_is_closed_is_an_empty_one(robot: Path) -> None:
     commands = {**QUICK, "check -": ["xacro", "-"], "pub": ["interface", "show", "-"]}
     found, printed = statuses(commands, robot.parent, "<&-")
     assert {name for name, status in found.items() if status} == {"check -", "pub"}
-    assert "bug of ours" not in printed
+    assert "bug in Linkwright" not in printed
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="/dev/full is Linux's")
@@ -310,6 +310,6 @@ def test_a_folder_that_was_removed_under_the_command(tmp_path: Path, monkeypatch
             )
         finally:
             os.chdir(here)
-        assert "bug of ours" not in done.stderr, words
+        assert "bug in Linkwright" not in done.stderr, words
         assert done.returncode in (0, 1), (words, done.stderr)
         assert done.returncode == 0 or "error[" in done.stderr, words

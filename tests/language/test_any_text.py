@@ -8,7 +8,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from linkwright.language.colors import colors_in
-from linkwright.language.completion import complete
 from linkwright.language.definitions import definitions_in
 from linkwright.language.extraction import selected_value
 from linkwright.language.format import Document
@@ -20,6 +19,7 @@ from linkwright.language.macro_extraction import selected_elements
 from linkwright.language.refactoring import offers_at
 from linkwright.language.suppressing import code_at, suppression
 from linkwright.language.workspace import Workspace
+from linkwright.language.xml_completion import complete
 from linkwright.lsp.positions import TextPositions
 from linkwright.lsp.requests.navigation import uses_in_file
 from linkwright.lsp.requests.texts import folds, format_edits, linked_tags, selections, symbols
@@ -38,7 +38,7 @@ def test_no_state_of_a_text_is_too_much(cut, name):
     offset = start + len(typed)
     file = Path(name)
     names = [*definitions_in(text, file)]
-    for item in complete(text, offset, file, names, lambda: FINDER):
+    for item in complete(Document(WORKSPACE, {file: text}, file, text), offset, names):
         assert 0 <= item.start <= offset
     explained = explain_at(text, offset, file, names)
     assert explained is None or explained.start <= explained.end <= len(text)

@@ -187,6 +187,10 @@ def test_definitions_from_a_parameter_file(typing, marked, target):
     assert typing.targets(marked) == [target]
 
 
+def test_a_library_in_a_list_has_no_definition(typing):
+    assert not typing.targets("bt_navigator:\n  ros__parameters:\n    plugin_lib_names:\n    - a|_node\n    - b_node\n")
+
+
 @pytest.mark.parametrize(
     ("marked", "expected"),
     [

@@ -255,8 +255,8 @@ class TestNamesUpToFoxy:
         assert node.node_executable == "talker"
         assert perform_substitutions(LaunchContext(), part.node_plugin) == "p::Part"
         texts = [str(each.message) for each in logged]
-        assert texts[0] == "'node_executable' of Node is called 'executable' now"
-        assert "'node_plugin' of ComposableNode is called 'plugin' now" in texts
+        assert texts[0] == "'node_executable' of Node is deprecated: use 'executable'"
+        assert "'node_plugin' of ComposableNode is deprecated: use 'plugin'" in texts
         assert len(texts) == 10
         assert {each.filename for each in logged} == {__file__}
 

@@ -91,7 +91,7 @@ def test_an_alias_inside_of_itself_is_no_yaml(write: Write, text: str) -> None:
         load_launch_file(write("a.launch.yaml", text))
     (diagnostic,) = caught.value.diagnostics
     assert diagnostic.code == "LAUNCH108"
-    assert "is inside of itself" in diagnostic.message
+    assert "refers to a node that contains it" in diagnostic.message
     assert diagnostic.span is not None
     assert diagnostic.span.line == len(text.splitlines())
 

@@ -147,6 +147,21 @@ async def editor(package: Path) -> AsyncIterator[Editor]:
         yield editor
 
 
+OPENS_PAGES = types.ClientCapabilities(
+    workspace=types.WorkspaceClientCapabilities(text_document_content=types.TextDocumentContentClientCapabilities()),
+    text_document=types.TextDocumentClientCapabilities(
+        publish_diagnostics=types.PublishDiagnosticsClientCapabilities(code_description_support=True)
+    ),
+)
+"""An editor that opens virtual documents."""
+
+
+@pytest_asyncio.fixture
+async def editor_with_pages(package: Path) -> AsyncIterator[Editor]:
+    async with connected(package, OPENS_PAGES) as editor:
+        yield editor
+
+
 @pytest_asyncio.fixture
 async def editor_with_commands(package: Path) -> AsyncIterator[Editor]:
     commands = ["linkwright.showReferences", "linkwright.openInPage"]

@@ -65,6 +65,13 @@ async def test_a_finding_disappears_when_it_is_suppressed(editor):
     await editor.until(FILE)
 
 
+async def test_one_selected_character_is_a_block_cursor(editor):
+    editor.open(FILE, MAIN)
+    (action,) = await actions(editor, FILE, MAIN, "4", ["refactor.extract"])
+    assert action.title == "extract '0.4' to a property"
+    assert 'length="${bar_length}"' in applied(MAIN, action.edit)
+
+
 async def test_a_finding_of_a_build_file_disappears_when_it_is_suppressed(editor):
     (editor.folder / "linkwright.toml").write_text('select = ["LW824"]\n')
     text = (editor.folder / "CMakeLists.txt").read_text().replace("DIRECTORY urdf", "DIRECTORY urdf meshs")

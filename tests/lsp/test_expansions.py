@@ -9,7 +9,7 @@ from lsprotocol import types
 from pygls.exceptions import JsonRpcException
 
 from linkwright.lsp.requests.expansions import description_of, expansion_uri
-from tests.lsp.conftest import MAIN, PARTS
+from tests.lsp.conftest import MAIN, MANIFEST, PARTS
 from tests.lsp.test_hints import FILE, PARTS_FILE, at
 
 
@@ -26,7 +26,21 @@ def test_the_uri_has_the_description_and_its_arguments(tmp_path: Path):
     assert description_of(file.as_uri()) is None
 
 
-async def test_an_element_leads_to_its_expansions_and_back(editor):
+async def test_an_editor_without_virtual_documents_gets_no_address_of_one(editor):
+    editor.open(FILE)
+    asked = types.ImplementationParams(editor.document(FILE), at(MAIN, '<link name="base"'))
+    assert not await editor.client.text_document_implementation_async(asked)
+
+
+async def test_a_manifest_has_no_expansion(editor_with_pages):
+    editor = editor_with_pages
+    editor.open("package.xml")
+    asked = types.ImplementationParams(editor.document("package.xml"), at(MANIFEST, "<export>"))
+    assert not await editor.client.text_document_implementation_async(asked)
+
+
+async def test_an_element_leads_to_its_expansions_and_back(editor_with_pages):
+    editor = editor_with_pages
     text = MAIN.replace("</robot>", '  <xacro:bar name="lower" length="0.3"/>\n</robot>')
     editor.open(FILE, text)
     editor.open(PARTS_FILE)

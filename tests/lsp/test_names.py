@@ -68,6 +68,7 @@ async def test_a_hover_explains_elements_attributes_and_names(editor):
     assert "**macro bar**" in await look(editor, "<xacro:ba", hover)
     assert "`name length`" in await look(editor, "<xacro:ba", hover)
     assert "**property reach** = `0.2`" in await look(editor, "* rea", hover)
+    assert await look(editor, "<xacro:bar na", hover) == "**parameter name**, macro bar, parts.xacro"
     assert "name" in await look(editor, "<link na", hover)
     assert await look(editor, "\n", hover) == ""
 
@@ -82,6 +83,7 @@ async def test_a_definition_is_found_in_an_included_file(editor):
 
     assert await look(editor, "<xacro:ba", define) == [("parts.xacro", 1)]
     assert await look(editor, "* rea", define) == [("arm.urdf.xacro", 2)]
+    assert await look(editor, "<xacro:bar na", define) == [("parts.xacro", 1)]
 
 
 async def test_a_hover_tells_about_links_joints_meshes_and_packages(editor, package):
@@ -112,3 +114,11 @@ async def test_a_hover_tells_about_links_joints_meshes_and_packages(editor, pack
     joint = await hover("urdf/parts.xacro", PARTS, "${name}_jo")
     assert "**joint upper_joint**" in joint
     assert "- continuous joint from `base` to `upper`" in joint
+
+
+async def test_an_editor_can_filter_each_completion(editor):
+    """Neovim offers an item with an edit and without a filter text whatever is typed."""
+    editor.open(FILE, MAIN.replace("<link", "<li"))
+    asked = types.CompletionParams(editor.document(FILE), types.Position(2, 5))
+    found = await editor.client.text_document_completion_async(asked)
+    assert {item.filter_text for item in found} >= {"link", "xacro:bar"}

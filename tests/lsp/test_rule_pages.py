@@ -5,20 +5,14 @@ from __future__ import annotations
 import pytest
 from lsprotocol import types
 
-from tests.lsp.conftest import MAIN, connected
+from tests.lsp.conftest import MAIN, OPENS_PAGES, connected
 
 FILE = "urdf/arm.urdf.xacro"
-LINKING = types.ClientCapabilities(
-    workspace=types.WorkspaceClientCapabilities(text_document_content=types.TextDocumentContentClientCapabilities()),
-    text_document=types.TextDocumentClientCapabilities(
-        publish_diagnostics=types.PublishDiagnosticsClientCapabilities(code_description_support=True)
-    ),
-)
 BROKEN = MAIN.replace('  <link name="base"/>', '  <link name="base"/>\n  <xacro:nothing/>')
 
 
 async def test_the_code_of_a_finding_leads_to_its_page(package):
-    async with connected(package, LINKING) as editor:
+    async with connected(package, OPENS_PAGES) as editor:
         editor.open(FILE, BROKEN)
         (found,) = await editor.until(FILE, "XAC401")
         asked = types.TextDocumentContentParams(found.code_description.href)

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import asyncio
+
 from lsprotocol import types
 
 from tests.lsp.conftest import MAIN
+from tests.waiting import SECONDS
 
 FILE = "urdf/arm.urdf.xacro"
 OPTIONS = types.FormattingOptions(2, insert_spaces=True)
@@ -97,3 +100,14 @@ async def test_files_that_are_no_xml_have_no_symbols(editor):
     editor.open("CMakeLists.txt")
     asked = types.DocumentSymbolParams(editor.document("CMakeLists.txt"))
     assert await editor.client.text_document_document_symbol_async(asked) is None
+
+
+async def test_a_file_of_another_kind_has_an_empty_list_of_colours_as_the_protocol_asks(editor):
+    (editor.folder / "notes.txt").write_text("red")
+    editor.open("notes.txt")
+    document = editor.document("notes.txt")
+    colours = editor.client.text_document_document_color_async(types.DocumentColorParams(document))
+    assert [*await asyncio.wait_for(colours, SECONDS)] == []
+    place = types.Range(types.Position(0, 0), types.Position(0, 3))
+    asked = types.ColorPresentationParams(document, types.Color(1.0, 0.0, 0.0, 1.0), place)
+    assert [*await asyncio.wait_for(editor.client.text_document_color_presentation_async(asked), SECONDS)] == []

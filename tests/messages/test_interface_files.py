@@ -362,11 +362,11 @@ class TestIdl:
             ("module a { struct F { long c[2][3]; }; };", "MSG120", "arrays of arrays"),
             ("module a { struct F { thing c; }; };", "MSG111", "there is no type 'thing'"),
             ("module a { struct F { string<0> c; }; };", "MSG119", "'0' is not a length"),
-            ("module a { struct F { long c }; };", "MSG120", "';' was expected instead of '}'"),
-            ("module a { struct F { long", "MSG120", "a name was expected instead of the end of the file"),
+            ("module a { struct F { long c }; };", "MSG120", "expected ';', but found '}'"),
+            ("module a { struct F { long", "MSG120", "expected a name, but found the end of the file"),
             ("module a { const octet X = 300; };", "MSG114", "the value of 'X' is invalid"),
             ("module a { struct G { long x; }; };", "MSG118", "does not define the structure 'my_msgs::msg::F'"),
-            ("module a ? {}", "MSG120", "'?' is not expected here"),
+            ("module a ? {}", "MSG120", "unexpected '?'"),
         ],
     )
     def test_what_is_refused(self, text, code, message):

@@ -63,7 +63,9 @@ def test_one_that_cannot_be_imported_says_whose_it_is(installed: NodeRegistry) -
         installed["my_robot", "broken"]
     (finding,) = caught.value.diagnostics
     assert finding.code == "NODE002"
-    assert finding.hint == "it is part of 'my_robot': No module named 'my_robot_that_is_not_there'"
+    assert finding.hint == (
+        "the Python package 'my_robot' provides it, but its import fails: No module named 'my_robot_that_is_not_there'"
+    )
 
 
 def test_ours_are_not_replaced(installed: NodeRegistry) -> None:

@@ -262,7 +262,7 @@ async def test_words_that_mean_nothing(test, kind, words, text):
 async def test_parameters_that_a_node_does_not_have_are_named_once(test):
     start(test, Relay, input_topic="a", lasy=True, robot_model="x")
     assert logged(test, "WARN") == ["'lasy' is not a parameter of this node; did you mean 'lazy'?"]
-    assert logged(test, "INFO") == ["parameters that this node does not have are not read: robot_model"]
+    assert logged(test, "INFO") == ["parameters that this node does not have are ignored: robot_model"]
 
 
 @pytest.mark.parametrize(

@@ -184,7 +184,7 @@ def test_definitions_are_taken_out_of_a_document(capsys):
     assert "goes" not in text
     assert "stays" in text
     assert "xacro:" not in text.partition(">")[2]
-    assert "knows no attribute 'odd'" in capsys.readouterr().err
+    assert "has unknown attributes: 'odd'" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(

@@ -129,7 +129,7 @@ async def test_services_may_take_their_time():
             return response
 
         node.create_service(AddTwoInts, "slow", slow)
-        with pytest.raises(TimeoutError, match=r"service '/slow' has not answered within 0\.5 s"):
+        with pytest.raises(TimeoutError, match=r"service '/slow' has not responded within 0\.5 s"):
             await test.call("slow", AddTwoInts.Request(a=1), timeout=0.5)
         assert (await test.call("slow", AddTwoInts.Request(a=7), timeout=5.0)).sum == 7
         with pytest.raises(LookupError, match="there is no service '/none'"):

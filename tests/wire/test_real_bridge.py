@@ -38,7 +38,7 @@ class Bridge:
     def __init__(self):
         command = [sys.executable, "-m", "linkwright", "bridge", "dds", "zenoh"]
         self.process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
-        assert "Carrying between" in self.process.stderr.readline()
+        assert "Bridging" in self.process.stderr.readline()
 
     def kill(self):
         if not self.process.stderr.closed:

@@ -223,7 +223,7 @@ def test_too_deep_recursion_is_one_clear_error(levels: int) -> None:
         expand("m.xacro", text=f"{ROOT}{RECURSIVE % levels}</robot>")
     (diagnostic,) = caught.value.diagnostics
     assert diagnostic.code == "XAC601"
-    assert "more than 200 deep" in diagnostic.message
+    assert "more than 200 levels deep" in diagnostic.message
 
 
 def test_too_deep_nesting_of_elements_is_an_error() -> None:

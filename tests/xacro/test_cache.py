@@ -31,6 +31,14 @@ def test_one_in_the_place_of_another_counts_once() -> None:
     assert cache.values == {"first": 40, "edited": 50}
 
 
+def test_a_process_that_runs_for_days_stores_less(monkeypatch) -> None:
+    monkeypatch.setattr(BoundedCache, "divisor", 8)
+    cache: BoundedCache[int, str] = BoundedCache(800, lambda _, text: len(text))
+    for number in range(1000):
+        cache.store(number, "x" * (number % 7))
+    assert 50 < sum(map(len, cache.values.values())) <= 100
+
+
 def test_more_files_than_a_package_has_are_parsed_once(tmp_path) -> None:
     for number in range(600):
         (tmp_path / f"{number}.urdf").write_text(f'<robot name="r{number}"><link name="base"/></robot>')

@@ -78,3 +78,13 @@ def test_included_files_have_values(tmp_path: Path):
     main.write_text(f'{HEAD}<xacro:property name="p" value="x"/><xacro:include filename="part.xacro"/></robot>')
     (found,) = evaluated_expressions(Inputs(str(main), {}))
     assert (Path(found.file).name, found.values) == ("part.xacro", ("'x'",))
+
+
+def test_a_list_of_parameters_has_no_value():
+    text = '<xacro:macro name="m" params="n:=${k}"><link name="${n}"/></xacro:macro><xacro:m n="a"/>'
+    assert values(f'<xacro:property name="k" value="2"/>{text}') == {"${n}": ("'a'",)}
+
+
+def test_the_values_before_a_mistake_in_a_list_of_parameters_remain():
+    text = """<link name="${1 + 1}"/><xacro:macro name="m" params="a:='${'"/><xacro:m a="1"/>"""
+    assert values(text) == {"${1 + 1}": ("2",)}

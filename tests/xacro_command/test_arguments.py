@@ -117,7 +117,7 @@ def test_packages_and_texts(write, tmp_path):
 
 
 LIST = """\
-name    required   a.xacro:2:18  asked for before its default "ur" is declared
+name    required   a.xacro:2:18  used before its default "ur" is declared
 size    "1"        b.xacro:2:18  given "3"
 double  "$(arg size)0"  b.xacro:3:18  which is "30"
 idle    ""         b.xacro:4:18  not used
@@ -190,5 +190,5 @@ def test_the_argument_is_named_that_leads_to_a_missing_file(write, run):
 
 def test_the_list_goes_to_a_file(write, run):
     write("a.xacro", "<l/>")
-    assert run("--args", "a.xacro").out == "the file takes no arguments\n"
+    assert run("--args", "a.xacro").out == "the file has no arguments\n"
     assert run("--args", "a.xacro", "-o", "list.txt").out == ""

@@ -9,7 +9,7 @@ export interface ComparedRobot {
   marks: Record<string, Mark>;
 }
 
-/** A 1-based position in a source text: a text for users, and the file and line for the Source panel. */
+/** A 1-based position in a source text. */
 export interface ComparedPlace {
   text: string;
   file: string;

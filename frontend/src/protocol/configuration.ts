@@ -8,7 +8,7 @@ export type PropertyValue = boolean | number | string | null;
 
 export type RowDetails = "frame" | "link" | "joint" | "effort";
 
-/** The topics offered for a row: topics of one of the types with a name that contains one of the words. */
+/** The topics that a row offers: topics of these types, with one of these words in the name. */
 export interface TopicOffer {
   messages: string[];
   words: string[];
@@ -60,7 +60,7 @@ export interface Display {
   properties: Property[];
 }
 
-/** The complete tree of displays, sent at the start and when displays are added, removed or moved. */
+/** The complete tree of displays. */
 export interface Tree {
   global_options: Property[];
   global_status: StatusRow[];
@@ -127,21 +127,21 @@ export interface DisplayClass {
   messages: string[];
 }
 
-/** A topic of the graph, its message type, and the display classes that can show it, if any. */
+/** A topic of the graph, its message type, and the display classes that can show it. */
 export interface TopicChoice {
   topic: string;
   message: string;
   classes: string[];
 }
 
-/** The display classes that can be added, and the topics; response to `AskDisplayChoices`. */
+/** The display classes that can be added, and the topics. Response to `AskDisplayChoices`. */
 export interface DisplayChoices {
   classes: DisplayClass[];
   topics: TopicChoice[];
   type: "display_choices";
 }
 
-/** The folders and configuration files in a server folder, by name; response to `AskFolder`. */
+/** The folders and configuration files in a server folder, by name. Response to `AskFolder`. */
 export interface Folder {
   path: string;
   parent: string | null;
@@ -150,7 +150,7 @@ export interface Folder {
   type: "folder";
 }
 
-/** The text of the configuration as it would be saved, and a file name for it. */
+/** The text of the configuration, as for saving, and a file name. */
 export interface ConfigurationText {
   name: string;
   text: string;
@@ -224,12 +224,12 @@ export interface Redo {
   type: "redo";
 }
 
-/** A request for `DisplayChoices`: the classes that can be added, and the topics that they can show. */
+/** A request for the classes that can be added and the topics that they can show. */
 export interface AskDisplayChoices {
   type: "ask_display_choices";
 }
 
-/** A request for the contents of a folder of the server; None for the folder of the open file. */
+/** A request for the contents of a folder of the server. */
 export interface AskFolder {
   path: string | null;
   type: "ask_folder";
@@ -261,7 +261,7 @@ export interface RevertConfiguration {
   type: "revert_configuration";
 }
 
-/** A request to save to a file on the server, which becomes the configuration's file. */
+/** A request to save to a file on the server. It becomes the configuration's file. */
 export interface SaveConfiguration {
   path: string | null;
   replace: boolean;
@@ -290,7 +290,7 @@ export interface Panels {
   type: "panels";
 }
 
-/** The open panels, sent after the user has opened or closed a panel; the file stores them. */
+/** The open panels, sent after the user has opened or closed a panel. The file stores them. */
 export interface ShowPanels {
   shown: PanelName[];
   type: "show_panels";

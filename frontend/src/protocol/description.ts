@@ -21,7 +21,7 @@ export interface GiveArguments {
   type: "give_arguments";
 }
 
-/** A call of a macro or, if the macro is empty, an include of a file; 1-based. */
+/** A macro call or, if `macro` is empty, an include of a file. The position is 1-based. */
 export interface CallSite {
   macro: string | null;
   file: string;
@@ -38,14 +38,14 @@ export interface SourceRange {
   end_column: number;
 }
 
-/** The positions of an element in the expanded text and in its file, with the calls that led to it. */
+/** The positions of an element in the expanded text and in its file, and the calls behind it. */
 export interface Written {
   expanded: SourceRange | null;
   origin: SourceRange | null;
   calls: CallSite[];
 }
 
-/** The mass of a link in kg, its centre of mass in the link frame in metres, and its equivalent box. */
+/** The mass of a link in kg, its centre of mass in its frame in m, and its equivalent box. */
 export interface LinkInertia {
   mass: number;
   center: number[];
@@ -53,7 +53,7 @@ export interface LinkInertia {
   quaternion: number[];
 }
 
-/** A link of the description; `frame` is the name of the link's tf frame. */
+/** A link of the description. `frame` is the name of the link's tf frame. */
 export interface LinkDetails {
   name: string;
   frame: string;
@@ -93,7 +93,7 @@ export interface JointDetails {
   written: Written;
 }
 
-/** The description of the robot of a RobotModel display; response to `AskDescription`. */
+/** The description of the robot of a RobotModel display. Response to `AskDescription`. */
 export interface Description {
   display: string;
   revision: number;
@@ -105,7 +105,7 @@ export interface Description {
   type: "description";
 }
 
-/** The notice that a display shows a new description, with the links and joints that have changed. */
+/** The notice of a new description in a display, with the links and joints that changed. */
 export interface DescriptionChanged {
   display: string;
   revision: number;
@@ -131,7 +131,7 @@ export interface InertiaFinding {
   hint: string;
 }
 
-/** All findings about a robot's masses and inertias; response to `AskInertia`. */
+/** All findings about a robot's masses and inertias. Response to `AskInertia`. */
 export interface InertiaFindings {
   display: string;
   revision: number;
@@ -145,14 +145,14 @@ export interface AskDescription {
   type: "ask_description";
 }
 
-/** A request for a text of a description; an empty `file` means the expanded text. */
+/** A request for a text of a description. An empty `file` means the expanded text. */
 export interface AskDescriptionText {
   display: string;
   file: string;
   type: "ask_description_text";
 }
 
-/** A request for the findings about masses and inertias, which take a while to compute. */
+/** A request for the findings about masses and inertias. Their computation takes a while. */
 export interface AskInertia {
   display: string;
   type: "ask_inertia";
@@ -166,7 +166,7 @@ export interface DiagnosticNote {
   column: number | null;
 }
 
-/** A diagnostic for the page; `excerpt` is the source line if available. */
+/** A diagnostic for the page. `excerpt` is the source line if available. */
 export interface DiagnosticItem {
   code: string;
   severity: "error" | "warning" | "info";
@@ -181,7 +181,7 @@ export interface DiagnosticItem {
   hints: string[];
 }
 
-/** The current findings about the description; the list is empty if there are none. */
+/** The current findings about the description. The list is empty if there are none. */
 export interface Diagnostics {
   items: DiagnosticItem[];
   type: "diagnostics";

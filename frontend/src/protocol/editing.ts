@@ -63,7 +63,7 @@ export interface AskEditableParts {
   type: "ask_editable_parts";
 }
 
-/** A request to preview an edit, which moves or rotates a part. */
+/** A request to preview an edit that moves or rotates a part. */
 export interface PreviewEdit {
   number: number;
   display: string;

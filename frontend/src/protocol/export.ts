@@ -2,14 +2,14 @@
 
 import type { View } from "./views-and-tools";
 
-/** A request to export the scene as a file; `view` is the current view of the page. */
+/** A request to export the scene as a file. `view` is the current view of the page. */
 export interface AskExport {
   format: "html" | "glb";
   view: View;
   type: "ask_export";
 }
 
-/** The address of the exported file, which can be fetched once; response to `AskExport`. */
+/** The address of the exported file, for one download. Response to `AskExport`. */
 export interface ExportReady {
   url: string;
   name: string;
@@ -17,7 +17,7 @@ export interface ExportReady {
   type: "export_ready";
 }
 
-/** The reason why an export failed; response to `AskExport`. */
+/** The reason why an export failed. Response to `AskExport`. */
 export interface ExportFailed {
   message: string;
   type: "export_failed";

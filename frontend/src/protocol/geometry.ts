@@ -6,7 +6,7 @@ export interface PointMarks {
   kind: "point_marks";
 }
 
-/** Poses of Pose, PoseArray, PoseWithCovariance, Odometry and Path, in the frame of the content. */
+/** Poses of the displays of poses, Odometry and Path, in the frame of the content. */
 export interface PoseMarks {
   poses: Float32Array;
   covariances: Float32Array;
@@ -43,7 +43,7 @@ export interface RangeCone {
   kind: "range_cone";
 }
 
-/** The two vectors of TwistStamped, AccelStamped or Wrench, in the frame of the content, SI units. */
+/** The vectors of TwistStamped, AccelStamped or Wrench. */
 export interface Screw {
   linear: number[];
   angular: number[];

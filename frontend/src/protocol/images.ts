@@ -33,7 +33,7 @@ export interface ImageSize {
   type: "image_size";
 }
 
-/** The cells of Map, row by row from the corner at the origin, each as the byte of its int8 value. */
+/** The cells of Map as bytes of int8 values, row by row from the corner at the origin. */
 export interface OccupancyMap {
   width: number;
   height: number;

@@ -76,7 +76,7 @@ export interface InteractiveControl {
   markers: MarkerShape[];
 }
 
-/** An entry of a marker's menu; `parent` is 0 for a top-level entry. */
+/** An entry of a marker's menu. `parent` is 0 for a top-level entry. */
 export interface MarkerMenuEntry {
   id: number;
   parent: number;
@@ -101,7 +101,7 @@ export interface InteractiveMarkerMoved {
   kind: "interactive_marker_moved";
 }
 
-/** An action of the user on an interactive marker; poses and points are in the frame of the marker. */
+/** An action of the user on an interactive marker. */
 export interface MarkerFeedback {
   display: string;
   marker: string;

@@ -2,7 +2,7 @@
 
 export const PROTOCOL_VERSION = 5;
 
-/** The first message on every connection; `run` changes when the program is started again. */
+/** The first message on every connection. `run` changes when the program is started again. */
 export interface Hello {
   protocol: number;
   version: string;
@@ -11,7 +11,7 @@ export interface Hello {
   type: "hello";
 }
 
-/** Whether most of the delay that the page observes is caused by the program, not by the connection. */
+/** Whether the program, not the connection, causes most of the delay that the page observes. */
 export interface ProgramIsLate {
   late: boolean;
   type: "program_is_late";
@@ -25,7 +25,7 @@ export interface Received {
 
 export const TRANSFORMS_KIND = 1;
 
-/** The names and parents (index, -1 for a root) of the frames in binary frames with this revision. */
+/** The names and parents of the frames in binary frames with this revision. */
 export interface FrameTable {
   revision: number;
   names: string[];
@@ -35,7 +35,7 @@ export interface FrameTable {
 
 export const DATA_KIND = 2;
 
-/** The removal of content of a display: the content under a key, or all content if the key is None. */
+/** The removal of a display's content under a key, or of all its content if the key is None. */
 export interface DisplayForgotten {
   display: string;
   key: string | null;

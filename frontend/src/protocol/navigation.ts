@@ -12,7 +12,7 @@ export interface WatchNavigation {
   type: "watch_navigation";
 }
 
-/** A command of the user, which is for both lifecycle managers or cancels all goals. */
+/** A command of the user: for both lifecycle managers, or to cancel all goals. */
 export interface CommandNavigation {
   command: NavigationCommand;
   type: "command_navigation";
@@ -32,7 +32,7 @@ export interface NavigationState {
   type: "navigation_state";
 }
 
-/** Whether the last goal failed, which the page shows over the scene. */
+/** Whether the last goal failed. The page shows this over the scene. */
 export interface GoalOutcome {
   reason: string;
   failed: boolean;

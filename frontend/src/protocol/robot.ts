@@ -15,7 +15,7 @@ export interface JointControl {
   offset: number;
 }
 
-/** The rows of the Joints panel; None closes the panel. */
+/** The rows of the Joints panel. None closes the panel. */
 export interface Joints {
   controls: JointControl[] | null;
   type: "joints";
@@ -62,13 +62,13 @@ export type ShapeKind =
   | "polyline"
   | "heightmap";
 
-/** The part of a mesh file to draw, by its name in the file; `center` moves it to the origin. */
+/** The part of a mesh file to draw, by its name in the file. */
 export interface Submesh {
   name: string;
   center: boolean;
 }
 
-/** The material of a shape in a world: roughness and metalness from 0 to 1, and image addresses. */
+/** The material of a shape in a world: roughness and metalness, 0 to 1, and image addresses. */
 export interface Surface {
   roughness: number;
   metalness: number;
@@ -98,7 +98,7 @@ export interface Shape {
   surface: Surface | null;
 }
 
-/** A link to draw, which is placed at the pose of a frame. */
+/** A link to draw at the pose of a frame. */
 export interface LinkScene {
   name: string;
   frame: string;
@@ -109,7 +109,7 @@ export interface LinkScene {
   inertia: LinkInertia | null;
 }
 
-/** A joint with its pose in the frame of the parent link; `axis` is in the frame of the joint. SI units. */
+/** A joint with its pose in the frame of the parent link. SI units. */
 export interface JointScene {
   name: string;
   kind: "revolute" | "continuous" | "prismatic" | "fixed" | "floating" | "planar";
@@ -122,7 +122,7 @@ export interface JointScene {
   upper: number | null;
 }
 
-/** The robot of a RobotModel display; `revision` is the number of its descriptions so far. */
+/** The robot of a RobotModel display. `revision` is the number of its descriptions so far. */
 export interface RobotScene {
   display: string;
   revision: number;
@@ -132,7 +132,7 @@ export interface RobotScene {
   type: "robot_scene";
 }
 
-/** The outcome of loading a mesh in the page; `error` is None if the mesh is drawn. */
+/** The outcome of loading a mesh in the page. `error` is None if the mesh is drawn. */
 export interface MeshStatus {
   display: string;
   link: string;
@@ -141,14 +141,14 @@ export interface MeshStatus {
   type: "mesh_status";
 }
 
-/** A request for the source positions of a link that the user has selected in a RobotModel display. */
+/** A request for the source positions of a link selected in a RobotModel display. */
 export interface AskProvenance {
   display: string;
   link: string;
   type: "ask_provenance";
 }
 
-/** The source positions of a link and of the macro calls, as lines; response to `AskProvenance`. */
+/** The source positions of a link and its macro calls, as lines. Response to `AskProvenance`. */
 export interface LinkProvenance {
   display: string;
   link: string;

@@ -50,7 +50,7 @@ export interface ModelChoices {
   type: "model_choices";
 }
 
-/** A change of a model or light; fields that are None do not change. */
+/** A change of a model or light. Fields that are None do not change. */
 export interface EntityChange {
   name: string;
   pose: number[] | null;
@@ -60,7 +60,7 @@ export interface EntityChange {
   colour: number[] | null;
 }
 
-/** Whether the user edits the world; during editing, the simulation is paused at its start. */
+/** Whether the user edits the world. During editing, the simulation is paused at its start. */
 export interface SetModelling {
   active: boolean;
   type: "set_modelling";
@@ -75,13 +75,13 @@ export interface AddEntity {
   type: "add_entity";
 }
 
-/** A request to change objects, which is undone in one step. */
+/** A request to change objects. It is undone in one step. */
 export interface ChangeEntities {
   changes: EntityChange[];
   type: "change_entities";
 }
 
-/** A request to copy objects; the copies are placed at an offset (x y z) from the originals. */
+/** A request to copy objects. */
 export interface CopyEntities {
   names: string[];
   offset: number[];
@@ -94,7 +94,7 @@ export interface DeleteEntities {
   type: "delete_entities";
 }
 
-/** A request to group several models, which become the parts of one model. */
+/** A request to group several models as the parts of one model. */
 export interface GroupEntities {
   names: string[];
   name: string;
@@ -128,7 +128,7 @@ export interface AskModels {
   type: "ask_models";
 }
 
-/** The state of the simulation; `present` is false if there is none. */
+/** The state of the simulation. `present` is false if there is none. */
 export interface SimulationStatus {
   present: boolean;
   drivable: boolean;

@@ -8,7 +8,7 @@ export interface OpenEditor {
   type: "open_editor";
 }
 
-/** The workspace that the page may edit; response to `OpenEditor`. */
+/** The workspace that the page may edit. Response to `OpenEditor`. */
 export interface EditorOpened {
   folder: string;
   uri: string;
@@ -28,7 +28,7 @@ export interface LeaveSourceFile {
   type: "leave_source_file";
 }
 
-/** A file as it is on the disk; response to `AskSourceFile`, sent again when another program changes the file. */
+/** A file on the disk. */
 export interface SourceFile {
   path: string;
   uri: string;
@@ -38,7 +38,7 @@ export interface SourceFile {
   type: "source_file";
 }
 
-/** A request to write a file that has not changed since the page was sent this `version` of it. */
+/** A request to write a file, unless the file has changed since this `version` was sent. */
 export interface WriteSourceFile {
   number: number;
   path: string;
@@ -93,7 +93,7 @@ export interface AskSourceFolder {
   type: "ask_source_folder";
 }
 
-/** The names of the folders and of the files of text in a folder; response to `AskSourceFolder`. */
+/** The names of the subfolders and text files in a folder. Response to `AskSourceFolder`. */
 export interface SourceFolder {
   path: string;
   folders: string[];
@@ -114,7 +114,7 @@ export interface LanguageServerAnswer {
   type: "language_server_answer";
 }
 
-/** A notice that the page's language server has ended unexpectedly; the next `OpenEditor` starts another one. */
+/** A notice that the page's language server ended unexpectedly. */
 export interface LanguageServerEnded {
   type: "language_server_ended";
 }

@@ -18,7 +18,7 @@ export interface Timeline {
   type: "timeline";
 }
 
-/** The extent of the stored last minutes: start and end, size in bytes, and maximum size in bytes. */
+/** The extent of the stored last minutes: start, end, size and maximum size in bytes. */
 export interface HistoryExtent {
   start: number;
   end: number;
@@ -27,7 +27,7 @@ export interface HistoryExtent {
   type: "history_extent";
 }
 
-/** The position in a recording, which is sent a few times per second while `playing`. */
+/** The position in a recording, sent a few times per second while `playing`. */
 export interface Playhead {
   position: number;
   playing: boolean;
@@ -51,7 +51,7 @@ export interface SeekTime {
   type: "seek_time";
 }
 
-/** A request to jump to the next or previous message, of the displayed topics or of a single topic. */
+/** A request to jump to the next or previous message of the displayed topics or of one topic. */
 export interface StepTime {
   forward: boolean;
   topic: string;
@@ -70,7 +70,7 @@ export interface SetPlayback {
   type: "set_playback";
 }
 
-/** A completed recording: path on the server, size in bytes, length in seconds, and download address. */
+/** A completed recording: path on the server, size in bytes, length in s, download address. */
 export interface RecordedFile {
   name: string;
   path: string;
@@ -92,7 +92,7 @@ export interface RecordingState {
   type: "recording_state";
 }
 
-/** A request to record topics; an empty list means all present and future topics. */
+/** A request to record topics. An empty list means all present and future topics. */
 export interface RecordTopics {
   topics: string[];
   type: "record_topics";
@@ -112,7 +112,7 @@ export interface SaveMinutes {
 
 export type SyncMode = "Off" | "Exact" | "Approximate";
 
-/** The state of the Time panel, sent on changes. `sources` are the displays whose messages can drive time. */
+/** The state of the Time panel, sent on changes. */
 export interface TimeState {
   paused: boolean;
   mode: SyncMode;

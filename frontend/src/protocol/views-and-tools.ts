@@ -9,7 +9,7 @@ export interface View {
   values: Record<string, PropertyValue>;
 }
 
-/** A class of views: its property rows, with the names of values as IDs, and the defaults of RViz. */
+/** A class of views: its property rows and the defaults of RViz. */
 export interface ViewClass {
   cls: string;
   properties: Property[];
@@ -22,7 +22,7 @@ export interface ViewClasses {
   type: "view_classes";
 }
 
-/** The view with which a page shows a configuration; afterwards the page controls its camera. */
+/** The view with which a page shows a configuration. Afterwards the page controls its camera. */
 export interface ViewState {
   view: View;
   revision: number;
@@ -30,7 +30,7 @@ export interface ViewState {
   type: "view_state";
 }
 
-/** A saved view and its ID, which does not change when the view is renamed or edited. */
+/** A saved view and its ID. */
 export interface SavedView {
   id: string;
   view: View;
@@ -74,7 +74,7 @@ export interface RemoveSavedView {
   type: "remove_saved_view";
 }
 
-/** A tool of the toolbar. `supported` is false for an unknown class, which is preserved in the file. */
+/** A tool of the toolbar. */
 export interface Tool {
   id: string;
   cls: string;

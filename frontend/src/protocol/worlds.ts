@@ -15,7 +15,7 @@ export interface LightScene {
   cone: number[];
 }
 
-/** The directions of rays in one plane: `count` angles, starting at `first`, in steps of `step`, in rad. */
+/** The directions of rays in a plane: `count` angles from `first` in steps of `step`, in rad. */
 export interface RayAngles {
   first: number;
   step: number;
@@ -35,7 +35,7 @@ export interface LidarScene {
   farthest: number;
 }
 
-/** A camera of a world, which looks along x with z up; common fields are as in `LidarScene`. */
+/** A camera of a world. It looks along x, with z up. */
 export interface CameraScene {
   name: string;
   link: string;
@@ -58,7 +58,7 @@ export interface FogScene {
   density: number | null;
 }
 
-/** The drawable content of a World display; `revision` is the number of descriptions so far. */
+/** The drawable content of a World display. `revision` is the number of descriptions so far. */
 export interface WorldScene {
   revision: number;
   name: string;
@@ -83,7 +83,7 @@ export interface WorldPoses {
   kind: "world_poses";
 }
 
-/** The measured ray lengths of a lidar of a World display, in m, shape (vertical * horizontal,). */
+/** The measured ray lengths of a lidar in m, shape (vertical * horizontal,). */
 export interface WorldRays {
   lidar: string;
   ranges: Float32Array;

@@ -44,7 +44,9 @@ def find_patches(path: Path) -> dict[int, bytes]:
 
 
 def header_patch(file: BinaryIO) -> dict[int, bytes]:
-    """Return the patch that sets the profile to ``ros2``; empty if none is needed.
+    """Return the patch that sets the profile to ``ros2``.
+
+    The result is empty if no patch is needed.
 
     The profile takes bytes from the name of the program that wrote the file.
     """
@@ -63,7 +65,9 @@ def header_patch(file: BinaryIO) -> dict[int, bytes]:
 
 
 def schema_patch(place: int, content: bytes) -> dict[int, bytes]:
-    """Return the patch that empties a schema in a language that ROS 2 does not use; else an empty patch.
+    """Return the patch that empties a schema in a language that ROS 2 does not use.
+
+    The result is empty for any other schema.
 
     The length of the schema record stays the same.
 
@@ -84,7 +88,7 @@ def readable_schema(content: bytes) -> bytes:
 
 
 def _read_strings(content: bytes, place: int, count: int) -> list[bytes] | None:
-    """Return `count` consecutive length-prefixed strings; None if the content is truncated."""
+    """Return `count` consecutive length-prefixed strings, or None if the content is truncated."""
     strings = []
     for _ in range(count):
         if place + _LENGTH.size > len(content):

@@ -1,4 +1,4 @@
-"""Keep the messages of the last minutes in memory, as a recording of limited size that can be played.
+"""Keep the messages of the last minutes in memory, as a recording of limited size.
 
 Three measures save memory. First, repeated states are stored sparsely: of messages that differ only in their stamps,
 only the first and the newest are stored. Second, messages of a simulated clock are stored only if they are close to
@@ -6,8 +6,8 @@ messages of other topics. Third, if the memory is full, old large messages (imag
 they are, the more.
 
 A thread compresses large messages with Zstandard in memory, if compression makes them clearly smaller. Images and
-clouds of a simulation shrink to a tenth or a hundredth, while those with the noise of a real sensor hardly shrink. The
-fastest compression level is sufficient to distinguish the two.
+clouds of a simulation shrink to a tenth or a hundredth of their size, while the noisy data of a real sensor hardly
+shrink. The fastest compression level is sufficient to distinguish the two cases.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ K = TypeVar("K")
 
 
 class Packed(bytes):
-    """A compressed message; its length is the number of compressed bytes."""
+    """A compressed message. Its length is the number of compressed bytes."""
 
     __slots__ = ()
 
@@ -66,7 +66,7 @@ def uncompressed_bytes(data: bytes) -> bytes:
 
 
 class Shrinker(Generic[K]):
-    """Compresses messages in a separate thread, which starts when the first large message arrives.
+    """Compresses messages in a separate thread. It starts when the first large message arrives.
 
     Args:
         done: called in that thread with the key of a message and its compressed form.
@@ -119,7 +119,7 @@ _LARGE_MEAN_BYTES = 6000
 """The mean size of a topic's messages above which they are thinned before any message is dropped."""
 
 _MAX_THINNED_NS = 600_000_000_000
-"""The maximum time that a topic's messages span for them to be thinned."""
+"""The maximum time span of a topic's messages for which they are thinned."""
 
 _FREED_DIVISOR = 20
 """Thinning frees one n-th of the maximum memory at once."""
@@ -152,7 +152,10 @@ class _Track:
 
     @property
     def can_be_thinned(self) -> bool:
-        """Whether there are enough large messages in a short enough time; always False for transforms."""
+        """Whether there are enough large messages in a short enough time.
+
+        The value is always False for transforms.
+        """
         if (
             len(self) < _FREED_DIVISOR
             or self.size < _LARGE_MEAN_BYTES * len(self)
@@ -245,7 +248,7 @@ class _Track:
         return freed
 
     def replace(self, number: int, packed: Packed) -> int:
-        """Replace a message by its compressed form, and return the number of freed bytes."""
+        """Replace a message with its compressed form, and return the number of freed bytes."""
         index = self._place(number)
         if index is None:
             return 0  # the message was dropped in the meantime
@@ -255,12 +258,12 @@ class _Track:
         return len(data) - len(packed)
 
     def _place(self, number: int) -> int | None:
-        """Return the index of the message with a number; None if it was dropped."""
+        """Return the index of the message with a number, or None if it was dropped."""
         index = bisect_left(self.kept, number, lo=self.first, key=lambda item: item[1])
         return index if index < len(self.kept) and self.kept[index][1] == number else None
 
     def repeated_after(self, start_ns: int, end_ns: int) -> list[_Entry]:
-        """Return the messages in a time interval each of which also represents the equal messages after it."""
+        """Return the messages in a time interval that also represent the equal messages after them."""
         return [item for item in self.between(start_ns, end_ns) if item[1] in self._repeated_numbers]
 
     def repeated_until(self, at_ns: int) -> list[_Entry]:
@@ -279,7 +282,9 @@ class _Track:
         return self.kept[max(self.first, end - count) : end]
 
     def clock_at(self, at_ns: int) -> list[_Entry]:
-        """Return the last message of a clock up to a time, in a list; empty if there is none.
+        """Return the last message of a clock up to a time, in a list.
+
+        The list is empty if there is no message.
 
         If the message represents several clock messages, the time is interpolated.
         """
@@ -297,7 +302,7 @@ class _Track:
 
 
 class _Run:
-    """A run of messages of a topic with equal content: its start time, and the number of its second message.
+    """A run of equal messages of a topic: its start time, and the number of its second message.
 
     The number is None while only one message is stored.
     """
@@ -311,7 +316,9 @@ class _Run:
 
 
 class History:
-    """Stores messages until newer messages need their space. It can be played while messages are added.
+    """Stores messages until newer messages need their space.
+
+    The history can be played while messages are added.
 
     Messages may be added from any thread. The recorded times never decrease, even if the clock goes back. Large
     messages are compressed if that makes them smaller.
@@ -347,7 +354,7 @@ class History:
             topic: the name of the topic.
             data: the serialized message.
             at_ns: the reception time; None for the current time. A time before that of the newest message is replaced
-                    by the newest message's time.
+                by the newest message's time.
             content: the content of the message (see `stillness`), so that a message that only repeats earlier ones
                 needs no additional memory; None if the content is not compared.
         """
@@ -379,7 +386,7 @@ class History:
         self._shrinker.offer((track, number), data)
 
     def close(self) -> None:
-        """Stop compressing; the stored messages remain available."""
+        """Stop compressing. The stored messages remain available."""
         self._shrinker.close()
 
     def _comparable_clock(self, content: Content, clock_ns: int) -> Content:
@@ -393,7 +400,10 @@ class History:
         return content._replace(state=b"%d" % self._changes)
 
     def _free_memory(self) -> bool:
-        """Thin out large messages, or drop the oldest message; return False if nothing could be freed."""
+        """Thin out large messages, or drop the oldest message.
+
+        Return False if nothing could be freed.
+        """
         largest = self._largest_track
         if largest is not None and largest.size > self.most_bytes // 2 and largest.can_be_thinned:
             freed = largest.thin(self.most_bytes // _FREED_DIVISOR)
@@ -406,13 +416,13 @@ class History:
         return True
 
     def _queue(self, track: _Track) -> None:
-        """Add a track to the queue, which is ordered by the oldest message of each track."""
+        """Add a track to the queue. The queue is ordered by the oldest message of each track."""
         if not track.is_queued and len(track) > 0:
             track.is_queued = True
             heappush(self._queue_by_oldest, (track.kept[track.first][1], track.name, track))
 
     def _first(self) -> _Track | None:
-        """Return the track with the oldest message; None if there are no messages."""
+        """Return the track with the oldest message, or None if there are no messages."""
         while self._queue_by_oldest:
             number, _, track = self._queue_by_oldest[0]
             if len(track) > 0 and track.kept[track.first][1] == number:
@@ -429,14 +439,17 @@ class History:
 
     @property
     def start_ns(self) -> int:
-        """The time of the oldest message, in ns since the epoch; the current time if there is no message."""
+        """The time of the oldest message, in ns since the epoch.
+
+        If there is no message, this is the current time.
+        """
         with self.lock:
             oldest = self._first()
             return self.end_ns if oldest is None else oldest.kept[oldest.first][0]
 
     @property
     def end_ns(self) -> int:
-        """The current time, in ns since the epoch, because the last message of a topic is still valid."""
+        """The current time, in ns since the epoch, because a topic's last message remains valid."""
         return max(self._newest_ns, self._now_ns())
 
     def messages(self, topics: Collection[str], start_ns: int) -> Iterator[Recorded]:
@@ -506,7 +519,7 @@ class History:
         ]
 
     def after(self, topics: Collection[str], start_ns: int, number: int) -> tuple[int, Recorded] | None:
-        """Return the first message of topics at or after a time, and its number; None if there is none.
+        """Return the first message of topics at or after a time, and its number, or None.
 
         Messages with a number below `number` are skipped.
         """

@@ -1,4 +1,4 @@
-"""Find single messages of an MCAP file by its indexes, without reading the data in between.
+"""Find single messages of an MCAP file by its indexes, without reading other data.
 
 The chunk index at the end of the file lists the chunks with messages of each channel, and the locations of their
 message indexes. A message index contains times, and offsets in the chunk (the MCAP specification). So only one
@@ -57,7 +57,10 @@ class McapLookup:
         return None if best is None else (best[0], self._read_message(best[1], best[2]))
 
     def between(self, channels: Collection[int], start_ns: int, end_ns: int) -> list[tuple[int, bytes]]:
-        """Return times and data of the messages from one time to another, both inclusive, in order of time."""
+        """Return the times and data of the messages from one time to another, ordered by time.
+
+        Both limits are inclusive.
+        """
         locations = []
         for channel in channels:
             chunks = [

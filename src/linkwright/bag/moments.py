@@ -38,9 +38,9 @@ class StateLookup:
     def state_at(self, topics: Collection[str], at_ns: int) -> list[Recorded]:
         """Return the last message of each topic up to a time.
 
-        For ``/tf``, the result has the messages of the last two seconds, or if there are none, of the two seconds up
-        to the last message; for ``/tf_static``, all messages. Topics with these names in a namespace are treated in the
-        same way.
+        For ``/tf``, the result contains the messages of the last two seconds. If there are none, it contains the
+        messages of the two seconds up to the last message. For ``/tf_static``, it contains all messages. Topics with
+        these names in a namespace are treated in the same way.
 
         Args:
             topics: the names of the topics.
@@ -72,7 +72,7 @@ class StateLookup:
     def counts(self, intervals: int) -> dict[str, list[int]]:
         """Return the number of messages of each topic in equal intervals of the recording's duration.
 
-        It is empty for a file without an index. In a long recording, the messages of a chunk, or of a short
+        The result is empty for a file without an index. In a long recording, the messages of a chunk, or of a short
         interval, are counted as if they were evenly distributed.
         """
         start, duration = self._reader.start_time, max(1, self._reader.duration)
@@ -93,7 +93,7 @@ class StateLookup:
 
     @cached_property
     def _lookups(self) -> list[tuple[Any, McapLookup | RowLookup]]:
-        """The lookups of the files; empty if one of the files cannot be searched.
+        """The lookups of the files. The list is empty if one of the files cannot be searched.
 
         A file cannot be searched if it has no index, or if its messages are compressed one by one.
         """
@@ -142,7 +142,7 @@ class StateLookup:
         ]
 
     def _latest_without_index(self, topics: Collection[str], at_ns: int) -> Iterator[Recorded]:
-        """Yield the last message of each topic, reading longer and longer intervals before the time."""
+        """Yield the last message of each topic, by reading ever longer intervals before the time."""
         remaining_topics = set(topics)
         end, length = at_ns + 1, _FIRST_WINDOW_NS
         while remaining_topics and end > self._reader.start_time:

@@ -30,12 +30,17 @@ _NUMBERED_NAME = re.compile(r"(.+)_(0|[1-9][0-9]*)(\.mcap|\.db3)((?:\.zstd)?)")
 
 
 def numbered_path(folder: Path, number: int, suffix: str) -> Path:
-    """Return the path of a file in a recording: the folder's name with a number from 0 and a suffix."""
+    """Return the path of a file in a recording.
+
+    Its name consists of the folder's name, a number from 0 and a suffix.
+    """
     return folder / f"{Path(folder.absolute()).name}_{number}{suffix}"
 
 
 def storage_format(path: Path) -> str | None:
-    """Return the storage format that the name of a file indicates; None if it is not a file of a recording.
+    """Return the storage format that the name of a file indicates.
+
+    Return None if the file is not a file of a recording.
 
     The name may end with the suffix of compressed files.
     """
@@ -59,7 +64,7 @@ def in_order(files: Sequence[Path]) -> list[Path]:
 
 
 def belong_together(files: Sequence[Path]) -> bool:
-    """Return whether files have one base name and consecutive numbers, as the files of a recording have."""
+    """Return whether files have one base name and consecutive numbers, as in a recording."""
     matches = [_NUMBERED_NAME.fullmatch(file.name) for file in files]
     numbers = sorted(int(match[2]) for match in matches if match is not None)
     base_names = {(match[1], match[3], match[4]) for match in matches if match is not None}

@@ -1,4 +1,4 @@
-"""Read compressed files of recordings without metadata.
+"""Read compressed files of recordings that have no metadata.
 
 The metadata is missing if only a file was copied, or if the recorder was killed. rosbag2 compresses whole files or
 single messages, and only ``metadata.yaml`` states the unit.

@@ -52,7 +52,7 @@ class Part:
 
     @property
     def storage(self) -> Any:
-        """The library's storage of the file; None after the file was closed."""
+        """The library's storage of the file, or None after the file was closed."""
         return self._writer.storage
 
     @property
@@ -118,7 +118,7 @@ def write_information(folder: Path, information: _Metadata) -> None:
 
 
 def _combine(file_metadata: Sequence[_Metadata]) -> _Metadata:
-    """Return the metadata of several files, combined into that of one recording."""
+    """Combine the metadata of several files into the metadata of one recording."""
     files = [item for metadata in file_metadata for item in metadata["files"]]
     times_and_durations = [
         (file["starting_time"]["nanoseconds_since_epoch"], file["duration"]["nanoseconds"])
@@ -149,14 +149,14 @@ def _combine(file_metadata: Sequence[_Metadata]) -> _Metadata:
 
 
 def _allow_all_threads(storage: Any) -> None:
-    """Replace the library's database connection, which can only be used in one thread, by one without this limit."""
+    """Replace the library's database connection with one that any thread can use."""
     storage.conn.close()
     storage.conn = sqlite3.connect(f"file:{storage.path}", uri=True, check_same_thread=False)
     storage.cursor = storage.conn.cursor()
 
 
 class _FixedPath:
-    """Replaces the folder in which the library creates its file, so that the file gets a given path."""
+    """Replaces the folder in which the library creates its file. The file then has a given path."""
 
     def __init__(self, path: Path) -> None:
         self.name = path.stem

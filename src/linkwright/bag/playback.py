@@ -110,7 +110,7 @@ class Playback:
         return self._recording.end_ns
 
     def play(self) -> None:
-        """Start playing; from the beginning if the position is at the end."""
+        """Start playing. If the position is at the end, start from the beginning."""
         if self.playing:
             return
         if self._target() >= self.end_ns:
@@ -139,8 +139,8 @@ class Playback:
     def seek(self, stamp_ns: int) -> None:
         """Jump to another time in the next iteration of the event loop.
 
-        Of several pending seeks, only the last one takes effect. The new time is published first, and the messages of
-        the new state one iteration of the event loop later, because subscribers drop their state when the clock goes
+        Of several pending seeks, only the last one takes effect. The new time is published first. The messages of the
+        new state follow one iteration of the event loop later, because subscribers drop their state when the clock goes
         back.
         """
         is_pending = self._target_ns is not None
@@ -216,7 +216,10 @@ class Playback:
         return messages
 
     def review(self) -> None:
-        """Update the set of subscribed topics, and publish the last message of each topic that was added."""
+        """Update the set of subscribed topics.
+
+        Publish the last message of each topic that was added.
+        """
         topics = self._output.wanted()
         if topics == self._wanted or self._target_ns is not None:
             return
@@ -229,7 +232,7 @@ class Playback:
             self._fail(error)
 
     def close(self) -> None:
-        """Stop playing and close the recording."""
+        """Stop playing, and remove the listeners. The recording stays open."""
         self._stop()
         self.changed.clear()
         self._stream, self._next = iter(()), None

@@ -147,7 +147,7 @@ class Player:
         self._schedule()
 
     def play_next(self) -> bool:
-        """Publish the next message while paused; return False if there is none."""
+        """Publish the next message while paused. Return False if there is none."""
         return self.burst(1) == 1
 
     def burst(self, count: int) -> int:
@@ -245,7 +245,7 @@ class Player:
         self._alarm = self._node.handle.dispatcher.call_at(self._reference_ns + max(0, wait_ns), self._run)
 
     def _set_reference(self) -> None:
-        """Make the current moment the reference of the playback time, before the rate or the state changes."""
+        """Store the current playback time as the reference before the rate or the state changes."""
         self._position_ns = self.now_ns()
         self._reference_ns = self._steady_ns()
 

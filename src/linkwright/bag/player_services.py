@@ -70,7 +70,7 @@ class PlayerServices:
     def _play(self, _: Any, response: Any) -> Any:
         """Reject the request, because the recording is already playing.
 
-        rosbag2 also rejects it during playback, and its program ends when playback ends.
+        rosbag2 also rejects the request during playback, and its program ends when playback ends.
         """
         self._logger.warning("The recording is already playing: the request is ignored")
         response.success = False

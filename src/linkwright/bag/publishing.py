@@ -22,7 +22,7 @@ _LATCHED_QOS = QoSProfile(100, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 def make_publishers(
     node: Node, topics: Iterable[BagTopic], overrides: Mapping[str, QoSProfile] | None = None
 ) -> dict[str, Publisher[Any]]:
-    """Create a publisher for each topic with its recorded quality of service, and return them by topic.
+    """Create a publisher for each topic with its recorded quality of service.
 
     A topic with an unavailable type is logged and skipped.
 
@@ -47,7 +47,10 @@ def make_publishers(
 
 
 def missing_type_findings(bag: BagReader) -> list[Diagnostic]:
-    """Return the diagnostic BAG114 if topics cannot be played because their types are missing; else no diagnostic."""
+    """Return the diagnostic BAG114 if topics cannot be played because their types are missing.
+
+    Otherwise return an empty list.
+    """
     names = [f"{topic.name} ({topic.type_name})" for topic in bag.topics if not _has_type(topic.type_name)]
     if not names:
         return []

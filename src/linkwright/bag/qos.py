@@ -1,4 +1,4 @@
-"""Quality of service in recordings: conversion of profiles, and their choice for recording and playing.
+"""Quality of service in recordings: conversion of profiles, and their choice.
 
 The rules for the choice are those of rosbag2 (``rosbag2_transport/qos.cpp``).
 """
@@ -113,10 +113,10 @@ def profile_for_recording(offered: Sequence[QoSProfile]) -> QoSProfile:
 
 
 def profile_for_playing(recorded: Sequence[QoSProfile]) -> QoSProfile:
-    """Return the recorded profile if all publishers offered equivalent profiles, else the default profile.
+    """Return the recorded profile if all publishers offered equivalent profiles, else the default.
 
-    Depth and lifespan may differ. The largest depth is then used, because one publisher now represents all of
-    all of them. rosbag2 always uses a depth of 10 messages.
+    Depth and lifespan may differ. The largest depth is then used, because one publisher now represents all of them.
+    rosbag2 always uses a depth of 10 messages.
     """
     if recorded and len({_compatibility_key(qos) for qos in recorded}) == 1:
         return max(recorded, key=lambda qos: (qos.history is HistoryPolicy.KEEP_ALL, qos.depth))

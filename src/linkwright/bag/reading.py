@@ -65,8 +65,8 @@ class BagReader:
 
     Args:
         path: a folder with a ``metadata.yaml``, or a single ``.mcap`` or ``.db3`` file. If the recorder was killed, and
-                ``metadata.yaml`` and the index are missing, all complete messages are read. A
-            folder can also contain only the numbered files of one recording.
+            ``metadata.yaml`` and the index are missing, all complete messages are read. A folder can also contain
+            only the numbered files of one recording.
         display_name: the name of the recording in messages to the user; None for its path.
         files: the files of the recording, with any names, if several files are read as one recording; else empty.
 
@@ -146,7 +146,7 @@ class BagReader:
         return reader
 
     def _readable_target(self, target: Path) -> Any:
-        """Return what the library can open: the path, or a file in memory that has an index.
+        """Return a target that the library can open: the path, or a file in memory that has an index.
 
         Data that the library would reject are removed from the file in memory.
         """
@@ -216,17 +216,17 @@ class BagReader:
 
     @property
     def start_ns(self) -> int:
-        """The time of the first message, in nanoseconds since the epoch; 0 without messages."""
+        """The time of the first message, in nanoseconds since the epoch, or 0 without messages."""
         return self._reader.start_time if self._reader.message_count else 0
 
     @property
     def end_ns(self) -> int:
-        """The time of the last message, in nanoseconds since the epoch; 0 without messages."""
+        """The time of the last message, in nanoseconds since the epoch, or 0 without messages."""
         return self._reader.end_time - 1 if self._reader.message_count else 0
 
     @property
     def definitions(self) -> list[tuple[str, str, str, str]]:
-        """The definitions of the topics' types: type name, ``ros2msg`` or ``ros2idl``, definition, and hash."""
+        """The definitions of the topics' types: name, ``ros2msg`` or ``ros2idl``, text, and hash."""
         connections_by_type = {
             connection.msgtype: connection
             for connection in self._reader.connections
@@ -241,7 +241,7 @@ class BagReader:
     def messages(
         self, topics: Collection[str] = (), start_ns: int | None = None, stop_ns: int | None = None
     ) -> Iterator[Recorded]:
-        """Yield the topic, the reception time and the serialized data of each message, ordered by time.
+        """Yield the topic, the reception time and the data of each message, ordered by time.
 
         Times are in nanoseconds since the epoch.
 
@@ -272,7 +272,9 @@ class BagReader:
         return self._read(self._reader.messages(connections, start_ns, stop_ns))
 
     def state_at(self, topics: Collection[str], at_ns: int) -> list[Recorded]:
-        """Return the state at a time: the last message of each topic, and the transforms; see `StateLookup`.
+        """Return the state at a time: the last message of each topic, and the transforms.
+
+        See `StateLookup`.
 
         Raises:
             LinkwrightError: BAG102, the messages cannot be read.
@@ -292,7 +294,7 @@ class BagReader:
     def counts(self, intervals: int) -> dict[str, list[int]]:
         """Return the number of messages of each topic in equal intervals of the recording's duration.
 
-        It is empty for a file without an index.
+        The result is empty for a file without an index.
         """
         return self._state_lookup.counts(intervals) if self._reader.message_count else {}
 
@@ -313,7 +315,7 @@ class BagReader:
             yield connection.topic, stamp_ns, data
 
     def close(self) -> None:
-        """Close the files of the recording; a second call has no effect."""
+        """Close the files of the recording. A second call has no effect."""
         self._open.close()
 
     def __enter__(self) -> Self:
@@ -328,8 +330,10 @@ class BagReader:
 def open_recording(path: str | Path) -> BagReader:
     """Open a recording in MCAP or SQLite to read its messages.
 
+    The caller must close the returned reader, or use it in a ``with`` statement.
+
     Args:
-        path: see `BagReader`. Close the returned reader, or use it in a ``with`` statement.
+        path: see `BagReader`.
 
     Raises:
         LinkwrightError: see `BagReader`.
@@ -338,7 +342,7 @@ def open_recording(path: str | Path) -> BagReader:
 
 
 def _ignore_profiles_of_files(storage: Any) -> None:
-    """Let the library match the topics of ``metadata.yaml`` and of the files, even if their QoS profiles differ.
+    """Let the library match the topics of ``metadata.yaml`` and of the files, whatever their QoS.
 
     Otherwise it reads no messages from recordings made before rosbag2 stored profiles in files, and from some
     converted recordings.
@@ -351,7 +355,10 @@ def _ignore_profiles_of_files(storage: Any) -> None:
 
 
 def _storage_targets(path: Path, display_name: str) -> list[Path]:
-    """Return the paths that the library opens: the folder, or its files if the metadata is missing."""
+    """Return the paths that the library opens.
+
+    These are the folder, or its files if the metadata is missing.
+    """
     if not path.exists():
         raise LinkwrightError(Diagnostic("BAG101", phrase("there is no recording '{path}'", path=display_name)))
     if path.is_file() or ((path / METADATA).exists() and not _has_unfinished_file(path)):

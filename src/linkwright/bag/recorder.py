@@ -20,7 +20,7 @@ _POLL_SECONDS = 0.1
 class Recorder:
     """Writes the messages of topics to a recording until the recorder is closed.
 
-    It passes the received messages to the operating system every second, so that at most one second is
+    The recorder passes the received messages to the operating system every second, so that at most one second is
     missing if the process is killed.
 
     Args:
@@ -34,7 +34,7 @@ class Recorder:
         without_subscriptions: whether topics without a subscription are recorded too.
         paused: whether recording begins paused, so that messages are dropped until `toggle_paused` is called.
         wrap_callback: wraps the node's callbacks, so that the caller can handle an error such as a full disk; by
-                default the node logs the error.
+            default the node logs the error.
     """
 
     def __init__(
@@ -79,7 +79,10 @@ class Recorder:
         self._logger.info("Pausing recording." if self.paused else "Resuming recording.")
 
     def close(self) -> None:
-        """Write the queued messages, close the recording, and report requested topics without messages."""
+        """Close the recording after writing the queued messages.
+
+        Requested topics that were not recorded are reported.
+        """
         self._flush_timer.cancel()
         if self._discovery_timer is not None:
             self._discovery_timer.cancel()

@@ -13,7 +13,7 @@ from linkwright.messages import type_hash
 
 
 def reindex(folder: Path) -> None:
-    """Write the ``metadata.yaml`` of a recording; an existing one is replaced.
+    """Write the ``metadata.yaml`` of a recording. An existing file is replaced.
 
     An unfinished file is listed with its complete messages.
 

@@ -1,4 +1,4 @@
-"""Find single messages of an SQLite recording, without reading the data in between.
+"""Find single messages of an SQLite recording, without reading other data.
 
 Files of rosbag2 have an index of times, but not of topics. One pass over the rows, which does not read the messages,
 determines the intervals in which each topic has messages. A search then reads only such an interval.
@@ -39,7 +39,10 @@ class RowLookup:
         return best[0], data
 
     def between(self, topics: Collection[int], start_ns: int, end_ns: int) -> list[tuple[int, bytes]]:
-        """Return times and data of the messages from one time to another, both inclusive, in order of time."""
+        """Return the times and data of the messages from one time to another, ordered by time.
+
+        Both limits are inclusive.
+        """
         query = "SELECT timestamp, data FROM messages WHERE timestamp BETWEEN ? AND ? AND topic_id = ?"
         messages = []
         for topic in topics:

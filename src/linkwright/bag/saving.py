@@ -55,7 +55,7 @@ def save_messages(
 
 
 def last_reset_ns(messages: Sequence[Recorded]) -> int | None:
-    """Return the time of the message with which ``/clock`` last went back; None if it never did."""
+    """Return the time of the message with which ``/clock`` last went back, or None."""
     reset_ns, clock_ns = None, None
     for name, stamp_ns, data in messages:
         if name == CLOCK_TOPIC:

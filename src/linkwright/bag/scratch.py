@@ -1,4 +1,4 @@
-"""Temporary folders for copies of recordings, which can be larger than the memory."""
+"""Temporary folders for copies of recordings. Copies can be larger than the memory."""
 
 from __future__ import annotations
 
@@ -12,6 +12,9 @@ _ON_DISK = Path("/var/tmp")  # noqa: S108 - the folder below it gets an unpredic
 
 
 def scratch_folder() -> ScratchFolder:
-    """Create a temporary folder: in TMPDIR if it is set, or else in a system folder on disk."""
+    """Create a temporary folder in TMPDIR, or in a system folder on disk if TMPDIR is not set.
+
+    If the system folder is not writable, Python's default folder for temporary files is used.
+    """
     parent = None if os.environ.get("TMPDIR") or not os.access(_ON_DISK, os.W_OK) else _ON_DISK
     return ScratchFolder("bag", parent)

@@ -72,7 +72,10 @@ class _Storages:
     def messages(
         self, connections: Collection[Connection], start: int | None = None, stop: int | None = None
     ) -> Generator[_Message, None, None]:
-        """Yield the messages of all files ordered by time. A file is only read from when its first message is next."""
+        """Yield the messages of all files, ordered by time.
+
+        A file is first read when its first message is the next one.
+        """
         connection_by_key = {_key(connection): connection for connection in connections}
         unopened = [
             reader for reader in self._readers if reader.message_count and (start is None or reader.end_time > start)

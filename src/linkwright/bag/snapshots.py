@@ -1,4 +1,4 @@
-"""Keep the last messages of all topics in memory until a snapshot is requested: rosbag2's snapshot mode."""
+"""Keep the last messages of all topics in memory until a snapshot is requested (rosbag2)."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class LatestMessages:
         self._messages: deque[tuple[str, int, bytes]] = deque()
 
     def add(self, topic: str, stamp_ns: int, data: bytes | memoryview) -> None:
-        """Store a message; the arguments are those of `BagWriter.write`."""
+        """Store a message. The arguments are those of `BagWriter.write`."""
         content = bytes(data)
         if len(content) > self._max_bytes:
             return

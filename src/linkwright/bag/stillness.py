@@ -15,7 +15,10 @@ _TRANSFORMS = "tf2_msgs/msg/TFMessage"
 _CLOCK = "rosgraph_msgs/msg/Clock"
 _TIME = struct.Struct("<iI")
 _TOLERANCE = 1e-9
-"""The tolerance in m, and for the numbers of a quaternion: a simulated robot at rest moves by 1e-12 in each step."""
+"""The tolerance in m, and for the elements of a quaternion.
+
+A simulated robot at rest moves by 1e-12 in each step.
+"""
 
 _ENCAPSULATION_SIZE = 4
 """The bytes of the encapsulation header before the message; alignment counts from its end."""
@@ -40,7 +43,7 @@ class Content(NamedTuple):
     clock_ns: int | None = None
 
     def is_repeated_by(self, newer: Content) -> bool:
-        """Return whether a newer message has the same content; positions may differ by 1 nm."""
+        """Return whether a newer message has the same content. Positions may differ by 1 nm."""
         if self.state != newer.state or len(self.poses) != len(newer.poses):
             return False
         if self.poses == newer.poses:
@@ -51,7 +54,9 @@ class Content(NamedTuple):
 
 
 def content_of(type_name: str, data: bytes) -> Content | None:
-    """Return the content of a message with a header, of transforms or of a clock; None for other messages.
+    """Return the content of a message with a header, of transforms or of a clock.
+
+    Return None for other messages.
 
     A message without a stamp reports an event: two equal messages report two events.
     """
@@ -94,7 +99,7 @@ def _begins_with_header(type_name: str) -> bool:
 
 
 class _Layout(NamedTuple):
-    """The offsets of stamps and poses, which are the same in all messages with the same frames.
+    """The offsets of stamps and poses. They are the same in all messages with the same frames.
 
     Attributes:
         what: the child frames, one per line.
@@ -111,11 +116,14 @@ class _Layout(NamedTuple):
 
 _MAX_LAYOUTS = 64
 _layouts: dict[int, _Layout] = {}
-"""The last layout for each message size, because parsing the names of 500 frames takes longer than the rest."""
+"""The last layout for each message size.
+
+Parsing the names of 500 frames takes longer than all other work.
+"""
 
 
 def _content_of_transforms(data: bytes) -> Content | None:
-    """Return the content of transforms; None if the data is big-endian or truncated."""
+    """Return the content of transforms, or None if the data is big-endian or truncated."""
     if len(data) < 2 * _ENCAPSULATION_SIZE or data[1] != _LITTLE_ENDIAN:
         return None
     layout = _layouts.get(len(data))

@@ -10,7 +10,9 @@ from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 
 def summary_text(bag: BagReader, *, topic_names_only: bool = False) -> str:
-    """Return the summary of a recording: files, times and topics in the format of ``ros2 bag info``.
+    """Return the summary of a recording in the format of ``ros2 bag info``.
+
+    The summary contains files, times and topics.
 
     Args:
         bag: the recording.

@@ -2,7 +2,7 @@
 
 Such files come from a recorder that was killed, from a truncated copy, or from a stream. A file is a sequence of
 records, each with a type and a length (the MCAP specification), and all complete records are usable. The missing
-summary, which lists the chunks, is created in memory and appended to the bytes of the file for readers. The file is
+summary, which lists the chunks, is created in memory and appended to the bytes of the file for readers. The
 file is not copied, and seeking is as fast as in other files. Records that do not belong to ROS 2 are replaced in the
 same way.
 """
@@ -65,7 +65,10 @@ def has_index(path: Path) -> bool:
 
 
 def make_readable(path: Path) -> ReadableFile | None:
-    """Return a view of a file that the library can read; None if it can read the file itself."""
+    """Return a view of a file that the library can read.
+
+    Return None if the library can read the file itself.
+    """
     if not is_unfinished(path) and has_index(path):
         patches = find_patches(path)
         return ReadableFile(path, path.stat().st_size, b"", patches) if patches else None
@@ -76,7 +79,7 @@ def make_readable(path: Path) -> ReadableFile | None:
 
 
 class ReadableFile:
-    """The complete records of an MCAP file with a summary; the library accepts it in place of a path.
+    """The complete records of an MCAP file with a summary. The library accepts it as a path.
 
     Args:
         path: the file; it is not modified.
@@ -158,7 +161,7 @@ class _PatchedStream(io.RawIOBase):
 
 @dataclass(slots=True)
 class _Chunk:
-    """A chunk: its position in the file, the values of its head, and the positions of its message indexes."""
+    """A chunk: its position in the file, the values of its head, and its message indexes."""
 
     offset: int
     length: int
@@ -239,7 +242,10 @@ def _read_chunk_head(file: BinaryIO, offset: int, length: int) -> _Chunk:
 
 
 def _scan_chunk(file: BinaryIO, chunk: _Chunk, scan: _Scan, message_indexes: bytearray) -> None:
-    """Read the schemas and channels in a chunk, and append its message indexes if they are missing."""
+    """Read the schemas and channels in a chunk.
+
+    The chunk's message indexes are appended if they are missing.
+    """
     from rosbags.rosbag2.storage_mcap import decompress
 
     file.seek(chunk.offset + chunk.length - chunk.compressed_size)

@@ -1,4 +1,4 @@
-"""Explain, from the first bytes of a file, why it cannot be read as a recording."""
+"""Explain why a file cannot be read as a recording, from its first bytes."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _HEAD_BYTES = 64
 
 
 class Verdict(NamedTuple):
-    """Why a file cannot be read as a recording, with a hint and a note, each of which may be None."""
+    """The reason why a file cannot be read as a recording, with an optional hint and note."""
 
     reason: Phrase
     hint: Phrase | None
@@ -24,7 +24,7 @@ class Verdict(NamedTuple):
 
 
 def diagnose(path: Path, error: Exception) -> Verdict:
-    """Return why a recording cannot be read.
+    """Return the reason why a recording cannot be read, with a hint and a note.
 
     Args:
         path: the path of the recording's file or folder.
@@ -83,7 +83,7 @@ def _diagnose_first_bytes(path: Path, first_bytes: bytes) -> Verdict | None:
 
 
 def _missing_files(folder: Path) -> list[str]:
-    """Return the names of files that the metadata of a recording lists but that do not exist."""
+    """Return the names of missing files that the metadata of a recording lists."""
     try:
         metadata = yaml.safe_load((folder / METADATA).read_text(encoding="utf-8"))
         paths = metadata["rosbag2_bagfile_information"]["relative_file_paths"]
@@ -94,7 +94,10 @@ def _missing_files(folder: Path) -> list[str]:
 
 
 def _has_tables(path: Path) -> bool:
-    """Return whether a database has the tables of a recording; True if it is too damaged to tell."""
+    """Return whether a database has the tables of a recording.
+
+    The result is also True if the database is too damaged to tell.
+    """
     import sqlite3
 
     try:

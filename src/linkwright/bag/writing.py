@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from linkwright.graph import QoSProfile
 
 STORAGES = ("mcap", "sqlite3")
-"""The storage formats; the first one is the default, as in ROS 2 since Iron."""
+"""The storage formats. As in ROS 2 since Iron, the first one is the default."""
 
 COMPRESSIONS = ("none", "file", "message", "storage")
 """The unit of compression with zstd: none, whole files, single messages, or the chunks of an MCAP file."""
@@ -38,7 +38,7 @@ _WRITE_ERRORS = (OSError, sqlite3.Error)
 
 
 _MAX_WRITE_SECONDS = 30.0
-"""The seconds that `BagWriter.finish` waits for another thread's write: disks can be slow."""
+"""The seconds that `BagWriter.finish` waits for another thread's write. Disks can be slow."""
 
 
 class BagWriter:
@@ -176,7 +176,7 @@ class BagWriter:
             return True
 
     def split(self) -> None:
-        """Begin a new file; do nothing for a single file or a closed recording.
+        """Begin a new file. Do nothing for a single file or a closed recording.
 
         Raises:
             LinkwrightError: BAG108, a file cannot be written.
@@ -188,7 +188,7 @@ class BagWriter:
                 raise self._stop_with(error) from error
 
     def flush(self) -> None:
-        """Write buffered messages to the operating system, so that they survive a crash of this process.
+        """Write buffered messages to the operating system, where they survive a crash of this process.
 
         Raises:
             LinkwrightError: BAG108, the file cannot be written.
@@ -224,7 +224,10 @@ class BagWriter:
             unfinished.unregister_finished(self)
 
     def finish(self) -> None:
-        """Close the recording because the process ends, called from any thread but the writing one."""
+        """Close the recording because the process ends.
+
+        Callable from any thread except the writing one.
+        """
         self._is_ending = True
         if not self._lock.acquire(timeout=_MAX_WRITE_SECONDS):
             return

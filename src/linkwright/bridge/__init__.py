@@ -1,1 +1,1 @@
-"""Carries topics and services between networks without a common transport, such as DDS and Zenoh."""
+"""Carries topics and services between networks, such as DDS and Zenoh."""

@@ -1,4 +1,4 @@
-"""A bridge between two networks, which mirrors the nodes of each network in the other one.
+"""A bridge that mirrors the nodes of each of two networks in the other one.
 
 The mirrored nodes have the same topics and services. Two bridges between the same networks do not carry the same
 traffic: nodes of a bridge are recognised by their enclave, and traffic that both could carry is carried by the bridge
@@ -27,7 +27,7 @@ _IDLE_INTERVAL_S = 0.25
 """The same, if no work is pending."""
 
 _UNSETTLED_S = 3.0
-"""Seconds after a change for which the bridge checks as if work were pending, because matching takes a moment."""
+"""Seconds after a change for which the bridge uses the short interval, because matching takes time."""
 
 _BRIDGE_LOGGERS = ("wire", "dds", "zenoh", "bridge")
 

@@ -1,4 +1,4 @@
-"""One direction of a bridge: mirrors the endpoints of the source network in the target network."""
+"""One direction of a bridge, which mirrors the source network's endpoints in the target network."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ _DISCOVERY_TIMEOUT_S = 2.0
 _MAX_EARLY = 1000
 
 _ANNOUNCEMENT_DELAY_S = 1.0
-"""Seconds after which a subscription is announced that receives from no known publisher."""
+"""Seconds after which a subscription without a known publisher is announced."""
 
 _QUIET = 25
-"""How many checks in a row must find no message of a departed publisher before its mirror is removed.
+"""The number of consecutive checks without a message before a departed publisher's mirror is removed.
 
-A check comes every 20 ms: on a busy machine the thread that takes messages from DDS may pause for a tenth of a second.
+Checks run every 20 ms. On a busy machine, the thread that takes messages from DDS may pause for a tenth of a second.
 """
 
 
@@ -81,7 +81,7 @@ class Direction:
         self._selected_services: dict[tuple[str, str, str], EndpointInfo] = {}
         self._selected_presences: dict[bytes, EndpointInfo] = {}
         self._announcement_deadlines: dict[bytes, float] = {}
-        """The steady time, in seconds, until which the announcement of each new presence may be delayed."""
+        """The steady time, in seconds, at which each new presence is announced at the latest."""
         self._warned_names: set[str] = set()
 
     # --- after changes -----------------------------------------------------------------------------------------------
@@ -115,7 +115,9 @@ class Direction:
                 self._services[key] = MirroredService(self._mirror_node(info), self._source.own, info)
 
     def show(self, opposite: Direction) -> bool:
-        """Announce the source's subscriptions and clients in the target; return whether all are announced.
+        """Announce the source's subscriptions and clients in the target.
+
+        Return whether all of them are announced.
 
         Publishers in the target may send a message as soon as they discover a subscription. The bridge must therefore
         have subscribed there by then.
@@ -150,7 +152,7 @@ class Direction:
         )
 
     def settle(self) -> bool:
-        """Continue pending work (messages, removals, matching), and return whether none is left."""
+        """Continue pending work (messages, removals, matching), and return whether all of it is done."""
         is_settled = not self._departed_publishers
         self._publish_early()
         self._remove_departed()
@@ -234,7 +236,10 @@ class Direction:
         return any(can_receive(endpoint, publisher, keyed=self._target.needs_hashes) for endpoint in subscriptions)
 
     def _can_carry(self, info: EndpointInfo) -> bool:
-        """Return whether a topic or service with this type can be created in the target; if not, warn once."""
+        """Return whether a topic or service with this type can be created in the target.
+
+        If it cannot, warn once.
+        """
         if not self._target.needs_hashes or endpoint_hash(info):
             return True
         if info.name not in self._warned_names:
@@ -248,11 +253,11 @@ class Direction:
         return False
 
     def _update_taps(self) -> None:
-        """Subscribe to the streams that have subscriptions in the target, and unsubscribe from others.
+        """Subscribe to the streams that have subscriptions in the target. Unsubscribe from others.
 
-        A stream with history is subscribed to until its publishers have left: if the bridge subscribed again, late
-        joiners would receive the history twice. While a topic has no publisher, and while its first publisher
-        is being matched, every possible stream is subscribed to.
+        The subscription to a stream with history ends only when the publishers have left. If the bridge subscribed
+        again, late joiners would receive the history twice. While a topic has no publisher, and while its first
+        publisher is being matched, every possible stream is subscribed to.
         """
         subscriptions = self._target.seen.subscriptions
         streams = {
@@ -271,7 +276,10 @@ class Direction:
             self._taps[stream] = Tap(self._source.own, stream, self._carry)
 
     def _carry(self, tap: Tap, data: bytes, info: MessageInfo) -> None:
-        """Publish a message in the target, unless a bridge has published it in the source."""
+        """Publish a message in the target, unless a bridge has published it in the source.
+
+        A message whose publisher has not been discovered yet is queued.
+        """
         if not info.from_outside:
             return
         publisher = self._publisher(info.publisher_gid)
@@ -305,7 +313,9 @@ class Direction:
         return self._publishers.get(self._aliases.get(gid, gid))
 
     def _any_publisher_for(self, message: EarlyMessage) -> MirroredPublisher | None:
-        """Return any mirror of the message's stream, or None.
+        """Return any mirror of the message's stream, and assign the message's GID to it.
+
+        Return None if the stream has no mirror.
 
         Over Zenoh, the messages of some programs have a GID that no publisher has announced.
         """

@@ -1,4 +1,4 @@
-"""Mirrors: the publishers, subscriptions and services of a bridge that represent those of the other network."""
+"""Mirrors: a bridge's endpoints that represent endpoints of the other network."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ MATCH_TIMEOUT_S = 10.0
 """Seconds within which publishers and subscriptions that discovered each other match, even on a busy machine."""
 
 _DISCOVERY_TIMEOUT_S = 1.0
-"""Seconds for which messages of a new publisher wait if no subscription that can receive them is known."""
+"""Seconds for which a new publisher's messages wait if no matching subscription is known."""
 
 _QUEUE_LENGTH = 100
 """The queue length of a topic without history. The queue of a service holds ten times as many requests."""
@@ -93,7 +93,7 @@ class MirroredPublisher:
 
     @property
     def gid(self) -> bytes:
-        """The gid of the mirror itself."""
+        """The GID of the mirror itself."""
         return self._publisher.gid
 
     def listeners(self) -> int:
@@ -165,7 +165,7 @@ class MirroredService:
         self._service: Service[Any, Any] | None = None
 
     def settle(self) -> bool:
-        """Offer the service once it can be called; return whether it is offered."""
+        """Offer the service once it can be called, and return whether it is offered."""
         if self._service is None and self._client.service_is_ready():
             service: Service[Any, Any] = Service(
                 self._node,
@@ -181,7 +181,7 @@ class MirroredService:
         return self._service is not None
 
     def close(self) -> None:
-        """Remove the service; clients that wait for a response are notified by the network."""
+        """Remove the service. The network notifies clients that wait for a response."""
         if self._service is not None:
             self._service.destroy()
         self._client.destroy()

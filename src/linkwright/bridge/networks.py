@@ -1,4 +1,4 @@
-"""The networks that a bridge can connect, as named on the command line: ``dds``, ``dds:5``, ``zenoh``."""
+"""The networks that a bridge can connect, named ``dds``, ``dds:5`` or ``zenoh``."""
 
 from __future__ import annotations
 

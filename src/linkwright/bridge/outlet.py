@@ -1,4 +1,4 @@
-"""A queue and a thread for a publisher that may block, so that the rest of a bridge is not blocked."""
+"""A queue and a thread for a publisher that may block. The rest of the bridge is not blocked."""
 
 from __future__ import annotations
 
@@ -41,7 +41,10 @@ class Outlet:
         return bool(self._queue.unfinished_tasks)
 
     def close(self) -> None:
-        """End the thread after the queued messages, which are discarded if the publisher is destroyed."""
+        """End the thread after the queued messages.
+
+        The messages are discarded if the publisher is destroyed.
+        """
         self._queue.put(None)
 
     def _run(self) -> None:

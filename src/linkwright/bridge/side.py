@@ -1,4 +1,4 @@
-"""One of the two networks that a bridge connects: the graph of other nodes there, and the bridge's own nodes."""
+"""One of the two networks of a bridge: the graph of other nodes and the bridge's own nodes."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ from linkwright.graph.names.rules import NodeIdentity, Remappings
 from linkwright.wire.background import BackgroundTransport
 
 ENCLAVE = "/linkwright_bridge"
-"""The nodes of a bridge are in the enclave ``/linkwright_bridge/<id of the bridge>``.
+"""The prefix of the enclave of a bridge's nodes, ``/linkwright_bridge/<id of the bridge>``.
 
 Other bridges use the enclave to distinguish these nodes from the network's own nodes. Otherwise only security uses it.
 """
 
 Provision = tuple[str, EndpointKind, str, str]
-"""Node, kind, name and type of a publisher or service."""
+"""The node, kind, name and type of a publisher or service."""
 
 
 @dataclass
 class Snapshot:
-    """The nodes and endpoints of a network at one time, without those of bridges.
+    """The nodes and endpoints of a network at one time, except nodes of bridges.
 
     Attributes:
         nodes: the nodes.

@@ -16,14 +16,16 @@ from linkwright.graph.qos.profile import (
 from linkwright.messages import InterfaceNotFoundError, type_hash
 
 KEPT = 1000
-"""The queue length where no message may be lost: for late joiners, and for the messages of a new publisher."""
+"""The queue length for messages that must not be lost: those for late joiners, and those of a new publisher."""
 
 _ASSUMED_DEPTH = 10
 """The depth of a publisher that does not announce its history, such as a publisher of Fast DDS."""
 
 
 class Stream(NamedTuple):
-    """A topic with a type and a quality of service; one subscription receives from all its publishers.
+    """A topic with a type and a quality of service.
+
+    One subscription receives from all publishers of a stream.
 
     Attributes:
         name: the topic.
@@ -97,7 +99,7 @@ def can_receive(subscription: EndpointInfo, publisher: EndpointInfo, *, keyed: b
 def endpoint_hash(endpoint: EndpointInfo) -> str:
     """Return the hash of an endpoint's type, or an empty string if it is unknown.
 
-    The hash is the announced one, or that of the type's package here.
+    The hash is the announced hash, or the hash of the local definition.
     """
     return endpoint.type_hash or _known_hash(endpoint)
 
@@ -123,7 +125,10 @@ def _stream(
 
 
 def offered_profile(qos: QoSProfile) -> QoSProfile:
-    """Return the profile that a publisher offers, with ROS's defaults for values that discovery does not provide."""
+    """Return the profile that a publisher offers.
+
+    Values that discovery does not provide are ROS's defaults.
+    """
     is_transient_local = qos.durability is DurabilityPolicy.TRANSIENT_LOCAL
     keeps_all = qos.history is HistoryPolicy.KEEP_ALL
     is_announced = qos.history in (HistoryPolicy.KEEP_LAST, HistoryPolicy.KEEP_ALL)

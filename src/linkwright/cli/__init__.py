@@ -1,4 +1,7 @@
-"""The command line, with one module per command; each module imports other packages only when it runs."""
+"""The command line, with one module for each command.
+
+A module imports other packages only when its command runs.
+"""
 
 from linkwright.cli.entry import main
 

@@ -113,7 +113,7 @@ def configure_send_goal(parser: argparse.ArgumentParser) -> None:
 
 
 def run_send_goal(arguments: argparse.Namespace) -> int:
-    """Send a goal and print its progress as ros2 does; Ctrl-C cancels the goal."""
+    """Send a goal and print its progress as ros2 does. Ctrl-C cancels the goal."""
     from linkwright.messages import get_action, to_yaml
 
     name = absolute(arguments.action_name)

@@ -1,4 +1,4 @@
-"""Replace this process by another program, which then receives the signals and sets the exit status."""
+"""The replacement of this process by another program, which then receives the signals."""
 
 from __future__ import annotations
 
@@ -11,7 +11,9 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
 
 
 def become(command: list[str], environment: Mapping[str, str]) -> int:
-    """Replace this process by a program; on Windows, run it and return its exit status.
+    """Replace this process by a program.
+
+    On Windows, run the program in a child process and return its exit status.
 
     Raises:
         LinkwrightError: CLI110, the program cannot be run.

@@ -62,7 +62,7 @@ def run(arguments: argparse.Namespace) -> int:
     names = NameFilter(arguments.allow, arguments.deny)
 
     def report() -> None:
-        print(f"Carrying between {first.label} and {second.label}. Ctrl-C ends it", file=sys.stderr)
+        print(f"Bridging {first.label} and {second.label}. Press Ctrl-C to stop", file=sys.stderr)
 
     async def main() -> int:
         await run_bridge((first, second), names, new_bridge_id(), print_to_console, report)

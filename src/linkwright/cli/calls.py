@@ -81,7 +81,7 @@ async def call(
 
 
 def node_names(session: Session, *, hidden: bool = False) -> list[str]:
-    """Return the sorted full names of the nodes; a name that several nodes share is repeated."""
+    """Return the sorted full names of the nodes, with repetitions if several nodes share a name."""
     from linkwright.graph.names.rules import is_hidden, join
 
     full_names = (join(namespace, name) for name, namespace in session.node.get_node_names_and_namespaces())

@@ -138,7 +138,7 @@ def run(arguments: argparse.Namespace | SimpleNamespace) -> int:
 
 
 def _contents_text(checked_file: Checked) -> str:
-    """Return the tree of a robot's links or the list of a world's models; empty if neither was read."""
+    """Return the tree of a robot's links or the list of a world's models, or an empty string for other files."""
     if checked_file.robot is not None:
         from linkwright.urdf import tree_text
 

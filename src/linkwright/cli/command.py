@@ -55,11 +55,11 @@ _OPTIONS = ("--help", "--lang", "--version")
 """The options that precede or replace a command."""
 
 _GC_THRESHOLD = 50_000
-"""The number of new objects that starts a garbage collection; Python's 700 would cost a short command a tenth of its
-time."""
+"""The number of new objects that starts a garbage collection. With Python's 700, a short command would spend a tenth of
+its time on garbage collection."""
 
 _FIRST_GC_THRESHOLD = 200_000
-"""The number for the first collection: imports create more objects, and none of them is garbage."""
+"""The number that starts the first collection. It is larger because imports create many objects but no garbage."""
 
 
 class Verb(Protocol):
@@ -73,7 +73,9 @@ class Verb(Protocol):
 
 
 def main(words: Sequence[str] | None = None, *, program: str = PROGRAM) -> int:
-    """Run the command line and return its exit status; never raises an exception.
+    """Run the command line and return its exit status.
+
+    The function never raises an exception.
 
     Args:
         words: the arguments after the program's name; None for the arguments of this process.
@@ -93,7 +95,7 @@ def main(words: Sequence[str] | None = None, *, program: str = PROGRAM) -> int:
 
 def _reduce_garbage_collection() -> None:
     def looked(phase: str, _: object) -> None:
-        if phase == "stop":
+        if phase == "stop" and gc.get_threshold()[0] == _FIRST_GC_THRESHOLD:
             gc.set_threshold(_GC_THRESHOLD)
 
     gc.set_threshold(_FIRST_GC_THRESHOLD)
@@ -173,7 +175,7 @@ def _dispatch(words: list[str], program: str) -> int:
 
 
 def _parse_without_options(module: Verb, words: list[str]) -> argparse.Namespace | None:
-    """Parse a command line without creating an argparse parser, which is slow.
+    """Parse a command line without argparse, because creating a parser is slow.
 
     Returns:
         The arguments, or None if the line contains options or the command needs argparse.

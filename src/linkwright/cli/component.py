@@ -225,7 +225,7 @@ async def loaded_nodes(session: Session, container: str) -> list[tuple[int, str]
 
 
 async def _load_component(session: Session, container: str, arguments: argparse.Namespace) -> tuple[int, str]:
-    """Load a component into a container; return the unique ID and the full name of its node.
+    """Load a component into a container, and return the unique ID and the full name of its node.
 
     Raises:
         LinkwrightError: CLI433, the container could not load the component.

@@ -21,10 +21,10 @@ if TYPE_CHECKING:
     from linkwright.cli.session import Session
 
 Ask = Callable[..., Coroutine[Any, Any, Any]]
-"""Calls a service of the manager by its name, such as ``list_controllers``, with the fields of the request."""
+"""A function that calls a service of the manager, such as ``list_controllers``, with the fields of the request."""
 
 MANAGER_WITHIN = 55.0
-"""Seconds to wait for the manager beyond the time for other services: a simulated robot starts its own manager."""
+"""Seconds to wait for the manager in addition to the usual time, because a simulated robot starts it late."""
 _LOGS_HINT = "check controller_manager logs"
 _SECTIONS = {
     "claimed_interfaces": "claimed interfaces",

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 _FORMATS = ("sdf", "urdf", "mjcf")
 _GROUP = "linkwright.model_formats"
-"""The group of entry points that provide file formats; each entry point is a `Writer`."""
+"""The group of entry points that provide file formats. Each entry point is a `Writer`."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:

@@ -120,7 +120,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Render the data set, and return the exit status; 130 if it was interrupted."""
+    """Render the data set, and return the exit status, which is 130 if the command was interrupted."""
     from linkwright.vision.datasets.dataset import make_dataset
     from linkwright.vision.datasets.options import Options
     from linkwright.vision.datasets.statistics import as_table
@@ -171,7 +171,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 class _Progress:
-    """The progress line of a data set, which is printed only to a terminal."""
+    """The progress line of the command, which is printed only to a terminal."""
 
     def __init__(self, count: int) -> None:
         self._count = count
@@ -223,7 +223,7 @@ def _parse_fixed_properties(text: str) -> tuple[str, ...]:
 def _parse_choices(text: str, choices: tuple[str, ...]) -> tuple[str, ...]:
     names = text.split(",")
     if not set(names) <= set(choices):
-        raise argparse.ArgumentTypeError(f"'{text}' is not made of {', '.join(choices)}, with commas between them")
+        raise argparse.ArgumentTypeError(f"'{text}' is not a comma-separated list of {', '.join(choices)}")
     return tuple(name for name in choices if name in names)
 
 
@@ -244,5 +244,5 @@ def _parse_splits(text: str) -> tuple[float, float, float]:
         shares = []
     total = sum(shares)
     if len(shares) != 3 or not all(0.0 <= share < 1e6 for share in shares) or not total > 0.0:
-        raise argparse.ArgumentTypeError(f"'{text}' is not three shares, such as 0.8,0.1,0.1")
+        raise argparse.ArgumentTypeError(f"'{text}' is not three numbers, such as 0.8,0.1,0.1")
     return shares[0] / total, shares[1] / total, shares[2] / total

@@ -36,7 +36,7 @@ def run(arguments: argparse.Namespace) -> int:
     names = [word for word in arguments.words if ":=" not in word]
     values = [word for word in arguments.words if ":=" in word]
     if len(names) > 1:
-        print(f"linkwright diagram: one OUT is enough, there are {', '.join(names)}", file=sys.stderr)
+        print(f"linkwright diagram: expected one OUT, got {len(names)}: {', '.join(names)}", file=sys.stderr)
         return 2
     reading = examine(arguments.file, arguments=parse_assignments(values))
     print_diagnostics(reading.diagnostics, sys.stderr)

@@ -30,7 +30,11 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Print the differences; return 0 if there are none, 1 if there are some, 2 for an error."""
+    """Print the differences.
+
+    Returns:
+        0 if there are no differences, 1 if there are some, 2 for an error.
+    """
     from linkwright.descriptions.comparison import as_data, as_text
 
     with ExitStack() as stack:

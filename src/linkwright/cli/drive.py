@@ -1,4 +1,4 @@
-"""``linkwright drive``: drive a robot in a simulated world, and infer what its description lacks."""
+"""``linkwright drive``: drive a robot in a simulated world, with inferred elements that its description lacks."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Infer the missing elements; then drive the robot, or print or write the elements.
+    """Infer the missing elements, and then drive the robot, or print or write the elements.
 
     Returns:
         The exit status, which is 1 if the description has errors.

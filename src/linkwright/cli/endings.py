@@ -1,4 +1,4 @@
-"""Convert the error of a command, if any, to a message and an exit status."""
+"""The messages and exit statuses for errors of commands."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def status_of(command: Callable[[], int]) -> int:
     except MemoryError:
         _print([Diagnostic("CLI204", phrase("there is not enough memory"))])
         return FINDINGS
-    except Exception as error:  # noqa: BLE001 - the last resort: a bug of ours must not print a traceback
+    except Exception as error:  # noqa: BLE001 - the last resort: a bug must not print a traceback
         diagnostic = _system_error_diagnostic(error) if isinstance(error, OSError) else None
         if diagnostic is None:
             _report_bug(error)
@@ -130,7 +130,7 @@ def _print(diagnostics: Iterable[Diagnostic]) -> None:
 
 
 def print_message(text: str) -> None:
-    """Print a line to standard error; a failure to write does not change the exit status."""
+    """Print a line to standard error, and ignore a failure to write."""
     from contextlib import suppress  # imported here, because the import is slow and rarely needed
 
     with suppress(OSError):
@@ -141,7 +141,7 @@ def _report_bug(error: Exception) -> None:
     import tempfile
     import traceback
 
-    print_message(f"linkwright: this is a bug of ours: {type(error).__name__}: {error}")
+    print_message(f"linkwright: this is a bug in Linkwright: {type(error).__name__}: {error}")
     try:
         with tempfile.NamedTemporaryFile(
             "w", prefix="linkwright-", suffix=".log", delete=False, encoding="utf-8"

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 _MAX_VALUE = 1e15
-"""The maximum mass in kg and density in kg/m3; larger values are refused as mistakes."""
+"""The maximum mass in kg and density in kg/m3. Larger values are refused as mistakes."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:

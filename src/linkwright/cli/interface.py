@@ -182,7 +182,7 @@ def nested_type(line: str, package: str) -> str | None:
 
 
 def _without_comment(line: str) -> str:
-    """Return a line without its comment; a ``#`` in a string does not start a comment."""
+    """Return a line without its comment. A ``#`` in a string does not start a comment."""
     quote = ""
     for index, character in enumerate(line):
         if quote:

@@ -1,4 +1,4 @@
-"""``linkwright launch``: run a ROS 2 launch file; rviz2 opens as a page in the browser."""
+"""``linkwright launch``: run a ROS 2 launch file, and open rviz2 as a page in the browser."""
 
 from __future__ import annotations
 

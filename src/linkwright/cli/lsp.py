@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import gc
 import logging
 import os
 import sys
@@ -11,6 +12,8 @@ from linkwright.cli.endings import FINE
 from linkwright.diagnostics import missing_extra
 
 _LOOPBACK = "127.0.0.1"
+_GC_THRESHOLD = 2_000
+"""The number of new objects that starts a garbage collection: garbage may contain the text of each edit."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -33,6 +36,8 @@ def run(arguments: argparse.Namespace) -> int:
         raise missing_extra("CLI307", error) from None
     logging.basicConfig(stream=sys.stderr, level=logging.WARNING, format="linkwright lsp: %(message)s")
     server = make_server()
+    gc.freeze()  # the collector does not search the imported modules again
+    gc.set_threshold(_GC_THRESHOLD)
     if arguments.tcp is not None:
         server.start_tcp(_LOOPBACK, arguments.tcp)
     elif arguments.ws is not None:

@@ -21,7 +21,7 @@ def add_model(parser: argparse.ArgumentParser) -> None:
 def add_values(
     parser: argparse.ArgumentParser, *, values_help: str, name: str = "values", metavar: str = "NAME:=VALUE"
 ) -> None:
-    """Declare a positional argument that takes any number of words ``name:=value``.
+    """Declare a positional argument for any number of words ``name:=value``.
 
     Args:
         parser: the parser of the command.

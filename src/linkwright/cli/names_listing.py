@@ -72,7 +72,7 @@ def add_types_argument(parser: argparse.ArgumentParser, *, types_help: str) -> N
 
 
 def add_count_argument(parser: argparse.ArgumentParser, kind: str) -> None:
-    """Declare the option ``--count``, which prints the number of names of a kind."""
+    """Declare the option ``--count``, also as ``--count-topics`` for the kind ``topic``."""
     parser.add_argument(
         "-c",
         f"--count-{kind}s",

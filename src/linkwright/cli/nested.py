@@ -1,4 +1,4 @@
-"""Commands with subcommands, such as ``topic echo``; each subcommand has a separate argument parser."""
+"""Commands with subcommands, such as ``topic echo``, each with a separate argument parser."""
 
 from __future__ import annotations
 

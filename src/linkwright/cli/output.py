@@ -1,4 +1,4 @@
-"""Writes the result files of commands."""
+"""The result files of commands."""
 
 from __future__ import annotations
 

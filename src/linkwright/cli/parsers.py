@@ -30,9 +30,9 @@ def make_parser(
 
 
 class _Parser(argparse.ArgumentParser):
-    """An argument parser that suggests similar options, and raises the errors that occur while it prints the help.
+    """An argument parser that suggests similar options, and raises errors that occur while it prints the help.
 
-    argparse ignores errors when it prints the help, as does Python from version 3.15 on.
+    argparse itself ignores such errors.
     """
 
     def error(self, message: str) -> NoReturn:

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 class _ListLicenses(argparse.Action):
-    """Stores a licence; for ``?``, lists the known licences and exits, as ``--help`` does."""
+    """The action that stores a licence or, for ``?``, lists the known licences and exits."""
 
     def __call__(
         self,

@@ -29,7 +29,7 @@ TYPE_NAMES = {
 
 
 class RemoteParameters:
-    """Reads and sets the parameters of a running node.
+    """The parameters of a running node, accessed through its services.
 
     Args:
         session: the session of the command.
@@ -44,7 +44,7 @@ class RemoteParameters:
 
     @classmethod
     async def of(cls, session: Session, arguments: argparse.Namespace) -> RemoteParameters:
-        """Return the access to the node that the command line names.
+        """Return the parameters of the node that the command line names.
 
         Raises:
             LinkwrightError: CLI423, the node is not running.

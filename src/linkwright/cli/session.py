@@ -53,7 +53,9 @@ def add_session_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 class Session:
-    """The graph and the node of a running command; a `SignalWatch` can end the session.
+    """The graph and the node of a running command.
+
+    A `SignalWatch` can end the session.
 
     Attributes:
         graph: the graph, joined with other processes.

@@ -105,7 +105,7 @@ class LoadedModel(NamedTuple):
 
 
 def load_model(path: Path, values: Mapping[str, str], finder: PackageFinder) -> LoadedModel | None:
-    """Load a robot or model; if it has errors, print them and return None.
+    """Load a robot or model. If it cannot be loaded, print the errors and return None.
 
     Args:
         path: a URDF, xacro or SDF file.

@@ -38,7 +38,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Request the simulation to add a model; return 1 if the model's file has errors.
+    """Request the simulation to add a model, and return 1 if the model's file has errors.
 
     Raises:
         LinkwrightError: CLI332, no simulation is running; CLI333, the simulation rejects the model.

@@ -59,7 +59,11 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Run the sweep; return 1 if a run failed, 130 if the sweep was interrupted."""
+    """Run the sweep.
+
+    Returns:
+        0, 1 if a run failed, or 130 if the sweep was interrupted.
+    """
     from linkwright.sweep.plan import plan_runs, with_values
     from linkwright.sweep.running import load_into_process
     from linkwright.sweep.sweep import Sweep
@@ -127,14 +131,14 @@ def _rerun(scenario: Scenario, row: int) -> int:
 
 
 class _Progress:
-    """The progress line of a sweep; counts the runs."""
+    """The progress line of a sweep, with a count of the runs."""
 
     def __init__(self) -> None:
         self.made = 0
         self._line = ProgressLine()
 
     def show(self, done_count: int, count: int, failed: int) -> None:
-        """Count one more run, and show how many runs have finished and how many of these failed."""
+        """Count one more run, and show the number of finished runs and the number of failed ones."""
         self.made += 1
         self._line.show(phrase("{done} of {count} runs, {failed} failed", done=done_count, count=count, failed=failed))
 

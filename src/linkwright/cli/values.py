@@ -123,7 +123,9 @@ def _not_a_mapping(document: object, source: SourceText) -> Diagnostic:
 
 
 def check_values(message: Message, values: Mapping[str, Any], text: str = "") -> None:
-    """Check that values fit a message; one error reports all values that do not.
+    """Check that values fit a message.
+
+    One error reports all values that do not fit.
 
     Args:
         message: a message of the type, which remains unchanged.
@@ -184,7 +186,7 @@ def _setter(owner: Any, name: str) -> Callable[[Any], None]:
 
 
 class _Locations:
-    """Maps the path of a value, which consists of names and indices, to its location in the YAML."""
+    """The locations of values in the YAML source, by paths of names and indices."""
 
     def __init__(self, text: str) -> None:
         self.source = SourceText(_SOURCE_NAME, text)

@@ -69,7 +69,7 @@ def run_try(arguments: argparse.Namespace) -> int:
 
 
 class _Trial:
-    """Feeds recordings to an engine in blocks, as a microphone does, and prints the results.
+    """A trial that feeds recordings to an engine in blocks, as a microphone does, and prints the results.
 
     Args:
         engine: the speech engine.
@@ -149,7 +149,7 @@ def configure_enrol(parser: argparse.ArgumentParser) -> None:
 
 
 def run_enrol(arguments: argparse.Namespace) -> int:
-    """Enrol a word from recordings; if one recording is unusable, none is used."""
+    """Enrol a word from recordings, but only if all of them are usable."""
     from linkwright.speech.enrolled.enrolment import enrol
     from linkwright.speech.enrolled.words import RECOMMENDED_TAKES
     from linkwright.speech.sound.wav import read_wav

@@ -57,7 +57,7 @@ Each command is a module or package of this package, which is loaded only when t
 """
 
 OTHER_NAMES = {"wtf": "doctor"}
-"""Aliases of commands that ros2 has; the help does not list them."""
+"""Aliases that ros2 has for commands. The help does not list them."""
 
 ORDERED_COMMANDS = frozenset({"pkg", "run", "shell"})
 """Commands, besides those with subcommands, that do not accept options between positional arguments.

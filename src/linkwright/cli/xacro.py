@@ -106,7 +106,7 @@ def run(arguments: argparse.Namespace | SimpleNamespace) -> int:
         print(f"linkwright xacro: exactly one file is expected and {file_list}", file=sys.stderr)
         return _USAGE_ERROR
     if (arguments.explain is not None and (arguments.args or arguments.deps)) or (arguments.args and arguments.deps):
-        print("linkwright xacro: --args, --deps and --explain are different questions; ask one", file=sys.stderr)
+        print("linkwright xacro: --args, --deps and --explain cannot be combined; give one of them", file=sys.stderr)
         return _USAGE_ERROR
     verbosity = arguments.verbosity
     if arguments.inorder and verbosity > _QUIET:

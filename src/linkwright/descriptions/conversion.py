@@ -143,7 +143,7 @@ def _relocate_uri(uri: str, source_folder: Path, folder: Path) -> str:
     The relative path of an existing file becomes relative to the folder, or a file URI if the file is outside it. Other
     URIs are unchanged.
     """
-    file = Path(os.path.abspath(source_folder / uri))  # noqa: PTH100 - links stay what they are
+    file = Path(os.path.abspath(source_folder / uri))  # noqa: PTH100 - do not resolve links
     folder = folder.absolute()
     if not uri or "://" in uri or Path(uri).is_absolute() or not file.exists():
         return uri

@@ -34,7 +34,7 @@ class Model:
     revision: Revision | None = None
 
     def label(self) -> str:
-        """Return the name of the file for users; see `display_name`."""
+        """Return the name of the file for users; see `named`."""
         return self.named(str(self.path))
 
     @property
@@ -51,7 +51,7 @@ class Model:
         return display_path(name) if name == file else name
 
     def read(self) -> Description:
-        """Return the description, which always has a robot.
+        """Return the description with its robot.
 
         Raises:
             LinkwrightError: if the description cannot be read or expanded, or if urdfdom would refuse it.
@@ -65,7 +65,11 @@ class Model:
         return description
 
     def read_robot(self) -> Robot:
-        """Return the robot; raises the same errors as `read`."""
+        """Return the robot.
+
+        Raises:
+            LinkwrightError: see `read`.
+        """
         robot = self.read().robot
         assert robot is not None
         return robot
@@ -119,7 +123,7 @@ class Pair:
         return self.compare(self.old.read_robot(), self.new.read_robot())
 
     def compare(self, old: Robot, new: Robot) -> Comparison:
-        """Return the differences between the robots of the two descriptions, which were read before."""
+        """Return the differences between two robots that were read from the two descriptions."""
         old_side, new_side = Side(old, resolve=self.old.resolve), Side(new, resolve=self.new.resolve)
         if self.old.revision is not None:
             normalize_old, normalize_new = self.old.revision.normalizers(self.new.finder)

@@ -17,7 +17,7 @@ from linkwright.packages.manifest import SourceScan
 from linkwright.packages.share_layout import share_of_sources
 
 _HOOK_VARIABLES = ("GIT_DIR", "GIT_WORK_TREE", "GIT_INDEX_FILE", "GIT_PREFIX")
-"""Variables that git sets for hooks; they would override the repository of a file's folder."""
+"""Variables that git sets for hooks. They would override the repository of a file's folder."""
 
 
 class Revision:

@@ -35,7 +35,7 @@ HOLDS_FOR_PARTS = frozenset(
         *("URDF131", "URDF132", "URDF140", "URDF162", "URDF170", "URDF190"),
     }
 )
-"""Findings of the reader that hold for a part of a robot; the other findings may be due to missing parts."""
+"""Findings of the reader that hold for a part of a robot. The other findings may be due to missing parts."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,7 +96,7 @@ class Description:
 
     @property
     def files(self) -> tuple[Path, ...]:
-        """The files that were read, starting with the main file; empty for a text without a file."""
+        """The files that were read, starting with the main file, or no files for a text."""
         if self.expansion is not None:
             return self.expansion.dependencies
         return () if self.name.startswith("<") else (Path(self.name),)
@@ -142,7 +142,7 @@ class DescriptionLibrary:
         self._finders: dict[str, PackageFinder] = {}
 
     def store(self, description: Description, text: str | None = None, packages: PackageFinder | None = None) -> str:
-        """Store a description, which can then be found by its text.
+        """Store a description, so that it can be found by its text.
 
         Args:
             description: the description.
@@ -170,7 +170,7 @@ class DescriptionLibrary:
         return self._descriptions.get(text)
 
     def files(self, text: str) -> tuple[Path, ...]:
-        """Return the files of a stored description, the main file first; empty if not stored."""
+        """Return the files of a stored description, the main file first, or no files if it is not stored."""
         description = self._descriptions.get(text)
         return () if description is None else description.files
 
@@ -211,7 +211,7 @@ def _read(text: str) -> Description:
 
 _REPORTED_ONCE = frozenset({"SDF150", "SDF160"})
 _MAX_LINKS = 100_000
-"""The maximum number of links in a world; reading more would take minutes and gigabytes."""
+"""The maximum number of links in a world. More links would take minutes and gigabytes to read."""
 _WORLD_SUFFIXES = (".world", ".sdf", ".world.xacro", ".sdf.xacro")
 
 
@@ -466,7 +466,7 @@ def _unexpanded_description(
 ) -> Description:
     """Return the description that urdfdom reads from an unexpanded document.
 
-    `is_reported` says that the remarks already report that the document is not expanded. Findings about missing parts
+    If `is_reported` is true, the remarks already report that the document is not expanded. Findings about missing parts
     are then left out, because xacro might add these parts, such as the colours of an included file.
     """
     reading = read(document)

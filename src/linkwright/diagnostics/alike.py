@@ -1,4 +1,4 @@
-"""Group similar findings that occur in many places."""
+"""The grouping of similar findings that occur in many places."""
 
 from __future__ import annotations
 

@@ -31,7 +31,7 @@ def is_pointer(data: bytes) -> bool:
 
 
 def is_pointer_file(path: Path) -> bool:
-    """Return whether a file is a Git LFS pointer; False if it cannot be read."""
+    """Return whether a file can be read and is a Git LFS pointer."""
     try:
         with path.open("rb") as file:
             return is_pointer(file.read(len(_POINTER_START)))
@@ -105,13 +105,13 @@ class SourceText:
         return min(start + column - 1, len(self.text))
 
     def span(self, start: int, end: int | None = None) -> Span:
-        """Return the span between two character offsets; without an end, the span of one character at the start."""
+        """Return the span between two character offsets or, without an end, of one character at the start."""
         line, column = self.position(start)
         end_line, end_column = self.position(start + 1 if end is None else end)
         return Span(self.name, line, column, end_line, end_column)
 
     def line(self, number: int) -> str:
-        """Return a line, counted from 1, without its line end; empty if there is no such line."""
+        """Return a line, counted from 1, without its line end, or an empty string if there is no such line."""
         starts = self._line_starts()
         if not 1 <= number <= len(starts):
             return ""
@@ -131,7 +131,7 @@ class SourceText:
 
 
 class Severity(Enum):
-    """The severity of a finding; an error makes a command exit with status 1."""
+    """The severity of a finding. An error makes a command exit with status 1."""
 
     ERROR = "error"
     WARNING = "warning"
@@ -151,8 +151,8 @@ class Diagnostic:
     Two diagnostics with the same content are equal.
 
     Attributes:
-        code: letters for the room and three digits, such as ``XAC101``; a code is never reused with another meaning.
-        message: one sentence without a full stop; names are as the user wrote them.
+        code: letters for the room and three digits, such as ``XAC101``. A code is never reused with another meaning.
+        message: one sentence without a full stop, with names as the user wrote them.
         span: the position; None if there is none, as for a missing file.
         notes: what led to the finding: includes, macro calls, values.
         hint: how to fix the problem, or None.

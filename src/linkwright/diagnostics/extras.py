@@ -86,7 +86,7 @@ def _installation() -> Installation:
 
 
 def _first_python_without_wheel(package: str) -> tuple[int, ...]:
-    """Return the first Python version for which a package has no wheel; empty if there is none.
+    """Return the first Python version for which a package has no wheel, or an empty tuple.
 
     From this version on, no extra requires the package.
     """

@@ -1,4 +1,4 @@
-"""How this Linkwright was installed, and with which commands packages are added to it.
+"""The installation of this Linkwright, and the commands that add packages to it.
 
 Installers record this: ``direct_url.json`` (PEP 610) names the origin of a distribution, and ``pipx_metadata.json`` or
 ``uv-receipt.toml`` marks an environment of a tool, which recreates the environment when it installs again.
@@ -32,7 +32,7 @@ PATH_PLACEHOLDER = "PATH_TO_LINKWRIGHT"
 
 @dataclass(frozen=True)
 class Origin:
-    """Where a distribution was installed from.
+    """The origin of an installed distribution.
 
     Attributes:
         place: a path or a URL; empty for a package index.
@@ -103,7 +103,7 @@ _UV_CACHE_FOLDERS = ("archive-v", "environments-v")
 
 
 def find_installation() -> Installation:
-    """Return how the running Linkwright was installed."""
+    """Return the installation of the running Linkwright."""
     return installation_in(Path(sys.prefix), _find_origin())
 
 
@@ -157,7 +157,7 @@ def _find_origin() -> Origin:
 
 
 def _pip_command(prefix: Path, origin: Origin) -> tuple[str, ...]:
-    """Return the start of the command that installs into an environment without a tool of its own."""
+    """Return the start of the command that installs into an environment that no tool manages."""
     if find_spec("pip"):
         pip_path = shutil.which("pip")
         is_on_path = pip_path is not None and Path(pip_path).parent == Path(sys.executable).parent
@@ -174,7 +174,7 @@ def _parse_extras(requirement: str) -> frozenset[str]:
 
 
 def _quote_command(words: list[str]) -> str:
-    """Return a command line for the user's shell; on Windows with double quotes, the only ones of its shell."""
+    """Return a command line for the user's shell. On Windows, it has double quotes, because cmd has no others."""
     if sys.platform == "win32":
         return " ".join(word if _UNQUOTED_PATTERN.fullmatch(word) else f'"{word}"' for word in words)
     return shlex.join(words)

@@ -1,7 +1,7 @@
-"""Find the existing name that another name misspells, but never the name of a sibling.
+"""The search for the existing name that another name misspells, but never for the name of a sibling.
 
 ``wheel_2`` does not misspell ``wheel_1``, nor ``lwheel`` ``rwheel``, nor ``stopKp`` ``stopKd``: they name different
-different parts, and a fix that confuses them breaks the robot.
+parts, and a fix that confuses them breaks the robot.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from collections.abc import Iterable
 from linkwright.diagnostics.suggest import is_misspelt, words_of
 
 _MIN_LENGTH = 3
-"""The minimum length of a word that can be misspelt; shorter words, such as ``fl`` and ``fr``, differ on purpose."""
+"""The minimum length of a word that can be misspelt. Shorter words, such as ``fl`` and ``fr``, differ on purpose."""
 
 
 def find_misspelt(name: str, names: Iterable[str]) -> str | None:

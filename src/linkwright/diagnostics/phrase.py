@@ -76,11 +76,11 @@ class Phrase(str):
 
     @property
     def chosen_template(self) -> str:
-        """The English template; for a phrase with singular and plural, the template for its count."""
+        """The English template or, for a phrase with singular and plural, the template for its count."""
         return self.template
 
     def translated(self, wording: Wording) -> Phrase:
-        """Return a phrase with the text in another language, and with the English template and the arguments."""
+        """Return the phrase with its text in another language, and the same template and arguments."""
         return _Translated(self.translated_text(wording), self)
 
     def _fill(self, template: str, wording: Wording) -> str:
@@ -206,7 +206,7 @@ def phrase(template: str, **arguments: object) -> Phrase:
 
 
 def counted(one: str, several: str, count: int, **arguments: object) -> Phrase:
-    """Return a translatable text with a count; its English has a singular and a plural.
+    """Return a translatable text with a count, which selects the singular or the plural.
 
     Args:
         one: the template for the singular; ``{count}`` is the number.

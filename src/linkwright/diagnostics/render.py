@@ -1,4 +1,4 @@
-"""Format diagnostics as text for a terminal, and as plain data."""
+"""Diagnostics as text for a terminal, and as plain data."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 _COLOURS = {Severity.ERROR: "31", Severity.WARNING: "33", Severity.INFO: "36"}
 MAX_PRINTED = 500
-"""The maximum number of findings to print: no user reads more, and the errors among them would scroll away."""
+"""The maximum number of findings to print. No user reads more, and the errors among them would scroll away."""
 _TAB = "    "
 _MAX_LINE = 300
 _CONTEXT = 80
@@ -79,7 +79,7 @@ def print_diagnostics(diagnostics: Iterable[Diagnostic], stream: IO[str]) -> Non
 
 
 def _most_severe(diagnostics: Sequence[Diagnostic]) -> Sequence[Diagnostic]:
-    """Return the findings to print, in their order; if there are too many, errors take precedence."""
+    """Return the findings to print, in their order. If there are too many, errors take precedence."""
     if len(diagnostics) <= MAX_PRINTED:
         return diagnostics
     indices = sorted(range(len(diagnostics)), key=lambda index: diagnostics[index].severity is not Severity.ERROR)
@@ -89,9 +89,8 @@ def _most_severe(diagnostics: Sequence[Diagnostic]) -> Sequence[Diagnostic]:
 def to_data(diagnostic: Diagnostic) -> dict[str, Any]:
     """Return a diagnostic as data that can be written as JSON.
 
-    Lines and columns count from 1; a missing position is None. ``template`` and ``arguments`` are the English parts
-    of the
-    message: the same finding has the same template for every robot and in every language.
+    Lines and columns count from 1, and a missing position is None. ``template`` and ``arguments`` are the English parts
+    of the message. The same finding has the same template for every robot and in every language.
     """
     message = as_phrase(diagnostic.message)
     return {

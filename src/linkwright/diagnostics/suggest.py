@@ -1,4 +1,4 @@
-"""Search for similar names to suggest in hints."""
+"""The search for similar names to suggest in hints."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _MAX_LISTED = 8
 _ADDRESSES = ("http:", "https:", "ftp:")
 _ADDRESS_PATTERN = r"(?:^|/)((?:https?|ftp):)/+(.+)"  # compiled only on use, because few commands need it
 _MAX_COMPARED = 1_000
-"""The maximum number of names to compare; of more, only those with a similar beginning and length are used."""
+"""The maximum number of names to compare. Of more names, only those with a similar beginning and length are used."""
 _WORD_PATTERN = r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+|[^\W\d_]+"
 _MAX_SHORT_LENGTH = 2
 """The length up to which a word counts as misspelt only if two of its letters are swapped."""
@@ -35,7 +35,7 @@ def nearest(name: str, candidates: Iterable[str], limit: int = 3) -> list[str]:
 
 @lru_cache(maxsize=256)
 def _nearest(name: str, candidates: tuple[str, ...], limit: int) -> tuple[str, ...]:
-    """Return the result of `nearest`; a description without a property asks for the same name again and again."""
+    """Return the result of `nearest`, cached because a description may use a missing property very often."""
     from difflib import get_close_matches  # imported here, because most commands need no hint
 
     by_fold: dict[str, str] = {}
@@ -78,7 +78,7 @@ def _is_similar(name: str, other: str) -> bool:
 
 
 def _is_misspelling(word: str, other: str) -> bool:
-    """Return whether a word is a misspelling or an abbreviation of another word; a number never is."""
+    """Return whether a word is a misspelling or an abbreviation of another word, which a number never is."""
     shorter, longer = sorted((word, other), key=len)
     if word.isdigit() or other.isdigit():
         return False
@@ -139,7 +139,7 @@ def _did_you_mean(names: Sequence[str]) -> Phrase | None:
 
 
 def _similar_files(name: str, names: Iterable[str]) -> list[str]:
-    """Return the file names that are similar to a name, compared without extensions; at most three.
+    """Return at most three file names that are similar to a name, compared without extensions.
 
     The extensions must be similar as well: 'a.urdf' is not similar to 'robot.urdf'.
     """

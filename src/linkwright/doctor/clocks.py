@@ -1,4 +1,4 @@
-"""Problems of time: stamps that differ from the current time, and simulated time in only some nodes."""
+"""Problems of time: stamps that differ from the clock, and simulated time in only some nodes."""
 
 from __future__ import annotations
 
@@ -9,7 +9,10 @@ from linkwright.doctor.record import Observation, StampSeen, listed, nodes_of
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 _MAX_DIFFERENCE_NS = 5 * NANOSECONDS_PER_SECOND
-"""The difference from which a stamp is reported: tf2 keeps transforms for ten seconds, and displays wait less."""
+"""The difference from which a stamp is reported.
+
+tf2 keeps transforms for ten seconds, and displays wait less.
+"""
 _CLOCK_TOPIC = "/clock"
 
 

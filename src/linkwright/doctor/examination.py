@@ -14,7 +14,7 @@ _SEVERITY_ORDER = (Severity.ERROR, Severity.WARNING, Severity.INFO)
 
 
 def examine(observation: Observation) -> list[Diagnostic]:
-    """Return the findings of all examinations (codes ``DOC...``), the most severe ones first."""
+    """Return the findings of all examinations (codes ``DOC...``), the most severe first."""
     robots, findings = robots_in(observation)
     findings += examine_environment(observation)
     findings += examine_frames(observation, robots)

@@ -360,7 +360,7 @@ def _examine_fixed_frames(observation: Observation, robots: Sequence[RobotSeen])
 
 
 def _examine_message_frames(observation: Observation, robots: Sequence[RobotSeen]) -> Iterator[Diagnostic]:
-    """Yield findings about the frames of messages that have no transform and do not belong to a robot."""
+    """Yield findings about message frames that have no transform and do not belong to a robot."""
     if not observation.transforms:
         return
     known_frames = {name for transform in observation.transforms for name in (transform.parent, transform.child)}

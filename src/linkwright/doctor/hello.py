@@ -1,4 +1,4 @@
-"""Greetings between computers, on a topic and by UDP multicast, and a table of the greetings received."""
+"""Greetings between computers on a topic and by UDP multicast, with a table of those received."""
 
 from __future__ import annotations
 
@@ -17,7 +17,9 @@ def greeting(host: str) -> str:
 
 
 def host_of(text: str) -> str:
-    """Return the name of the computer that sent a greeting, or an empty string if the greeting is empty.
+    """Return the name of the computer that sent a greeting.
+
+    The name is the last word of the greeting. It is empty if the greeting is empty.
 
     The name is the last word of the greeting.
     """

@@ -23,7 +23,7 @@ _PADDING = 4
 
 
 def report(observation: Observation) -> str:
-    """Return the report, with all its sections, on the computer and an observed graph."""
+    """Return the full report about the computer and an observed graph."""
     return sections_text(
         [
             ("NETWORK CONFIGURATION", _network_rows()),

@@ -11,7 +11,10 @@ from linkwright.doctor.record import Observation, listed
 from linkwright.urdf import Joint, Robot
 
 MOVING_TYPES = frozenset({"revolute", "continuous", "prismatic"})
-"""Types of joints whose transforms follow joint states; robot_state_publisher treats other joints as fixed."""
+"""The types of joints whose transforms follow joint states.
+
+robot_state_publisher treats other joints as fixed.
+"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,7 +35,7 @@ class RobotSeen:
 
     @property
     def root(self) -> str:
-        """The name of the root link, which no joint has as its child."""
+        """The name of the root link. No joint has it as its child."""
         return self.model.root
 
     @property
@@ -62,7 +65,7 @@ class RobotSeen:
 
 
 def robots_in(observation: Observation) -> tuple[list[RobotSeen], list[Diagnostic]]:
-    """Return the robots whose descriptions were observed, and findings about invalid descriptions.
+    """Return the robots with an observed description, and findings about invalid descriptions.
 
     Returns:
         The robots, and findings about descriptions that cannot be parsed.
@@ -94,7 +97,7 @@ def robots_in(observation: Observation) -> tuple[list[RobotSeen], list[Diagnosti
 
 
 def _frame_prefix(robot: Robot, observation: Observation) -> str:
-    """Return the prefix of a robot's frames with which most of its links occur in the observed transforms.
+    """Return the prefix with which most links of a robot occur in the observed transforms.
 
     The prefix is empty if the observed frames have none.
     """

@@ -15,7 +15,10 @@ from linkwright.graph.qos.compatibility import incompatible_policies
 from linkwright.graph.qos.profile import QoSPolicyKind
 
 _COMMAND_TOPIC = "cmd_vel"
-"""The last component of topic names for velocity commands; other topics often have no subscriber."""
+"""The last component of topic names for velocity commands.
+
+Other topics often have no subscriber.
+"""
 _VELOCITY_TYPES = (TWIST, TWIST_STAMPED)
 _UNIVERSAL_TOPICS = frozenset({"/parameter_events", "/rosout", "/clock"})
 """Topics that nodes subscribe to even if no node publishes them."""
@@ -42,12 +45,7 @@ def _examine_names(observation: Observation) -> Iterator[Diagnostic]:
                 phrase("{count} nodes have the name '{name}'", count=count, name=name),
                 severity=Severity.WARNING,
                 notes=(
-                    Note(
-                        phrase(
-                            "their parameter services respond in turn, so it is a matter of chance which node a "
-                            "command reaches"
-                        )
-                    ),
+                    Note(phrase("their parameter services respond in turn, so a command reaches a random one of them")),
                 ),
                 hint=phrase(
                     "stop the node that is still running from before, or rename one of them: --ros-args -r "
@@ -96,7 +94,7 @@ def _examine_types(observation: Observation) -> Iterator[Diagnostic]:
 
 
 def _without_universal_subscribers(types: dict[str, list[EndpointInfo]]) -> dict[str, list[EndpointInfo]]:
-    """Return a topic's endpoints by type, without the subscriptions of nodes that accept all published types.
+    """Return a topic's endpoints by type, without subscriptions of nodes that accept any type.
 
     A node accepts all types if it subscribes to more than one type, and to all published ones. Its publishers remain.
     The result is empty if no other node subscribes.
@@ -206,7 +204,7 @@ def _policy_text(endpoint: EndpointInfo, policy: QoSPolicyKind) -> str:
 
 
 def _find_misnamed_topics(observation: Observation) -> Iterator[tuple[str, str, list[EndpointInfo], str]]:
-    """Yield topics without a publisher whose subscribers probably mean another topic, which is published.
+    """Yield unpublished topics whose subscribers probably mean another topic.
 
     Yields:
         The topic, its type, its subscriptions, and the name of the published topic.
@@ -327,7 +325,7 @@ def _examine_drivers(observation: Observation) -> Iterator[Diagnostic]:
 
 
 def _find_similar(name: str, candidates: list[str]) -> str | None:
-    """Return the candidate that a name probably means, or None.
+    """Return the candidate for which a name was probably intended, or None.
 
     A candidate is suitable if only its namespace differs, or if its spelling is similar.
     """

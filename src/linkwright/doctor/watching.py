@@ -40,10 +40,13 @@ if TYPE_CHECKING:
 _TF, _JOINT_STATE = "tf2_msgs/msg/TFMessage", "sensor_msgs/msg/JointState"
 _TRANSFORMS = ("tf", "tf_static")
 _MODEL_PREFIX = "/model/"
-"""The prefix of gz's topics, which ROS nodes receive only through a bridge."""
+"""The prefix of gz's topics. ROS nodes receive these topics only through a bridge."""
 _STRING, _CLOCK = "std_msgs/msg/String", "rosgraph_msgs/msg/Clock"
 _BOND = "bond/msg/Status"
-"""The type of bond messages, whose stamps are those of a steady clock and cannot be compared with other clocks."""
+"""The type of bond messages.
+
+Their stamps are those of a steady clock, and cannot be compared with other clocks.
+"""
 _DISCOVERY_VARIABLES = (
     "ROS_DOMAIN_ID",
     "ROS_LOCALHOST_ONLY",
@@ -57,21 +60,30 @@ _DISCOVERY_VARIABLES = (
     "ZENOH_SESSION_CONFIG_URI",
 )
 _RESPONSE_TIMEOUT_SECONDS = 1.0
-"""The maximum seconds to wait for the response of a node; a node that does not respond is skipped."""
+"""The maximum seconds to wait for a node's response. A node that does not respond is skipped."""
 _NAMING_TIMEOUT_SECONDS = 1.0
-"""The maximum seconds to wait for the nodes of endpoints; the endpoints of some programs never have one."""
+"""The maximum seconds to wait for the nodes of endpoints.
+
+The endpoints of some programs never have a node.
+"""
 _FIXED_FRAME = "fixed_frame"
 _POLL_SECONDS = 0.01
 _TRANSFORMS_WITHIN = 5.0
 """The maximum additional seconds to observe if transforms are published and none was received."""
 _LENGTH_TOLERANCE = 1e-3
 _STAMP = {0: struct.Struct(">iI"), 1: struct.Struct("<iI")}
-"""The stamp of a header at the start of a message, by the byte order in the second byte of the CDR header."""
+"""The stamp of a header at the start of a message, by byte order.
+
+The byte order is the second byte of the CDR header.
+"""
 _CDR_HEADER = 4
 _TWIST_BYTES = 48
 """The size of the six numbers at the end of a Twist or TwistStamped."""
 _MIN_DISPUTE_SECONDS = 1.5
-"""The seconds for which drivers must contradict each other; short, because observations are short."""
+"""The seconds for which drivers must contradict each other.
+
+The time is short because observations are short.
+"""
 _MIN_DISPUTE_COUNT = 2
 
 
@@ -125,7 +137,7 @@ async def observe(
 
 
 class _Watcher:
-    """Subscribes to the topics that the examinations need, and records what it receives."""
+    """Subscribes to the topics that the examinations need, and records the messages."""
 
     def __init__(self, graph: Graph, node: Node) -> None:
         self._graph = graph
@@ -185,7 +197,7 @@ class _Watcher:
         return self._node.get_fully_qualified_name()
 
     def subscribe(self) -> None:
-        """Subscribe to the topics that the examinations need and that have appeared since the last call.
+        """Subscribe to needed topics that have appeared since the last call.
 
         Topics of a command such as ``topic pub`` are included only if they carry velocities.
         """
@@ -343,7 +355,7 @@ class _Watcher:
         return tuple(drivers_by_topic)
 
     def stamps_seen(self, sim_time: Mapping[str, bool]) -> tuple[StampSeen, ...]:
-        """Return the age of the last stamps, which is measured with the clock of their senders.
+        """Return the age of the last stamps, measured with the clock of their senders.
 
         This clock is simulated time if the sender uses or publishes it. Any other sender may forward the stamps of
         other nodes, so the age is measured with the clock that is closer to the stamp.
@@ -369,18 +381,18 @@ class _Watcher:
     # --- service calls -----------------------------------------------------------------------------------------------
 
     async def sim_time(self) -> dict[str, bool]:
-        """Return the values of ``use_sim_time`` by the full names of the nodes that responded in time."""
+        """Return the value of ``use_sim_time`` for each node that responded in time."""
         service_type = "rcl_interfaces/srv/GetParameters"
         responses = await self._call_all(service_type, "get_parameters", names=["use_sim_time"])
         return {node: bool(response.values[0].bool_value) for node, response in responses.items() if response.values}
 
     async def lifecycle(self) -> dict[str, str]:
-        """Return the states of managed nodes by the full names of the nodes that responded in time."""
+        """Return the state of each managed node that responded in time."""
         responses = await self._call_all("lifecycle_msgs/srv/GetState", "get_state")
         return {node: response.current_state.label for node, response in responses.items()}
 
     async def fixed_frames(self) -> list[FixedFrame]:
-        """Return the Fixed Frames of the viewers that declare it as a parameter, as Linkwright's viewer does."""
+        """Return the Fixed Frames that viewers declare as a parameter, as Linkwright's viewer does."""
         subscriptions = [endpoint for endpoint in self.endpoints() if endpoint.kind is EndpointKind.SUBSCRIPTION]
         viewers = {node_of(subscription) for subscription in subscriptions if subscription.type_name == _TF}
         package = "rcl_interfaces/srv"

@@ -1,1 +1,1 @@
-"""Functions for files and folders of the user, and the folders for the program's own data."""
+"""Functions for the user's files and folders, and the folders for the program's own data."""

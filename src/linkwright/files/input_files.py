@@ -1,6 +1,6 @@
 """Reads files that may be pipes or devices, without waiting for a writer that does not exist.
 
-To open a named pipe (FIFO) normally blocks until a program opens its other end, which may never happen. The functions
+Opening a named pipe (FIFO) normally blocks until a program opens its other end, which may never happen. The functions
 of this module always return. The module imports little, because short commands load it.
 """
 
@@ -15,7 +15,10 @@ _FIRST_READ_BYTES = 1 << 17  # most files are shorter, and a larger buffer takes
 _NON_BLOCKING = getattr(os, "O_NONBLOCK", 0)  # Windows does not have such pipes
 _FLAGS = os.O_RDONLY | _NON_BLOCKING | getattr(os, "O_BINARY", 0)  # Windows reads in text mode by default
 _pipe_contents: dict[tuple[int, int], bytes] = {}
-"""Maps the device and inode of a pipe to its contents, because a command may read twice what a pipe yields once."""
+"""Maps the device and inode of a pipe to its contents.
+
+A command may read a pipe twice, but a pipe yields its contents only once.
+"""
 
 
 MAX_TEXT_BYTES = 100_000_000

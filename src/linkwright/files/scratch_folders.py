@@ -33,9 +33,9 @@ class ScratchFolder(TemporaryDirectory[str]):
         parent: the parent folder; None for the system's folder for temporary files.
     """
 
-    def __init__(self, purpose: str, place: Path | None = None) -> None:
-        remove_abandoned(place or Path(gettempdir()))
-        super().__init__(prefix=f"{_PREFIX}{purpose}_", dir=place)
+    def __init__(self, purpose: str, parent: Path | None = None) -> None:
+        remove_abandoned(parent or Path(gettempdir()))
+        super().__init__(prefix=f"{_PREFIX}{purpose}_", dir=parent)
         lock = _lock(Path(self.name))
         self._unlock = None if lock is None else weakref.finalize(self, os.close, lock)
 
@@ -46,15 +46,15 @@ class ScratchFolder(TemporaryDirectory[str]):
             self._unlock()
 
 
-def remove_abandoned(place: Path) -> None:
-    """Remove the scratch folders, in a parent folder, of processes that have ended.
+def remove_abandoned(parent: Path) -> None:
+    """Remove the scratch folders of ended processes in a parent folder.
 
     A folder that cannot be removed is skipped.
     """
     if sys.platform == "win32":  # Windows cannot lock folders
         return
     with suppress(OSError):
-        with os.scandir(place) as entries:
+        with os.scandir(parent) as entries:
             own_entries = [entry for entry in entries if entry.name.startswith(_PREFIX)]
         for entry in own_entries:
             with suppress(OSError):
@@ -76,7 +76,7 @@ def _remove_if_abandoned(entry: os.DirEntry[str]) -> None:
 
 
 def _lock(folder: Path) -> int | None:
-    """Lock a folder, and return a file descriptor that holds the lock until it is closed.
+    """Lock a folder, and return a file descriptor that holds the lock while it is open.
 
     The result is None if the folder is locked already, or if the file system does not support such locks.
     """

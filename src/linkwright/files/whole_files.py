@@ -11,7 +11,10 @@ import os
 import stat
 
 DISK_ERRORS = frozenset({errno.ENOSPC, errno.EFBIG, errno.EIO, getattr(errno, "EDQUOT", errno.ENOSPC)})
-"""Errors of a full or defective disk, or an exceeded limit, after which writing in place would destroy the file."""
+"""Errors of a full or defective disk, or an exceeded limit.
+
+After such an error, writing in place would destroy the file.
+"""
 
 _MAX_NAME_BYTES = 200  # in bytes; file systems allow 255, and the name of the temporary file is a little longer
 
@@ -109,7 +112,9 @@ def _temporary_path(target: str, purpose: str) -> str:
 
 
 def _create(path: str, content: bytes, mode: int = 0o666) -> None:
-    """Create a file with some content and flush it to the disk; remove it if writing fails.
+    """Create a file with some content, and flush it to the disk.
+
+    The file is removed if writing fails.
 
     The umask of the process is applied to `mode`.
     """
@@ -139,7 +144,7 @@ def _write_all(descriptor: int, content: bytes) -> None:
 
 
 def _remove(path: str) -> None:
-    from contextlib import suppress  # imported here, because it is slow to import and seldom needed
+    from contextlib import suppress  # imported here because its import is slow and it is seldom needed
 
     with suppress(OSError):
         os.unlink(path)

@@ -1,4 +1,4 @@
-"""Rotations, poses, shapes, meshes and mass properties, which do not depend on robot descriptions.
+"""Rotations, poses, shapes, meshes and mass properties, without robot descriptions.
 
 `single` and `arrays` have the same operations: `single` for one rotation or pose in plain floats, `arrays` for many.
 All modules except `shapes` and `single` need numpy, so nothing is imported here.

@@ -82,7 +82,7 @@ def quaternion_multiply(first: ArrayLike, second: ArrayLike) -> Array:
 
 
 def quaternion_inverse(quaternion: ArrayLike) -> Array:
-    """Return the inverse rotation; shape (..., 4) to (..., 4)."""
+    """Return the inverse rotation, as quaternions of the same shape (..., 4)."""
     inverse: Array = as_array(quaternion, 4, "a quaternion") * np.array((-1.0, -1.0, -1.0, 1.0))
     return inverse
 
@@ -135,7 +135,7 @@ def slerp(first: ArrayLike, last: ArrayLike, ratios: ArrayLike) -> Array:
 
 
 def rotation_matrix(quaternion: ArrayLike) -> Array:
-    """Convert rotations to matrices; shape (..., 4) to (..., 3, 3)."""
+    """Convert rotations, of shape (..., 4), to matrices, of shape (..., 3, 3)."""
     x, y, z, w = np.moveaxis(as_array(quaternion, 4, "a quaternion"), -1, 0)
     matrix = np.empty((*x.shape, 3, 3))
     matrix[..., 0, 0] = 1 - 2 * (y * y + z * z)
@@ -151,7 +151,13 @@ def rotation_matrix(quaternion: ArrayLike) -> Array:
 
 
 def quaternion_from_matrix(matrix: ArrayLike) -> Array:
-    """Convert rotation matrices to quaternions with w >= 0; shape (..., 3, 3) to (..., 4)."""
+    """Convert rotation matrices, shape (..., 3, 3), to quaternions, shape (..., 4).
+
+    The quaternions have w >= 0.
+
+    Raises:
+        ValueError: the shape is not (..., 3, 3).
+    """
     m = np.asarray(matrix, dtype=np.float64)
     if m.shape[-2:] != (3, 3):
         raise ValueError(f"a rotation matrix of shape {m.shape}; (..., 3, 3) is expected")
@@ -194,19 +200,19 @@ def compose(b_in_a: ArrayLike, c_in_b: ArrayLike) -> Array:
 
 
 def invert(b_in_a: ArrayLike) -> Array:
-    """Return the poses of frame A in frame B, given B in A; shape (..., 7) to (..., 7)."""
+    """Return the poses of frame A in frame B, given B in A, both of shape (..., 7)."""
     poses = as_array(b_in_a, 7, "a pose")
     inverse = quaternion_inverse(poses[..., 3:])
     return np.concatenate((-rotate(inverse, poses[..., :3]), inverse), axis=-1)
 
 
 def row_from_pose(pose: Pose) -> Array:
-    """Convert a description's pose to a row x, y, z, qx, qy, qz, qw; shape (7,)."""
+    """Convert a description's pose to a row x, y, z, qx, qy, qz, qw, of shape (7,)."""
     return np.array((*pose.xyz, *pose_quaternion(pose)))
 
 
 def matrix_from_pose(pose: ArrayLike) -> Array:
-    """Convert poses to homogeneous matrices; shape (..., 7) to (..., 4, 4)."""
+    """Convert poses, of shape (..., 7), to homogeneous matrices, of shape (..., 4, 4)."""
     poses = as_array(pose, 7, "a pose")
     matrix = np.zeros((*poses.shape[:-1], 4, 4))
     matrix[..., :3, :3] = rotation_matrix(poses[..., 3:])

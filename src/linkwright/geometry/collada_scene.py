@@ -32,7 +32,7 @@ MadeT_co = TypeVar("MadeT_co", covariant=True)
 MatrixT = TypeVar("MatrixT")
 
 
-class UnsupportedContent(Exception):  # noqa: N818 - no error: another reader takes the file
+class UnsupportedContent(Exception):  # noqa: N818 - not an error: another reader reads the file
     """Raised when a file has content that a simple reader does not support."""
 
 
@@ -100,7 +100,7 @@ def read_scene(data: bytes, numbers: Numbers[MeshT, MatrixT, Any]) -> ColladaFil
     if _DECLARATION.search(data):
         return None
     try:
-        return _File(ET.fromstring(data), numbers).read()  # noqa: S314 - there are no entities in it
+        return _File(ET.fromstring(data), numbers).read()  # noqa: S314 - the text contains no entities
     except (UnsupportedContent, ET.ParseError, ValueError, LookupError, RecursionError):
         return None
 
@@ -236,7 +236,7 @@ class _File(Generic[MeshT, MatrixT]):
 
 
 def _reference(node: _Node) -> str:
-    """Return the ID in a node's ``url``, which refers to an element of the same file."""
+    """Return the ID in a node's ``url`` that refers to an element of the same file."""
     mark, _, name = node.get("url", "").partition("#")
     if mark or not name:
         raise UnsupportedContent

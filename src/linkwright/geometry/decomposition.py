@@ -105,7 +105,7 @@ def _is_nearly_convex(vertices: Array, faces: Faces, corners: Array) -> bool:
 
 
 def _plates(vertices: Array, faces: Faces, max_plates: int) -> list[Array]:
-    """Return plates for the flat faces of a part, but stop once there are more than `max_plates`."""
+    """Return plates for the flat faces of a part, and stop after more than `max_plates`."""
     corners = vertices[faces]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     lengths = np.linalg.norm(normals, axis=1)

@@ -41,7 +41,7 @@ def convex_hull(points: Array) -> Faces | None:
 
 
 class _Hull:
-    """A hull under construction, which starts as a tetrahedron.
+    """A hull under construction, initially a tetrahedron.
 
     Attributes:
         edges: the face of each directed edge, by start and end. The edge in the opposite direction belongs to a

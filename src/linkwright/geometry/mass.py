@@ -31,7 +31,9 @@ class PrincipalAxes:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class MassProperties:
-    """Mass properties of a rigid body in a frame, which is the link's frame for links.
+    """Mass properties of a rigid body in a frame.
+
+    For links, this is the frame of the link.
 
     Attributes:
         mass: the mass in kg.
@@ -66,7 +68,7 @@ class MassProperties:
         return MassProperties(self.mass, center, rotation @ self.inertia @ rotation.T)
 
     def inertia_about(self, point: ArrayLike) -> Array:
-        """Return the inertia tensor about another point of the frame; shape (3, 3).
+        """Return the inertia tensor about another point of the frame, of shape (3, 3).
 
         The parallel axis theorem (Steiner) is used.
         """

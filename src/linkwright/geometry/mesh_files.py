@@ -57,7 +57,9 @@ class PlacedMesh(NamedTuple):
 
 
 class BadMeshError(Exception):
-    """Raised when a mesh file cannot be used; the message gives the reason.
+    """Raised when a mesh file cannot be used.
+
+    The message gives the reason.
 
     Attributes:
         reason: the reason, a phrase in terms of the file.
@@ -93,7 +95,7 @@ def placed_meshes(data: bytes, kind: str, *, is_plain: bool = False, **options: 
             meshes = (_read_plain(data, kind) if is_plain else None) or list(_read_meshes(data, kind, **options))
     except ModuleNotFoundError:
         raise
-    except Exception as error:  # noqa: BLE001 - a parser of foreign bytes may raise anything
+    except Exception as error:  # noqa: BLE001 - a parser may raise anything for unknown bytes
         repaired = _repair_xml(data) if kind == "dae" else None
         if repaired is not None:
             return placed_meshes(repaired, kind, is_plain=is_plain, **options)
@@ -186,10 +188,10 @@ def _collada_scene(data: bytes, **options: Any) -> Any:
 
 
 def _repair_xml(data: bytes) -> bytes | None:
-    """Return a COLLADA file as well-formed XML, without the mistakes that Gazebo and RViz tolerate.
+    """Return a COLLADA file as well-formed XML, or None.
 
-    Returns None if the file has no such mistakes, or has other mistakes. Exporters write such files: assimp names the
-    nodes of an STL ``<STL_BINARY>``.
+    Mistakes that Gazebo and RViz tolerate are removed. Returns None if the file has no such mistakes, or has other
+    mistakes. Exporters write such files: assimp names the nodes of an STL ``<STL_BINARY>``.
     """
     try:
         document, tolerated_mistakes = parse_as_tinyxml(decode(data, "<mesh>"), "<mesh>", foreign(""))

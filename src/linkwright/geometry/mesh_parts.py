@@ -95,7 +95,7 @@ def read_parts(path: Path, *, resolver: Any) -> list[MeshPart]:
         raise missing_extra("INR104", error) from None
     except BadMeshError:
         raise
-    except Exception as error:  # noqa: BLE001 - a foreign image or material may raise anything
+    except Exception as error:  # noqa: BLE001 - an unknown image or material may raise anything
         raise BadMeshError(parser_fault(error)) from None
 
 
@@ -194,7 +194,10 @@ def _image_to_png(image: Any) -> bytes | None:
 
 @lru_cache(maxsize=8)
 def _to_png(data: bytes) -> bytes:
-    """Convert image data to PNG; results are cached, because many meshes share an image."""
+    """Convert image data to PNG.
+
+    Results are cached, because many meshes share an image.
+    """
     from PIL import Image  # Pillow is an optional extra.
 
     image = Image.open(BytesIO(data))

@@ -1,4 +1,4 @@
-"""Reading of the triangles in mesh files, in metres and in the frame in which RViz shows them."""
+"""Reading of the triangles in mesh files, in metres and in the frame that RViz uses."""
 
 from __future__ import annotations
 

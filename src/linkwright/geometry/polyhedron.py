@@ -1,4 +1,4 @@
-"""Mass properties of the solid inside a closed surface of triangles, and the test whether a surface is closed."""
+"""Mass properties of the solid inside a closed surface, and the test for closedness."""
 
 from __future__ import annotations
 

@@ -31,7 +31,7 @@ class Box:
 
 @dataclass(frozen=True, slots=True)
 class Cylinder:
-    """A cylinder along z, centred at the origin; lengths in metres."""
+    """A cylinder along z, centred at the origin, with lengths in metres."""
 
     radius: float
     length: float
@@ -59,7 +59,10 @@ SimpleShape = Box | Cylinder | Capsule | Sphere
 
 
 def shape_volume(shape: SimpleShape) -> float:
-    """Return the volume of a shape in m3; 0 if a size is zero or less, infinite on overflow."""
+    """Return the volume of a shape in m3.
+
+    The volume is 0 if a size is zero or less, and infinite on overflow.
+    """
     if isinstance(shape, Box):
         return prod(shape.size) if min(shape.size) > 0 else 0.0
     r = max(shape.radius, 0.0)
@@ -88,11 +91,17 @@ class Placement(NamedTuple):
         return x + self.position[0], y + self.position[1], z + self.position[2]
 
     def inside(self, outer: Placement) -> Placement:
-        """Return this frame in the outer frame of `outer`; this placement is relative to the inner frame of `outer`."""
+        """Return this frame in the outer frame of another placement.
+
+        The outer frame of this placement is the inner frame of `outer`.
+        """
         return Placement(product(outer.rotation, self.rotation), outer.point(self.position))
 
     def seen_from(self, reference: Placement) -> Placement:
-        """Return this frame in another frame; both placements have the same outer frame."""
+        """Return this frame in another frame.
+
+        Both placements have the same outer frame.
+        """
         inverse = transposed(reference.rotation)
         difference = subtract_vectors(self.position, reference.position)
         return Placement(product(inverse, self.rotation), rotated(inverse, difference))
@@ -116,7 +125,7 @@ def product(first: Matrix, second: Matrix) -> Matrix:
 
 
 def transposed(matrix: Matrix) -> Matrix:
-    """Return the transpose of a matrix, which is the inverse of a rotation matrix."""
+    """Return the transpose of a matrix. For a rotation matrix, this is the inverse."""
     return (
         (matrix[0][0], matrix[1][0], matrix[2][0]),
         (matrix[0][1], matrix[1][1], matrix[2][1]),
@@ -165,7 +174,7 @@ class Bounds(NamedTuple):
         return hypot(*self.size)
 
     def gap(self, other: Bounds) -> float:
-        """Return the distance between two boxes, in m; 0 if they touch."""
+        """Return the distance between two boxes, in m, or 0 if they touch."""
         gaps = (subtract_vectors(self.low, other.high), subtract_vectors(other.low, self.high))
         return hypot(*(max(0.0, before, after) for before, after in zip(*gaps, strict=True)))
 
@@ -177,7 +186,7 @@ class Bounds(NamedTuple):
         return x, y, z
 
     def distance(self, point: Vector3) -> float:
-        """Return the distance between a point and the box, in m; 0 inside the box."""
+        """Return the distance between a point and the box, in m, or 0 inside the box."""
         return self.gap(Bounds(point, point))
 
     def moved(self, frame: Placement) -> Bounds:

@@ -1,4 +1,4 @@
-"""Checks of whether an inertia tensor, a mass and a shape can belong to one body.
+"""Checks that an inertia tensor, a mass and a shape can belong to one body.
 
 A rigid body's tensor is symmetric and positive definite, and its principal moments obey the triangle inequality: none
 is larger than the sum of the other two, because ``I1 + I2 - I3 = 2 integral(z2 dm) >= 0``. Source: Traversaro,
@@ -101,7 +101,7 @@ def is_indefinite(tensor: Array | Matrix, rounding: float = 0.0) -> bool:
 
 
 def triangle_excess(tensor: Array | Matrix) -> float:
-    """Return by how much the largest principal moment exceeds the sum of the others.
+    """Return the excess of the largest principal moment over the sum of the others.
 
     The excess is a fraction of the largest moment: negative or 0 for a possible body, and 0 for a flat one. It does not
     depend on the axes of the tensor.
@@ -146,7 +146,7 @@ def largest_moment_within(center: Vector3, box: Bounds, mass: float) -> float:
 
 
 def problems(properties: MassProperties) -> list[Phrase]:
-    """Return the reasons why mass properties cannot belong to a body; empty if they can."""
+    """Return the reasons why mass properties cannot belong to a body, if there are any."""
     reasons = []
     if not properties.mass > 0:
         reasons.append(phrase("the mass is not positive"))

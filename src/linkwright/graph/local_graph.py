@@ -24,7 +24,7 @@ from linkwright.graph.time.clock import SystemClock, Timebase
 
 
 class LocalGraph(GraphQueries):
-    """The graph as nodes see it; the subclass `Graph` creates the nodes.
+    """The graph as nodes see it. The subclass `Graph` creates the nodes.
 
     All methods may be called from any thread except `settle` and `close`, which must be called in the loop's thread.
 
@@ -75,12 +75,12 @@ class LocalGraph(GraphQueries):
 
     @property
     def dispatcher(self) -> LoopDispatcher | None:
-        """The default dispatcher of callbacks; None if there is no event loop."""
+        """The default dispatcher of callbacks, or None if there is no event loop."""
         return self._dispatcher
 
     @property
     def transport(self) -> Transport | None:
-        """The transport to other processes; None if there is none."""
+        """The transport to other processes, or None if there is none."""
         return self._transport
 
     @property
@@ -96,7 +96,9 @@ class LocalGraph(GraphQueries):
         copies_messages: bool = False,
         stays_inside: bool = False,
     ) -> NodeHandle:
-        """Add a node to the graph; log a warning if another node of this process has the same name.
+        """Add a node to the graph.
+
+        Log a warning if another node of this process has the same name.
 
         Args:
             identity: the node's name.
@@ -144,7 +146,7 @@ class LocalGraph(GraphQueries):
     # --- the transport -----------------------------------------------------------------------------------------------
 
     def attach(self, transport: Transport) -> None:
-        """Attach a transport, which mirrors the graph's endpoints outside the process.
+        """Attach a transport. It mirrors the graph's endpoints outside the process.
 
         Both existing and later endpoints are mirrored.
 
@@ -216,12 +218,15 @@ class LocalGraph(GraphQueries):
     # --- shutdown ----------------------------------------------------------------------------------------------------
 
     async def settle(self) -> None:
-        """Wait until all published messages are delivered, including those published by callbacks."""
+        """Wait until all published messages are delivered, including messages that callbacks publish."""
         if self._dispatcher is not None:
             await self._dispatcher.settle()
 
     async def close(self) -> None:
-        """Destroy every node and drop undelivered messages. After this no code of the graph runs."""
+        """Destroy every node and drop undelivered messages.
+
+        After this, no code of the graph runs.
+        """
         transport = self._end()
         if transport is not None:
             transport_closed: Future[None] = Future()
@@ -235,7 +240,7 @@ class LocalGraph(GraphQueries):
             await self._dispatcher.join()
 
     def close_threadsafe(self) -> None:
-        """Destroy every node, from any thread except the thread of an event loop; see `close`."""
+        """Destroy every node, from any thread except the thread of an event loop. See `close`."""
         transport = self._end()
         if transport is not None:
             transport.close()

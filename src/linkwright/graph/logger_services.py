@@ -47,9 +47,13 @@ class LoggerServices:
         return response
 
     def _set_one(self, name: str, level: int) -> str:
-        """Set the level of one logger; return an empty string, or the reason for a failure."""
+        """Set the level of one logger.
+
+        Return an empty string, or the reason for a failure.
+        """
         try:
             self._levels.set(name, LogLevel(level))
         except ValueError:
-            return f"{level} is not a log level; they are {', '.join(str(int(log_level)) for log_level in LogLevel)}"
+            levels = ", ".join(str(int(log_level)) for log_level in LogLevel)
+            return f"{level} is not a log level: the levels are {levels}"
         return ""

@@ -50,13 +50,13 @@ M = TypeVar("M")
 class Node(NodeParameters, NodeQueries):
     """A node of a graph.
 
-    The node's dispatcher runs its callbacks. In a graph on an event loop the dispatcher is this loop: it runs one
-    callback after another, and when a callback raises an exception, it logs the exception and continues. All parts
-    of a node may be created and used from any thread.
+    The node's dispatcher runs its callbacks. In a graph on an event loop, the loop runs one callback after another. If
+    a callback raises an exception, the exception is logged and the loop continues. All parts of a node may be created
+    and used from any thread.
 
-    rclpy's nodes derive from this class, and users' nodes derive from rclpy's. Names here are therefore those of rclpy,
-    or mangled; everything else is provided by the `handle`. No code here reads `graph`, because a user's node may
-    define an attribute with that name.
+    rclpy's nodes derive from this class, and users' nodes derive from rclpy's. The attributes here therefore have
+    rclpy's names or mangled names, and the `handle` provides everything else. The methods do not use the attribute
+    `graph`, because a user's node may define an attribute with that name.
 
     Args:
         graph: the graph that the node belongs to.
@@ -166,7 +166,7 @@ class Node(NodeParameters, NodeQueries):
 
     @property
     def handle(self) -> NodeHandle:
-        """The node's handle in the graph, which is entered while the node is in use."""
+        """The node's handle in the graph. It is entered while the node is in use."""
         return self.__handle
 
     @property
@@ -176,9 +176,9 @@ class Node(NodeParameters, NodeQueries):
 
     @property
     def executor(self) -> Executor | None:
-        """The executor that runs the node's callbacks; None if there is none.
+        """The executor that runs the node's callbacks, or None if there is none.
 
-        The value is None, too, if the graph's event loop runs the callbacks.
+        The value is also None if the graph's event loop runs the callbacks.
         """
         dispatcher = self.__handle.dispatcher
         return cast("Executor", dispatcher) if hasattr(dispatcher, "add_node") else None
@@ -213,7 +213,7 @@ class Node(NodeParameters, NodeQueries):
         return self.__handle.logger
 
     def get_clock(self) -> ROSClock:
-        """Return the node's clock, which follows ``/clock`` while ``use_sim_time`` is true."""
+        """Return the node's clock. It follows ``/clock`` while ``use_sim_time`` is true."""
         return self.__clock
 
     # --- creation ----------------------------------------------------------------------------------------------------
@@ -318,7 +318,8 @@ class Node(NodeParameters, NodeQueries):
                 response and returns it.
             qos_profile: the QoS; its depth limits how many requests are queued.
             callback_group: decides which entities may run at the same time.
-            replying: whether the callback receives, instead of the response, a function that sends one at any time.
+            replying: whether the callback receives, instead of the empty response, a function that sends a response at
+                any time.
 
         Raises:
             InvalidServiceNameError: the name is not valid.
@@ -369,7 +370,7 @@ class Node(NodeParameters, NodeQueries):
 
         Args:
             timer_period_sec: the period in seconds.
-            callback: called without arguments, or with a `TimerInfo` if it takes one.
+            callback: called with a `TimerInfo` if it requires one argument, otherwise without arguments.
             callback_group: decides which entities may run at the same time.
             clock: the clock that measures the period; by default the node's clock, which may follow simulated time.
             autostart: whether the timer runs from the start.
@@ -382,7 +383,7 @@ class Node(NodeParameters, NodeQueries):
         return self.__handle.add(Timer(self.__handle, callback, period_ns, clock, callback_group, autostart=autostart))
 
     def create_rate(self, frequency: float, clock: Clock | None = None) -> Rate:
-        """Create a rate, with which a loop can sleep until its next iteration.
+        """Create a rate. A loop uses it to sleep until its next iteration.
 
         Args:
             frequency: iterations per second.
@@ -398,7 +399,7 @@ class Node(NodeParameters, NodeQueries):
     def create_guard_condition(
         self, callback: Callable[[], object] | None, callback_group: CallbackGroup | None = None
     ) -> GuardCondition:
-        """Create a guard condition, whose callback is called soon after a trigger.
+        """Create a guard condition. Its callback is called soon after a trigger.
 
         Several triggers before the call result in a single call.
         """
@@ -457,7 +458,7 @@ class Node(NodeParameters, NodeQueries):
         return self.__handle.remove(subscription)
 
     def destroy_service(self, service: Service[Any, Any]) -> bool:
-        """Destroy a service; return whether the service belonged to this node."""
+        """Destroy a service, and return whether it belonged to this node."""
         return self.__handle.remove(service)
 
     def destroy_client(self, client: Client[Any, Any]) -> bool:
@@ -468,11 +469,11 @@ class Node(NodeParameters, NodeQueries):
         return self.__handle.remove(client)
 
     def destroy_timer(self, timer: Timer) -> bool:
-        """Destroy a timer; return whether the timer belonged to this node."""
+        """Destroy a timer, and return whether it belonged to this node."""
         return self.__handle.remove(timer)
 
     def destroy_guard_condition(self, guard: GuardCondition) -> bool:
-        """Destroy a guard condition; return whether the guard condition belonged to this node."""
+        """Destroy a guard condition, and return whether it belonged to this node."""
         return self.__handle.remove(guard)
 
     def destroy_rate(self, rate: Rate) -> bool:

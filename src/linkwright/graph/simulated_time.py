@@ -86,7 +86,7 @@ class _ClockSubscription(Subscription[Any]):
             call()
 
     def set_dispatcher(self, dispatcher: Dispatcher | None) -> None:
-        """Do nothing: this subscription needs no dispatcher."""
+        """Do nothing, because this subscription needs no dispatcher."""
 
     def _move(self, message: Any) -> None:
         if isinstance(message, QueuedMessage):

@@ -1,4 +1,4 @@
-"""The form that asks for the arguments of a description that cannot be expanded without them."""
+"""The form for the arguments without which a description cannot be expanded."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _MAX_TRIED_SETS = 12
 
 
 def argument_form(call: XacroCall, finder: PackageFinder, findings: Iterable[Diagnostic]) -> ArgumentForm | None:
-    """Return the arguments that a description needs, and argument sets with which it can be expanded.
+    """Return the arguments that a description needs, with argument sets for its expansion.
 
     The description is expanded with each argument set, which takes time, so call this function in another thread.
 
@@ -63,6 +63,9 @@ def _can_expand(call: XacroCall, values: Mapping[str, str], finder: PackageFinde
 
 
 def _label(values: Mapping[str, str], sets: Sequence[Mapping[str, str]]) -> str:
-    """Return a label for an argument set, with its values for the arguments in which the sets differ."""
+    """Return a label for an argument set.
+
+    The label contains the values of the arguments in which the sets differ.
+    """
     differing_names = [name for name in values if any(other_values.get(name) != values[name] for other_values in sets)]
     return " ".join(f"{name}:={values[name]}" for name in differing_names or values)

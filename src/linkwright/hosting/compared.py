@@ -1,4 +1,4 @@
-"""The view of two descriptions in one scene, in which the old one is translucent."""
+"""The view of two descriptions in one scene. The old description is translucent."""
 
 from __future__ import annotations
 
@@ -51,7 +51,9 @@ def run_compared_view(pair: Pair, options: HostOptions, *, foxglove: int | None 
 
 
 class ComparedView(ModelView):
-    """The view of two descriptions on the running event loop, which reloads both when their files change.
+    """The view of two descriptions on the running event loop.
+
+    Both descriptions are reloaded when their files change.
 
     Args:
         pair: the two descriptions.
@@ -122,14 +124,14 @@ class ComparedView(ModelView):
 
 
 class _OldDescriptions(Descriptions):
-    """Descriptions with texts that differ from those of the new file, even if both files are equal."""
+    """Descriptions whose texts differ from those of the new file, even if both files are equal."""
 
     def __init__(self, finder: PackageFinder, library: DescriptionLibrary) -> None:
         super().__init__(finder, reads_unsaved=True)
         self._library = library
 
     def store(self, call: XacroCall, description: Description, text: str | None = None) -> str:
-        """Store a description, and return its text, which identifies it."""
+        """Store a description, and return the text that identifies it."""
         from linkwright.descriptions.pairs import old_description_key
 
         return super().store(call, description, old_description_key(description) if text is None else text)

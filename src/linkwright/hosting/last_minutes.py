@@ -4,4 +4,7 @@ The constant has its own module because the help of commands needs it, and must 
 """
 
 DEFAULT_HISTORY = 256_000_000
-"""The bytes of messages that a viewer stores; the guide of the viewer states the time that they cover."""
+"""The maximum number of bytes of messages that a viewer stores.
+
+The guide of the viewer states the time that they cover.
+"""

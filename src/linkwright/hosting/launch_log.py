@@ -25,7 +25,7 @@ SCREEN = "screen"
 LOG = "log"
 OWN_LOG = "own_log"
 SHARED_OWN_LOG = "own_log of both"
-"""The log file with both streams of a process, in addition to one for each stream."""
+"""The destination for a log file with both streams of a process, in addition to a log file for each stream."""
 
 LAUNCH_LOG = "launch.log"
 
@@ -44,7 +44,7 @@ OUTPUT_MODES = tuple(_OUTPUT_MODES)
 
 
 def output_destinations(mode: str | Mapping[str, Iterable[str] | str]) -> dict[int, frozenset[str]]:
-    """Return the destinations of the stdout (1) and stderr (2) of a process for an ``output`` mode.
+    """Return the destinations of a process's stdout (1) and stderr (2) for an ``output`` mode.
 
     Raises:
         KeyError: the mode, a stream or a destination does not exist.
@@ -92,7 +92,10 @@ class LaunchLog:
 
     @property
     def folder(self) -> Path:
-        """The folder for the log files of this launch, or the folder of all logs if it cannot be created."""
+        """The folder for the log files of this launch.
+
+        If the folder cannot be created, this is the folder of all logs.
+        """
         if self._folder is None:
             base_folder = log_base()
             try:
@@ -112,7 +115,7 @@ class LaunchLog:
         self.info_line("launch", f"Default logging verbosity is set to {'DEBUG' if self._debug else 'INFO'}")
 
     def debug_line(self, name: str, text: str) -> None:
-        """Log a line for users who debug a launch file, if debug lines are enabled."""
+        """Log a line for debugging a launch file, if debug lines are enabled."""
         if self._debug:
             self._own_line("DEBUG", name, text)
 
@@ -138,7 +141,10 @@ class LaunchLog:
             print_diagnostics(diagnostics, self._streams[2])
 
     def node_record(self, process: str, record: LogRecord, destinations: frozenset[str]) -> None:
-        """Log a record of a node in this process: its process name, and the record in the format of rcutils."""
+        """Log a record of a node in this process.
+
+        The line consists of the process name and the record in rcutils' format.
+        """
         from linkwright.graph import console_line
 
         line = f"[{process}] {console_line(record)}"

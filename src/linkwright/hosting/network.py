@@ -1,4 +1,4 @@
-"""The ROS 2 network: joining it, and warnings about node names that it contains twice."""
+"""Joins the ROS 2 network, and warns about node names that occur twice in it."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ class Network:
             self.domain_id = None if transport is None else transport.domain_id
         elif self._session.has_processes:
             self._session.log.warning_line(
-                "launch", f"the nodes in this process and those in others cannot see each other: {unavailable_reason()}"
+                "launch", f"nodes in this process and in others cannot discover each other: {unavailable_reason()}"
             )
 
 
@@ -109,7 +109,7 @@ class SharedNames:
         """The findings for the page: one finding while names are shared, otherwise none."""
 
     def notice(self, names: frozenset[str]) -> None:
-        """Set the full names of the nodes that exist twice; this method may be called from any thread."""
+        """Set the full names of the nodes that exist twice. Callable from any thread."""
         with suppress(RuntimeError):  # The event loop may have been closed.
             self._loop.call_soon_threadsafe(self._schedule_report, names)
 

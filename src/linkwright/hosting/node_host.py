@@ -79,7 +79,10 @@ class NodeHost:
 
     @property
     def launcher_node(self) -> Node:
-        """The launcher's own node, which calls services and subscribes to topics; it is created on first access."""
+        """The launcher's own node. It calls services and subscribes to topics.
+
+        The node is created on first access.
+        """
         if self._launcher is None:
             self._launcher = self.graph.create_node(
                 f"launch_ros_{os.getpid()}", enable_rosout=False, parameters={"use_sim_time": self._uses_simulated_time}
@@ -96,7 +99,10 @@ class NodeHost:
             self._launcher.set_parameters([Parameter("use_sim_time", value=value)])
 
     def plan(self, plan: HostedPlan) -> None:
-        """Plan a node, which starts as soon as possible; this has no effect while the launch is ending."""
+        """Plan a node, which starts as soon as possible.
+
+        This has no effect while the launch is ending.
+        """
         if not self._is_closing:
             self._planned.append(plan)
 
@@ -105,7 +111,7 @@ class NodeHost:
         self._planned.clear()
 
     async def serve_pages(self) -> None:
-        """Serve the pages of the planned viewers, and load the modules that viewers need at the same time.
+        """Serve the pages of the planned viewers, and then load the modules that viewers need.
 
         If a server cannot listen on its port, the start of its viewer raises the error.
         """
@@ -212,7 +218,7 @@ class NodeHost:
         self._viewers.attach_panel(node)
 
     def _handle_start_failure(self, plan: HostedPlan, error: LinkwrightError) -> None:
-        """Log why a node could not start.
+        """Report why a node could not start.
 
         If the description file of the node is not valid, the node is started when the file is fixed.
         """
@@ -237,7 +243,10 @@ class NodeHost:
         session.reload.report(call, error.diagnostics)
 
     def _bind_descriptions(self, process_name: str, node: RunningNode, parameters: Mapping[str, Any]) -> None:
-        """Pass each new text of a node's descriptions to the node, and show findings about the current texts."""
+        """Pass each new text of a node's descriptions to the node.
+
+        Findings about the current texts are shown.
+        """
         from linkwright.nodes.options import NodeWithDescription
 
         session = self._session
@@ -348,7 +357,9 @@ class NodeHost:
 
     @contextmanager
     def _hide_fatal_records(self) -> Iterator[None]:
-        """Keep the fatal records of a node that fails to start off the screen, in a ``with`` block.
+        """Keep the fatal records of a node that fails to start off the screen.
+
+        Use in a ``with`` block.
 
         The findings report the same errors, with their locations.
         """
@@ -368,7 +379,10 @@ class NodeHost:
 
     @contextmanager
     def _attribute_records(self, process_name: str) -> Iterator[None]:
-        """Attribute the records of unknown loggers to a process, in a ``with`` block."""
+        """Attribute the records of unknown loggers to a process.
+
+        Use in a ``with`` block.
+        """
         previous_process, self._current_process = self._current_process, process_name
         try:
             yield

@@ -25,7 +25,7 @@ VIEWER = ("rviz2", "rviz2")
 """The package and executable of RViz, which Linkwright's viewer replaces."""
 
 _GAZEBO_WINDOW = "gzclient"
-"""The executable of Gazebo's window, which Linkwright's viewer replaces too."""
+"""The executable of Gazebo's window, which Linkwright's viewer also replaces."""
 
 
 @dataclass(eq=False)
@@ -74,7 +74,7 @@ class HostedPlan:
 
     @property
     def is_viewer(self) -> bool:
-        """Whether the node is RViz, which Linkwright's viewer replaces."""
+        """Whether the node is RViz. Linkwright's viewer replaces it."""
         return is_viewer(self.package, self.executable)
 
     @property
@@ -124,7 +124,7 @@ class HostedPlan:
 
 
 def is_viewer(package: str | None, executable: str) -> bool:
-    """Return whether a node is RViz, which Linkwright's viewer replaces."""
+    """Return whether a node is RViz. Linkwright's viewer replaces it."""
     return (package, executable) == VIEWER
 
 
@@ -172,7 +172,7 @@ class Supervisor(Protocol):
 
     @property
     def reload(self) -> LiveReload:
-        """The live reload, which passes new texts of descriptions to nodes."""
+        """The live reload. It passes new texts of descriptions to nodes."""
 
     @property
     def ending(self) -> bool:
@@ -183,13 +183,13 @@ class Supervisor(Protocol):
         """Whether the run has any processes in addition to its nodes."""
 
     def fail(self, failure: object) -> None:
-        """Record a failure, which sets the exit status to 1 unless the failure is cleared."""
+        """Record a failure. It sets the exit status to 1 unless it is cleared."""
 
     def clear_failure(self, failure: object) -> None:
         """Clear a failure whose cause has been fixed."""
 
     def spawn(self, coroutine: Coroutine[Any, Any, None]) -> None:
-        """Run a coroutine in the background; the run does not end before it has finished."""
+        """Run a coroutine in the background. The run does not end before it has finished."""
 
     def shut_down(self, reason: str) -> None:
         """End the run when the current work is done."""

@@ -1,4 +1,4 @@
-"""Live reload: a saved description file is expanded again, and nodes receive the new text.
+"""Live reload: when a description file is saved, nodes receive its new text.
 
 The nodes continue to run, so that joint positions and the camera do not change. If a description cannot be read, the
 last valid one remains in use, and the errors are shown until the file is fixed.
@@ -31,7 +31,10 @@ _CATCH_UP_SECONDS = 0.4
 """The delay after which files are checked once for changes that were made before the watch began."""
 
 _STEP_MS = 20
-"""The interval in milliseconds at which the watcher checks for the end of notifications; it is also the latency."""
+"""The interval, in milliseconds, at which the watcher checks for the end of notifications.
+
+The interval is also the latency.
+"""
 _DEBOUNCE_MS = 100
 
 Apply = Callable[[str], None]
@@ -39,7 +42,7 @@ Apply = Callable[[str], None]
 
 
 class LiveReload:
-    """Watches the files of a launch's descriptions, and reloads a description when its files change.
+    """Watches the files of a launch's descriptions, and reloads descriptions whose files change.
 
     Args:
         descriptions: the descriptions of the launch.
@@ -74,12 +77,15 @@ class LiveReload:
         self._callbacks[call].remove(apply)
 
     def show(self, subject: object, diagnostics: Iterable[Diagnostic]) -> None:
-        """Show findings that are already printed; they replace the earlier findings about the same object."""
+        """Show findings that are already printed.
+
+        They replace the earlier findings about the same object.
+        """
         self._findings[subject] = tuple(diagnostics)
         self._show(self.findings())
 
     def report(self, subject: object, diagnostics: Iterable[Diagnostic]) -> None:
-        """Print and show findings; they replace the earlier findings about the same object.
+        """Print and show findings. They replace the earlier findings about the same object.
 
         Errors are printed at each call, but warnings and notes only when they are new.
         """
@@ -97,7 +103,7 @@ class LiveReload:
         return [finding for findings in self._findings.values() for finding in findings]
 
     def start(self) -> None:
-        """Start to watch the files; an event loop must be running."""
+        """Start to watch the files. An event loop must be running."""
         self._is_started = True
         self._watch_files()
         if self.descriptions.reads_unsaved:
@@ -251,7 +257,7 @@ def _finding_key(finding: Diagnostic) -> tuple[object, ...]:
 
 
 def _modified_ns(path: Path) -> int:
-    """Return the modification time of a file in nanoseconds since the epoch, or 0 if it does not exist."""
+    """Return the modification time of a file in ns since the epoch, or 0 if there is no such file."""
     try:
         return path.stat().st_mtime_ns
     except OSError:
@@ -261,9 +267,9 @@ def _modified_ns(path: Path) -> int:
 class FileWatch:
     """Calls a function on the event loop when files in certain folders change.
 
-    Folders are watched and not files, because editors save a file by writing a new one and renaming it. Files behind
-    links (``colcon build --symlink-install``) are also watched at their real location. If a folder does not exist, for
-    example because a build is about to create it again, its nearest existing parent is watched.
+    Folders are watched instead of files, because editors save a file by writing a new file and renaming it. Files
+    behind links (``colcon build --symlink-install``) are also watched at their real location. If a folder does not
+    exist, for example because a build is about to create it again, its nearest existing parent is watched.
 
     Args:
         on_change: called with the paths of the changed files.
@@ -342,7 +348,10 @@ class FileWatch:
 
 
 def _nearest_folder(file: Path) -> tuple[Path, int]:
-    """Return the nearest existing folder above a file, and a number that changes when the folder is replaced."""
+    """Return the nearest existing folder above a file, with its inode number.
+
+    The number changes when the folder is replaced.
+    """
     for folder in file.absolute().parents:
         try:
             status = folder.stat()
@@ -362,7 +371,7 @@ def real(path: Path) -> Path:
 
 
 class FollowedFiles:
-    """The `FileFollower` of a node, which watches the files of the node.
+    """Watches the files of a node (`FileFollower`).
 
     Args:
         reload: the live reload of the run to which the node belongs.
@@ -393,7 +402,9 @@ class FollowedFiles:
         read: Callable[[str], ReadWorld],
         load: Callable[[str], Awaitable[Sequence[Diagnostic]]],
     ) -> None:
-        """Read the file of a world again when it is saved, and load the world unless it has new errors.
+        """Read the file of a world again when it is saved.
+
+        The world is loaded unless it has new errors.
 
         Args:
             world: the world that was read first.
@@ -410,7 +421,10 @@ class FollowedFiles:
         self._reload.bind(call, lambda path: self._spawn(load_saved(path)))
 
     def follow_text(self, text: str, name: str, callback: Callable[[str], None]) -> None:
-        """Register a function for each new text of a description, if this process expanded it from a file."""
+        """Register a function for each new text of a description.
+
+        This has no effect unless this process expanded the text from a file.
+        """
         call = self._reload.descriptions.call_of(text)
         if call is not None and (call, name) not in self._followed:
             self._followed.add((call, name))

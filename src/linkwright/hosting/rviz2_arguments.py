@@ -45,7 +45,7 @@ def asks_for_help(arguments: Sequence[str]) -> bool:
 
 
 def read_viewer_config(arguments: Sequence[str]) -> tuple[RvizConfig, list[Diagnostic]]:
-    """Return the configuration that command-line arguments select, and findings about the arguments.
+    """Return the configuration that command-line arguments select, and findings about them.
 
     As in RViz, an unreadable file is reported, and the default configuration is used.
     """

@@ -1,6 +1,7 @@
 """Handlers for Ctrl-C and other signals.
 
-The first signal ends a run in order, the second one shortens the delays, and the third one ends the run immediately.
+The first signal ends a run in order, the second signal shortens the delays, and the third signal ends the run
+immediately.
 
 Work that must not be interrupted, such as writing the end of a recording, is completed in any case (`unfinished`).
 """
@@ -29,7 +30,8 @@ T = TypeVar("T")
 _DEADLINE_SECONDS = 1.9
 """The seconds after a signal until the program ends, even if it hangs.
 
-Recordings are finished before. After the first signal, a responsive event loop adds the time for processes."""
+Recordings are completed before. After the first signal, a responsive event loop adds the time that processes may take
+to end."""
 _SAME_KEYPRESS_SECONDS = 0.3
 """Signals within these seconds count as one, because a wrapper may forward the Ctrl-C of a terminal."""
 
@@ -45,7 +47,7 @@ class Session(Protocol):
 
     @property
     def visiting(self) -> bool:
-        """Whether code that blocks the event loop is running, which a KeyboardInterrupt may interrupt."""
+        """Whether code is running that blocks the event loop. A KeyboardInterrupt may interrupt it."""
 
     def interrupt(self, reason: str) -> None:
         """End the run because the user interrupted it."""
@@ -54,7 +56,7 @@ class Session(Protocol):
         """Return the maximum seconds that the processes of the run may take to end."""
 
     def kill_all(self) -> None:
-        """Kill the processes of the run immediately; a signal handler calls this method."""
+        """Kill the processes of the run immediately. Called by a signal handler."""
 
 
 class SignalWatch:
@@ -79,7 +81,10 @@ class SignalWatch:
 
     @property
     def exit_status(self) -> int | None:
-        """The exit status after a signal, which is 128 plus its number as in shells; None if there is no signal."""
+        """The exit status after a signal, or None if there was no signal.
+
+        As in shells, the status is 128 plus the signal's number.
+        """
         return None if self.received is None else 128 + self.received
 
     def __enter__(self) -> SignalWatch:  # noqa: PYI034 - typing.Self needs Python 3.11
@@ -136,7 +141,10 @@ class SignalWatch:
         session.loop.call_soon_threadsafe(session.interrupt, interruption_text(signal_number))
 
     def _extend_deadline(self, session: Session) -> None:
-        """Extend the deadline by the time that processes may take, because the event loop is responsive."""
+        """Extend the deadline by the time that processes may take to end.
+
+        This is called when the event loop is responsive.
+        """
         if not self._is_hurried:
             self._end_after(_DEADLINE_SECONDS + session.seconds_to_end())
 
@@ -148,7 +156,10 @@ class SignalWatch:
         self._deadline.start()
 
     def _handle_again(self) -> None:
-        """Send the signal again after its KeyboardInterrupt was lost, with the state before the signal."""
+        """Send the signal again after its KeyboardInterrupt was lost.
+
+        The state before the signal is restored first.
+        """
         signal_number, self.received = self.received, None
         if self._deadline is not None:
             self._deadline.cancel()

@@ -1,4 +1,4 @@
-"""The view of a simulated world, with or without a robot, which needs no launch file."""
+"""The view of a simulated world, with or without a robot, that runs without a launch file."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 _SIMULATOR_NODE = ("gazebo_ros", "gzserver")
 _CLOCK_RATE_HZ = 100.0
-"""The rate in Hz at which simulated time is published, which limits the age of transforms."""
+"""The rate, in Hz, at which simulated time is published. It limits the age of transforms."""
 _SCAN_DISPLAY, _IMAGE_DISPLAY = "rviz_default_plugins/LaserScan", "rviz_default_plugins/Image"
 _ODOMETRY_DISPLAY, _ODOMETRY_TOPIC = "rviz_default_plugins/Odometry", "/odom"
 _DRIVE_PLUGIN = re.compile(
@@ -87,7 +87,9 @@ class SimulatedWorld:
     def of(
         cls, world: str, description: Description, inference: Inference, infer: Callable[[Robot], Inference]
     ) -> SimulatedWorld:
-        """Return a world with a robot on the ground, whose description is completed with inferred values.
+        """Return a world with a robot on the ground.
+
+        The robot's description is completed with inferred values.
 
         Args:
             world: the path of a world file, or the name of a world.
@@ -172,7 +174,7 @@ class SimulatedView(ModelView):
         self._files = descriptions
 
     def _publish(self) -> bool:
-        """Plan the publication of the robot, if there is one, and return whether the view can continue.
+        """Plan the publication of the robot, if any, and return whether the view can continue.
 
         When the files of the robot and the world are saved, they are reloaded.
         """

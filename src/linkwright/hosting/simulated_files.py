@@ -1,4 +1,4 @@
-"""The files of a simulated world and its robot, which are reloaded when the user saves them."""
+"""The files of a simulated world and its robot. They are reloaded when the user saves them."""
 
 from __future__ import annotations
 
@@ -29,7 +29,9 @@ class SimulatedDescriptions(Descriptions):
         self._complete = complete
 
     def read(self, call: XacroCall) -> Any:
-        """Return a robot, model or world that is read from its file; this may run in another thread.
+        """Return a robot, model or world that is read from its file.
+
+        This method may run in another thread.
 
         Raises:
             LinkwrightError: the file is not valid. For a world, only errors that it did not have at the start are
@@ -56,7 +58,7 @@ class SimulatedDescriptions(Descriptions):
         return self.take_text(call, self._complete(description), description.files), description.diagnostics
 
     def take_text(self, call: XacroCall, text: str, files: tuple[Path, ...]) -> str:
-        """Store a simulated text with all the files from which it was created, and return the text."""
+        """Store a simulated text with all files from which it was created, and return the text."""
         self._calls[text] = call
         self._files[call] = files
         return text

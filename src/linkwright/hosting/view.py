@@ -1,4 +1,4 @@
-"""The view of one robot description with sliders for its joints, which needs no launch file."""
+"""A view of one robot description, with sliders for its joints, that runs without a launch file."""
 
 from __future__ import annotations
 
@@ -68,7 +68,9 @@ def run_view(
 
 
 class ModelView:
-    """The view of one description on the running event loop, with robot_state_publisher, sliders and a viewer.
+    """The view of one description on the running event loop.
+
+    Its nodes are robot_state_publisher, the sliders and the viewer.
 
     Args:
         call: the description file and its arguments.
@@ -187,7 +189,9 @@ class ModelView:
     # --- what is shown ----------------------------------------------------------------------------------------
 
     def _publish(self) -> bool:
-        """Plan the publication of the description, now or when its file has been fixed.
+        """Plan the publication of the description.
+
+        If its file is invalid, the description is published when the file has been fixed.
 
         Return whether the view can continue.
         """
@@ -215,7 +219,7 @@ class ModelView:
         return True
 
     def _plan_others(self) -> None:
-        """Plan the remaining nodes, which are the sliders and the viewer."""
+        """Plan the remaining nodes: the sliders and the viewer."""
         self._plan("joint_state_publisher_gui", "joint_state_publisher_gui")
         self._plan(*VIEWER, name="viewer", viewer_config=self._viewer_config, viewer_started=self._set_viewer)
 
@@ -238,7 +242,7 @@ class ModelView:
         self.spawn(self.host.start_planned())
 
     async def _request_arguments(self, call: XacroCall, error: DescriptionError) -> None:
-        """Show a form for arguments in the pages, if the error is that arguments have no value."""
+        """Show a form for arguments in the pages, if the error is that arguments lack values."""
         form = await asyncio.to_thread(argument_form, call, self.finder, error.diagnostics)
         if form is not None and call is self._call and self._text is None:
             self._form = form
@@ -256,7 +260,7 @@ class ModelView:
         self._publish_again(XacroCall(self._call.path, tuple(values.items())))
 
     def _set_fixed_frame(self) -> None:
-        """Set the Fixed Frame to the root link of the robot, unless it is already a link of the robot."""
+        """Set the Fixed Frame to the root link, unless the current frame is a link of the robot."""
         robot = None if self._text is None else self.descriptions.library.read(self._text).robot
         manager = None if self._viewer is None else self._viewer.managers.shared
         if robot is not None and manager is not None and manager.fixed_frame not in robot.links:
@@ -293,7 +297,9 @@ class ModelView:
         self.host.plan(plan)
 
     def _viewer_config(self) -> RvizConfig:
-        """Return a configuration with the displays Grid, RobotModel and TF, and the root link as Fixed Frame.
+        """Return a configuration with the displays Grid, RobotModel and TF.
+
+        The Fixed Frame is the root link.
 
         TF is enabled only if the robot has no visuals.
         """
@@ -310,7 +316,7 @@ class ModelView:
     # --- interface for nodes and signals ------------------------------------------------------------------------
 
     def fail(self, failure: object) -> None:
-        """Record a failure, which sets the exit status to 1 unless the failure is cleared."""
+        """Record a failure. It sets the exit status to 1 unless it is cleared."""
         self._failures.add(failure)
 
     def clear_failure(self, failure: object) -> None:
@@ -318,7 +324,7 @@ class ModelView:
         self._failures.discard(failure)
 
     def spawn(self, coroutine: Coroutine[Any, Any, None]) -> None:
-        """Run a coroutine in the background; the view does not close before it has finished."""
+        """Run a coroutine in the background. The view does not close before it has finished."""
         task = asyncio.get_running_loop().create_task(coroutine)
         self._tasks.add(task)
         task.add_done_callback(self._handle_done)
@@ -374,7 +380,10 @@ def _config_of(rviz: Path) -> RvizConfig:
 
 
 def _first_link(path: Path) -> str:
-    """Return the first link in the text of an invalid description, which is usually the root."""
+    """Return the first link in the text of an invalid description, which is usually the root.
+
+    If there is none, return ``base_link``.
+    """
     try:
         match = _FIRST_LINK.search(path.read_text(encoding="utf-8", errors="replace"))
     except OSError:

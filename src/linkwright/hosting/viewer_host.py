@@ -1,4 +1,4 @@
-"""The viewers in this process, whose pages replace RViz's windows."""
+"""The viewers in this process. Their pages replace RViz's windows."""
 
 from __future__ import annotations
 
@@ -21,7 +21,10 @@ if TYPE_CHECKING:
 _CLOSE_TIMEOUT_SECONDS = 0.8
 
 _RECONNECT_TIMEOUT_SECONDS = 2.5
-"""The seconds to wait for the pages of a previous run; longer than the interval of their attempts to reconnect."""
+"""The seconds to wait for the pages of a previous run.
+
+This is longer than the interval at which the pages try to reconnect.
+"""
 
 _POLL_SECONDS = 0.1
 
@@ -158,7 +161,10 @@ class ViewerHost:
         _open_in_browser(viewer.url)
 
     def _port_for(self, plan: HostedPlan) -> int | None:
-        """Return the port that the user requested, or None if another page of this run uses it already."""
+        """Return the port that the user requested.
+
+        Return None if another page of this run already uses it.
+        """
         port = self._session.options.port
         if port and self._port_owner not in ("", plan.process_name):
             return None
@@ -170,7 +176,7 @@ class ViewerHost:
             self._port_owner = ""
 
     def pop_viewer(self, plan: HostedPlan) -> Viewer:
-        """Remove a viewer from the running viewers, and return it, so that the caller can end it."""
+        """Remove a viewer from the running viewers, and return it. The caller must end it."""
         self._release_port(plan)
         return self._viewers.pop(plan.process_name)[1]
 
@@ -188,11 +194,11 @@ class ViewerHost:
         try:
             await asyncio.wait_for(viewer.close(), _CLOSE_TIMEOUT_SECONDS)
         except asyncio.TimeoutError:
-            self._session.log.warning_line(plan.process_name, "a browser did not let go of its connection in time")
+            self._session.log.warning_line(plan.process_name, "a browser did not close its connection in time")
 
 
 def load_viewer() -> None:
-    """Import the modules of viewers, which takes time and may run in another thread."""
+    """Import the modules of viewers. This takes time, and may run in another thread."""
     import linkwright.viewer.guests
     import linkwright.viewer.viewer  # noqa: F401 - only loaded
 

@@ -34,7 +34,7 @@ def world_config(name: str, x: float = 0.0, y: float = 0.0) -> RvizConfig:
 
 
 def show_world(config: RvizConfig) -> None:
-    """Add a World display to a configuration that has none.
+    """Add a World display to a configuration without one.
 
     If the configuration shows a map, the display is disabled, because both cover the same area.
     """

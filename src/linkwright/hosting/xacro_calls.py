@@ -1,4 +1,4 @@
-"""Descriptions and worlds from files, and the file and arguments from which each text was expanded."""
+"""Descriptions and worlds from files, with the file and the arguments of each text."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class XacroCall:
-    """A call of xacro, which consists of a description file and arguments.
+    """A call of xacro: a description file and its arguments.
 
     Attributes:
         path: the absolute path of the description file.
@@ -57,7 +57,7 @@ class DescriptionError(LinkwrightError):
 
     @property
     def missing(self) -> bool:
-        """Whether the description file itself cannot be read, so that editing it cannot fix the error."""
+        """Whether the description file itself cannot be read. Editing the file cannot fix this."""
         return not self.call.path.is_file() or not os.access(self.call.path, os.R_OK)
 
 
@@ -119,7 +119,7 @@ class Descriptions:
         self._meshes.pop(call, None)
 
     def read(self, call: XacroCall) -> Any:
-        """Return a description or world that is read from its file, without storing it.
+        """Read a description or world from its file and return it, without storing it.
 
         Returns:
             The `Description` of a robot, or the `ReadWorld` of a world.
@@ -154,7 +154,10 @@ class Descriptions:
         self._read_ns[call] = time.time_ns()
 
     def store(self, call: XacroCall, description: Description, text: str | None = None) -> str:
-        """Store a description, and return the text that identifies it, which is by default its own text."""
+        """Store a description, and return the text that identifies it.
+
+        By default, this is the description's own text.
+        """
         text = self.library.store(description, text, self.finder)
         self._files[call] = description.files
         self._calls[text] = call
@@ -180,7 +183,10 @@ class Descriptions:
         return self._calls.get(text)
 
     def warnings_of(self, call: XacroCall) -> tuple[Diagnostic, ...]:
-        """Return the warnings of the last successful expansion of a call; empty before the first one."""
+        """Return the warnings of the last successful expansion of a call.
+
+        The result is empty before the first successful expansion.
+        """
         return self._warnings.get(call, ())
 
     def read_ns(self, call: XacroCall) -> int:
@@ -191,7 +197,7 @@ class Descriptions:
         return self._read_ns.get(call, 0)
 
     def files_of(self, call: XacroCall) -> tuple[Path, ...]:
-        """Return the files that the last successful expansion of a call read, and the mesh files that it uses.
+        """Return the files that the last successful expansion of a call read, and its mesh files.
 
         Before the first successful expansion, the result is only the description file.
         """

@@ -1,4 +1,4 @@
-"""Find colours in class names, such as ``red_ball``."""
+"""Colours in class names, such as ``red_ball``."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def words_of(name: str) -> list[str]:
 
 
 def find_colour_word(name: str) -> str | None:
-    """Return the colour word in a class name, one of `PAINTS`; None if there is none."""
+    """Return the colour word in a class name, one of `PAINTS`, or None if there is none."""
     return next((SPELLINGS[word] for word in words_of(name) if word in SPELLINGS), None)
 
 

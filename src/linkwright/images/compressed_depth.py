@@ -27,7 +27,7 @@ _HEADER = struct.Struct("<iff")
 _RVL_SIZE = struct.Struct("<II")
 _INTEGER_ENCODINGS, _FLOAT_ENCODING = ("16UC1", "mono16"), "32FC1"
 _PACKINGS = {"": "png", "compressedDepth": "png", "compressedDepth png": "png", "compressedDepth rvl": "rvl"}
-"""The packing of the depths by the part of the format after the encoding; older publishers only use PNG."""
+"""The packing of the depths by the part of the format after the encoding. Older publishers only use PNG."""
 
 
 def decode_depth(message: Any) -> RawImage:
@@ -96,7 +96,7 @@ def _decode_rvl(data: NDArray[np.uint8]) -> NDArray[np.uint16]:
 
 
 def _dequantize(numbers: NDArray[np.uint16], first: float, offset: float) -> NDArray[np.float32]:
-    """Return the depths in metres, shape (height, width); NaN for pixels without a depth."""
+    """Return the depths in metres, shape (height, width), with NaN for pixels without a depth."""
     if not (np.isfinite(first) and np.isfinite(offset) and first > 0.0):
         raise BadImageError(
             phrase(
@@ -118,7 +118,7 @@ _MAX_GROUPS = 10
 
 
 class BadRvlError(ValueError):
-    """Raised when a stream is malformed; the text describes the error."""
+    """Raised when a stream is malformed, with a description of the error."""
 
 
 def decoded(stream: NDArray[np.uint8], pixels: int) -> NDArray[np.uint16]:

@@ -1,4 +1,4 @@
-"""Convert sensor_msgs/msg/Image to 8-bit grey, RGB or RGBA pixels.
+"""The conversion of sensor_msgs/msg/Image to 8-bit grey, RGB or RGBA pixels.
 
 Luma and chroma of video cameras are converted (ITU-R BT.601, studio range), and images of a Bayer filter demosaiced.
 Grey values of more than 8 bits are scaled by a range, as by RViz's Normalize Range.
@@ -101,7 +101,7 @@ def _reorder_channels(pixels: Pixels, order: Sequence[int]) -> Pixels:
 
 
 def has_range(encoding: str) -> bool:
-    """Return whether RViz determines a black and white limit for an encoding, because it has more than 8 bits."""
+    """Return whether an encoding has more than 8 bits, so that RViz determines limits for black and white."""
     return encoding in _RANGED_TYPES
 
 
@@ -188,7 +188,7 @@ class Range:
 
 
 class RangeFinder:
-    """Determines the range of values for the images of a stream.
+    """The search for the range of values of the images of a stream.
 
     Attributes:
         fixed: the range to use; None to determine it from the images.

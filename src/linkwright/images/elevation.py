@@ -1,4 +1,4 @@
-"""Read elevation models: TIFF files with 64-bit floating-point numbers, which Pillow does not read."""
+"""Elevation models: TIFF files with 64-bit floating-point numbers, which Pillow does not read."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _MAX_PIXELS = 1 << 26
 
 
 def read_elevation(path: Path) -> Array:
-    """Read the heights, in m, of a TIFF with uncompressed strips of floating-point numbers of 32 or 64 bits.
+    """Read the heights in m of a TIFF with uncompressed strips of 32-bit or 64-bit floating-point numbers.
 
     The first row is at the top.
 
@@ -29,17 +29,17 @@ def read_elevation(path: Path) -> Array:
     data = path.read_bytes()
     order = {b"II*\0": "<", b"MM\0*": ">"}.get(data[:4])
     if order is None:
-        raise ValueError("no TIFF")
+        raise ValueError("not a TIFF file")
     try:
         tags = _read_tags(data, order)
         width, height, bits = tags[_WIDTH][0], tags[_HEIGHT][0], tags[_BITS][0]
         strips = zip(tags[_OFFSETS], tags[_COUNTS], strict=True)
         raw = b"".join(data[start : start + count] for start, count in strips)
     except (KeyError, IndexError, struct.error) as error:
-        raise ValueError("no table of heights") from error
+        raise ValueError("the file has no table of heights") from error
     layout = (tags.get(_FORMAT, [1])[0], tags.get(_COMPRESSION, [1])[0], tags.get(_SAMPLES, [1])[0])
     if layout != (_FLOAT_FORMAT, _UNCOMPRESSED, 1) or bits not in (32, 64) or not 0 < width * height <= _MAX_PIXELS:
-        raise ValueError("no uncompressed numbers")
+        raise ValueError("the heights are not uncompressed floating-point numbers")
     values: Any = np.frombuffer(raw, dtype=f"{order}f{bits // 8}", count=width * height)
     return np.asarray(values, dtype=np.float64).reshape(height, width)
 

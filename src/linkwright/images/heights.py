@@ -1,4 +1,4 @@
-"""Read the heights of a heightmap from the grey values of an image."""
+"""The heights of a heightmap, from the grey values of an image."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from linkwright.geometry.arrays import Array
 from linkwright.images.elevation import read_elevation
 
 _MAX_ROWS = 1025
-"""The maximum number of heights along a side; of a larger image only every n-th row and column is used."""
+"""The maximum number of heights along a side. Of a larger image, only every n-th row and column is used."""
 
 
 @dataclass(frozen=True, slots=True)
 class Heights:
     """Heights from 0 to 1; see `read_heights` for the scale.
 
-    The first row has the minimum y; the image's rows are in reverse order.
+    The first row has the minimum y, so the image's rows are in reverse order.
     """
 
     values: Array

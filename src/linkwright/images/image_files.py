@@ -113,14 +113,14 @@ def file_format(start: bytes) -> str:
 def unpacked(message: Any) -> RawImage:
     """Return the decoded image of a message of the transport ``compressed``.
 
-    The encoding follows from the file. For 16-bit pixels (depths), the format of the message names the encoding; a JPEG
+    The encoding follows from the file. For 16-bit pixels (depths), the format of the message names the encoding. A JPEG
     contains only their upper 8 bits, as in compressed_image_transport.
 
     Args:
-        message: sensor_msgs/msg/CompressedImage; its format begins with the encoding of the raw image.
+        message: sensor_msgs/msg/CompressedImage, whose format begins with the encoding of the raw image.
 
     Raises:
-        BadImageError: see `file_pixels`.
+        BadImageError: see `decode_file`.
     """
     pixels = decode_file(np.frombuffer(message.data, np.uint8))
     encoding = encoding_of(message)
@@ -140,7 +140,7 @@ def encoding_of(message: Any) -> str:
 
 
 def _to_array(file: Any) -> NDArray[Any]:
-    """Return the pixels of a file, converted to one of the array types that `file_pixels` returns."""
+    """Return the pixels of a file, converted to one of the array types that `decode_file` returns."""
     if file.mode in ("I;16", "L", "RGB", "RGBA"):
         return np.asarray(file)
     has_alpha = file.mode in ("LA", "PA") or "transparency" in file.info

@@ -1,7 +1,7 @@
 """The sources of a topic's images, by the transports of image_transport.
 
 A transport other than raw has its own topic below the topic of the image, such as `/camera/image/compressed`. RViz
-takes the transport from the last part of a topic if there is no property for it.
+derives the transport from the last part of a topic if there is no property for it.
 """
 
 from __future__ import annotations
@@ -45,14 +45,14 @@ class ImageSource:
         return cls(topic, hint if topic and hint else RAW)
 
     def with_types(self, types: Collection[str]) -> ImageSource:
-        """Return the source according to the message types of the topic, if its name does not give the transport."""
+        """Return the source with the transport that the message types show, if the topic does not name it."""
         if self.transport == RAW and _COMPRESSED_IMAGE in types and _IMAGE not in types:
             return ImageSource(self.base, COMPRESSED, is_renamed=True)
         return self
 
     @property
     def topic(self) -> str:
-        """The topic of the messages; empty if no topic is set."""
+        """The topic of the messages, or an empty string if no topic is set."""
         return self.base if self.transport == RAW or self.is_renamed else f"{self.base}/{self.transport}"
 
     def transport_of(self, message: Any) -> str:
@@ -76,7 +76,7 @@ class ImageSource:
 
 
 class Unpacker:
-    """Converts the messages of a transport to raw images.
+    """A converter of the messages of a transport to raw images.
 
     It keeps the latest image, which may be shown more than once.
     """

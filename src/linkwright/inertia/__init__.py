@@ -1,4 +1,4 @@
-"""Mass properties of links, which are computed from shapes, compared with the file, and written to it."""
+"""Mass properties of links: computed from shapes, compared with the file, and written to it."""
 
 from linkwright.loading.deferred import deferred
 from linkwright.loading.lean_typing import TYPE_CHECKING
@@ -18,4 +18,4 @@ __getattr__ = deferred(
         "mesh_library": ("MeshLibrary",),
     },
 )
-"""Names that are imported on first use; most need numpy, and a check uses only the mesh library."""
+"""Names that are imported on first use, because most need numpy, and a check uses only the mesh library."""

@@ -50,7 +50,7 @@ def inertial_block(properties: MassProperties, indent: str = "", step: str = "  
 
 
 def empty_tag(tag: str, attributes: Attributes) -> str:
-    """Return the self-closing tag of an element; values are numbers and need no escaping."""
+    """Return the self-closing tag of an element with numbers as values, which need no escaping."""
     return f"<{tag} " + " ".join(f'{name}="{value}"' for name, value in attributes) + "/>"
 
 

@@ -15,7 +15,7 @@ from linkwright.urdf import Collision, Link, Mesh, Visual
 ShapeKind = Literal["collision", "visual"]
 
 DEFAULT_DENSITY = 1000.0
-"""The density of water in kg/m3; most links of robots have a similar mean density, including their cavities."""
+"""The density of water in kg/m3. Most links of robots have a similar mean density, including their cavities."""
 
 
 _MIN_VOLUME = 1e-18

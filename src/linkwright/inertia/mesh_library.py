@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 _CACHE_SIZE = 256 << 20
 """The maximum size in bytes of the meshes that are cached across descriptions."""
 _MAX_SMALL_FILE, _MAX_SMALL_FILES = 100_000, 500_000
-"""The maximum bytes of a file, and of all files in a process, to read without numpy, which is faster beyond."""
+"""The maximum bytes of a file, and of all files in a process, to read without numpy. Beyond, numpy is faster."""
 
 
 class MeshLibrary:
@@ -66,7 +66,7 @@ class MeshLibrary:
         return path_or_error
 
     def read(self, path: Path) -> TriangleMesh:
-        """Return the triangles of a mesh file, which is read at most once.
+        """Return the triangles of a mesh file, reading the file at most once.
 
         Raises:
             LinkwrightError: the same errors as `read_mesh`.
@@ -108,8 +108,8 @@ class MeshLibrary:
     def _checked(self, mesh: Mesh, element: Element | None) -> Path:
         """Return the path of a mesh's file.
 
-        LinkwrightError: the same errors as `locate`, or INR103 if the scale is out of range.
-            LinkwrightError: the same errors as `locate`; INR103, the scale is out of range.
+        Raises:
+            LinkwrightError: the same errors as `locate`, or INR103 if the scale is out of range.
         """
         path = self.locate(mesh.filename, element)
         if max(map(abs, mesh.scale)) > MAX_COORDINATE:
@@ -161,7 +161,7 @@ _SMALL_MESHES: dict[tuple[str, int, int], SmallMesh] = {}
 def _read_small_cached(real_path: str, kind: str) -> SmallMesh | None:
     """Return the triangles of a small file without unusual content, read without arrays.
 
-    The result is None for other files, which must be read with arrays; this also reports their errors.
+    The result is None for other files. They must be read with arrays, which also reports their errors.
     """
     try:
         file_status = os.stat(real_path)  # noqa: PTH116 - as above

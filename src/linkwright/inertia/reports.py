@@ -70,7 +70,7 @@ def as_text(
 
 
 def _table(rows: list[tuple[str, ...]]) -> Iterator[str]:
-    """Iterate over the lines of a table with its header; cells are left-aligned."""
+    """Yield the lines of a table with its header and left-aligned cells."""
     lines = [tuple(map(localized, _COLUMN_TITLES)), *rows]
     widths = [max(map(shown_width, column)) for column in zip(*lines, strict=True)]
     for line in lines:

@@ -20,7 +20,7 @@ _TRAILING_COMMENTS = lazy_pattern(r"(?:[ \t]*<!--(?:(?!-->).)*-->)*(?=[ \t]*\r?\
 """Comments that follow a start tag on its line, and belong to the tag."""
 
 EXPRESSION = lazy_pattern(r"\$[{(](?!find\b)")
-"""An expression whose value may change; a package's folder does not change the shape of a mesh."""
+"""An expression whose value may change. A package's folder does not change the shape of a mesh."""
 
 
 class NotWritableError(Exception):

@@ -19,11 +19,11 @@ from linkwright.urdf.bodies import Bodies
 
 _DOUBTFUL_RATIO = 10.0
 _ROUGH_RATIO = 2.0
-"""The ratios to the moments of a solid of the same shapes above which moments are doubtful, and rough."""
+"""The thresholds for doubtful and for rough moments, as ratios to the moments of a solid with the same shapes."""
 
 _DOUBTFUL_DISTANCE = 0.5
 _ROUGH_DISTANCE = 0.1
-"""The distances between the centres of mass that are doubtful, and rough, as fractions of the diagonal."""
+"""The thresholds for doubtful and for rough centres of mass, as distances in fractions of the diagonal."""
 
 
 class Standing(Enum):
@@ -62,7 +62,7 @@ class Verdict:
 
     @property
     def place(self) -> tuple[int, float]:
-        """The sort key, which puts the worst verdict first."""
+        """The sort key that puts the worst verdict first."""
         return _ORDER.index(self.standing), -self.badness
 
 

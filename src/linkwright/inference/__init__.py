@@ -1,4 +1,4 @@
-"""Infer the elements that a description lacks for simulation, with reasons; they are added on request."""
+"""The inference of the elements that a description lacks for simulation, with reasons."""
 
 from linkwright.inference.infer import infer
 from linkwright.inference.model import Drive, DriveKind, Finding, Inference, Wheel

@@ -1,4 +1,4 @@
-"""Add inferred elements to a description in memory."""
+"""The addition of inferred elements to a description in memory."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from linkwright.inference.model import Inference
 from linkwright.xmltree import Document, Element
 
 SINGLE = ("inertial", "axis")
-"""Elements that a link or joint can have only once; a new one replaces the old one."""
+"""Elements that a link or joint can have only once. A new one replaces the old one."""
 
 
 def complete_description(document: Document, inference: Inference) -> Document:
@@ -37,7 +37,7 @@ def complete_description(document: Document, inference: Inference) -> Document:
 
 
 def _with_children(element: Element, added: dict[int, list[Element]]) -> Element:
-    """Return a copy of an element with its new children; the element itself if there are none."""
+    """Return a copy of an element with its new children, or the element itself if there are none."""
     new_children = added.pop(id(element), [])
     if not new_children and element.tag != "robot":
         return element

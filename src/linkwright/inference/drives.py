@@ -1,4 +1,4 @@
-"""Infer the kind of drive from a robot's wheels.
+"""The inference of the kind of drive from a robot's wheels.
 
 If the kind cannot be inferred, a finding names the option that sets it.
 """
@@ -13,13 +13,13 @@ from linkwright.inference.model import Drive, DriveKind, Wheel
 from linkwright.inference.undercarriage import Survey, Undercarriage
 
 _MAX_OFFSET = 0.06
-"""The maximum offset along x between the wheels of a pair, as a share of their distance."""
+"""The maximum offset along x between the wheels of a pair, as a fraction of their distance."""
 
 _MAX_RADIUS_DIFFERENCE = 0.05
-"""The maximum difference between the radii of a pair, as a share of the larger radius."""
+"""The maximum difference between the radii of a pair, as a fraction of the larger radius."""
 
 _SUPPORT_RADIUS_SHARE = 0.8
-"""A wheel with less than this share of another pair's radius may only support the robot."""
+"""A wheel with less than this fraction of another pair's radius may only support the robot."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,7 +103,7 @@ def _drive_from_pairs(
 
 
 def _suggested_kind(survey: Survey, fixed_pairs: list[Pair], steered_pairs: list[Pair]) -> DriveKind | None:
-    """Return the kind of drive that the wheel pairs suggest; None if they suggest several kinds or none."""
+    """Return the kind of drive that the wheel pairs suggest, or None if they suggest several kinds or none."""
     if steered_pairs:
         return "ackermann" if len(steered_pairs) == 1 and fixed_pairs else None
     if not fixed_pairs:
@@ -129,7 +129,7 @@ def _why_unknown(fixed_pairs: list[Pair], steered_pairs: list[Pair]) -> Phrase:
 
 
 def _missing_wheels(kind: DriveKind, fixed_pairs: list[Pair], steered_pairs: list[Pair]) -> Phrase | None:
-    """Return what the wheels lack for a kind of drive; None if they lack nothing."""
+    """Return the requirement of a kind of drive that the wheels do not meet, or None."""
     if kind == "ackermann" and len(steered_pairs) != 1:
         return phrase(
             "it needs one pair of wheels that are steered by vertical joints, but there are {count}",
@@ -150,7 +150,7 @@ def _missing_wheels(kind: DriveKind, fixed_pairs: list[Pair], steered_pairs: lis
 def _drive_reason(drive: Drive) -> Phrase:
     names = quoted_names([wheel.joint for pair in zip(drive.left, drive.right, strict=True) for wheel in pair])
     size = phrase(
-        "{separation:.4g} m apart, with wheels of {diameter:.4g} m",
+        "{separation:.4g} m apart and {diameter:.4g} m in diameter",
         separation=drive.separation,
         diameter=2.0 * drive.radius,
     )

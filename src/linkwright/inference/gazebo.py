@@ -28,10 +28,10 @@ _PLUGIN_GROUP = "linkwright.simulated_plugins"
 _SIMULATOR_PATTERN = re.compile(r"gz|gazebo|ign|mujoco|isaac", re.IGNORECASE)
 
 _MAX_ACCELERATION = 1.0
-"""The maximum acceleration of wheels in m/s2; with more, they would spin on the spot."""
+"""The maximum acceleration of wheels in m/s2. With more, they would spin on the spot."""
 
 _CASTER_FRICTION = "0.0"
-"""The friction of a caster: it is simulated without its swivel, so it slides where it would roll."""
+"""The friction of a caster. It is simulated without its swivel, so it slides where a real one would roll."""
 
 _GRAVITY = 9.81
 _MOTOR_RIM_SPEED = 1.0
@@ -46,15 +46,16 @@ _UPDATE_RATE = "50"
 
 
 def own_drive(robot: Robot) -> Element | None:
-    """Return the plugin of the description that drives the robot; None if there is none that works here."""
+    """Return the plugin of the description that drives the robot, or None if no such plugin works here."""
     return next((plugin for plugin in _drive_plugins(robot) if _is_working(plugin)), None)
 
 
 def idle_drive(robot: Robot) -> Element | None:
-    """Return a plugin or ``<ros2_control>`` of the description that should drive the robot but has no effect here.
+    """Return an element of the description that should drive the robot but has no effect here, or None.
 
-    Examples are controllers of ROS 1, controllers with a missing parameter file, and a ``<ros2_control>`` for a
-    simulator without the plugin that runs it; that plugin is often in a separate file for launches.
+    The element is a plugin or a ``<ros2_control>``. Examples are controllers of ROS 1, controllers with a missing
+    parameter file, and a ``<ros2_control>`` for a simulator without the plugin that runs it. Such a plugin is often in
+    a separate file for launches.
     """
     idle_plugin = next((plugin for plugin in _drive_plugins(robot) if not _is_working(plugin)), None)
     if idle_plugin is not None:
@@ -74,7 +75,7 @@ def idle_drive(robot: Robot) -> Element | None:
 
 
 def commanded_joints(robot: Robot) -> frozenset[str]:
-    """Return the joints that ``<ros2_control>``, or ``<transmission>`` as in ROS 1, lets controllers command."""
+    """Return the joints that controllers can command by ``<ros2_control>`` or, as in ROS 1, ``<transmission>``."""
     return frozenset(
         joint.attributes.get("name", "")
         for extension in robot.extensions

@@ -1,4 +1,4 @@
-"""Infer the elements that a description lacks to be driven in a simulated world."""
+"""The inference of the elements that a description lacks to be driven in a simulated world."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def infer(robot: Robot, meshes: MeshLibrary, *, kind: DriveKind | None = None, w
 
 
 class _InferenceBuilder:
-    """Builds the inference of a robot after its drive has been determined."""
+    """A builder of the inference of a robot whose drive has been determined."""
 
     def __init__(
         self,
@@ -157,7 +157,7 @@ class _InferenceBuilder:
         if drive.kind != "joints":
             yield from self._reversed_axes(drive)
             message = phrase(
-                "'{robot}' gets a {kind} drive: {why}",
+                "the inferred drive of '{robot}' is of the kind '{kind}': {why}",
                 robot=self._robot.name,
                 kind=drive.kind,
                 why=self._verdict.reason,
@@ -231,7 +231,7 @@ class _InferenceBuilder:
             yield Finding(_diagnostic_at(element, "DRIVE112", message), self._robot.element, (gazebo.slippery(name),))
 
     def _rolls_freely(self, link: str) -> bool:
-        """Return whether a caster rolls about its own axis and swivels about a vertical axis, as real casters do."""
+        """Return whether a caster rolls about its own axis and swivels about a vertical axis."""
         wheel = self._wheels.get(link)
         return wheel is not None and wheel.width is not None and wheel.steering is not None
 
@@ -257,7 +257,7 @@ def _diagnostic_at(
     severity: Severity = Severity.INFO,
     hint: Phrase | None = None,
 ) -> Diagnostic:
-    """Return a diagnostic at the position of an element; without a position if the element is None."""
+    """Return a diagnostic at the position of an element, or without a position if the element is None."""
     if element is None:
         return Diagnostic(code, message, None, severity, hint=hint)
     return Diagnostic(code, message, element.span(), severity, hint=hint, source=element.source)

@@ -1,4 +1,4 @@
-"""Infer the collisions and masses that links need for simulation.
+"""The inference of the collisions and masses that links need for simulation.
 
 Links that move as one body are considered together: a link without a mass may be fixed to a link that has one. If some
 links have collisions, only wheels, casters and the chassis are assumed to lack them by mistake.
@@ -26,7 +26,7 @@ from linkwright.urdf import Box, Capsule, Cylinder, Inertial, Link, Mesh, Sphere
 from linkwright.xmltree import Element
 
 HOLLOW_DENSITY = 300.0
-"""The density in kg/m3 of a mobile robot's links except its wheels: a box with air, boards and batteries.
+"""The density in kg/m3 of a mobile robot's links except its wheels, as of a box with air, boards and batteries.
 
 The robots that tutorials use have 200 to 700 kg/m3.
 """
@@ -36,10 +36,10 @@ _MAX_MASS = 1000.0
 """The minimum and maximum of an inferred mass, in kg."""
 
 _SHAPELESS_BODY = MassProperties(0.01, np.zeros(3), np.eye(3) * 1e-5)
-"""The mass properties of a moving body without shapes: those of a ball of 10 g with a radius of 5 cm."""
+"""The mass properties of a moving body without shapes: a ball of 10 g with a radius of 5 cm."""
 
 _MAX_MESH_VERTICES = 20_000
-"""The maximum number of vertices of a mesh for a collision; a larger mesh is replaced by the box around it."""
+"""The maximum number of vertices of a mesh for a collision. A larger mesh is replaced by the box around it."""
 
 
 def missing_collisions(survey: Survey, wheels: Mapping[str, Wheel], casters: Iterable[str]) -> Iterator[Finding]:
@@ -92,7 +92,7 @@ def _link_collisions(survey: Survey, link: Link, wheel: Wheel | None) -> Iterato
 def _visual_to_collision(
     visual: Shape, link: Link, wheel: Wheel | None, survey: Survey
 ) -> tuple[Element, Phrase] | None:
-    """Return a collision for a visual, and its description; None if its mesh cannot be read."""
+    """Return a collision for a visual, with its description, or None if the visual's mesh cannot be read."""
     geometry = visual.geometry
     if not isinstance(geometry, Mesh):
         shape_name = term(type(geometry).__name__.lower())

@@ -48,10 +48,10 @@ class Drive:
 
     Attributes:
         kind: the kind of drive.
-        left: the driven wheels on the left, the foremost first; empty for `joints`.
+        left: the driven wheels on the left, the foremost first; empty for ``joints``.
         right: the driven wheels on the right, in the order of the opposite wheels in `left`.
-        steered: for `ackermann`, the steered wheels, left and right.
-        separation: the distance between the left and the right driven wheels in m; 0 for `joints`.
+        steered: for ``ackermann``, the steered wheels, left and right.
+        separation: the distance between the left and the right driven wheels in m; 0 for ``joints``.
     """
 
     kind: DriveKind
@@ -62,7 +62,7 @@ class Drive:
 
     @property
     def radius(self) -> float:
-        """The mean radius of the driven wheels in m; 0 for `joints`."""
+        """The mean radius of the driven wheels in m, or 0 for ``joints``."""
         wheels = (*self.left, *self.right)
         return sum(wheel.radius for wheel in wheels) / len(wheels) if wheels else 0.0
 

@@ -1,4 +1,4 @@
-"""Measure the shapes of links: how low they reach, and whether they are round about an axis."""
+"""The measurement of links' shapes: their lowest points, and whether they are round about an axis."""
 
 from __future__ import annotations
 
@@ -18,20 +18,20 @@ from linkwright.urdf import Box, Capsule, Collision, Cylinder, Link, Mesh, Spher
 Shape = Collision | Visual
 
 _PARALLEL_COSINE = cos(radians(5.0))
-"""The cosine from which two axes count as parallel: 5 degrees, because people write 1.57 for a right angle."""
+"""The cosine from which two axes count as parallel: 5 degrees, because many files contain 1.57 for a right angle."""
 
 _MAX_OFF_AXIS = 0.1
-"""The maximum distance of the middle of a round shape from its axis, as a share of its radius."""
+"""The maximum distance of the middle of a round shape from its axis, as a fraction of its radius."""
 
 _MIN_ROUNDNESS = 0.92
-"""The minimum reach of a round mesh in any direction across its axis, as a share of its maximum reach.
+"""The minimum reach of a round mesh in any direction across its axis, as a fraction of its maximum reach.
 
 A regular dodecagon is round, a square is not.
 """
 
 _DIRECTION_COUNT = 36
 _MAX_WIDTH = 4.0
-"""The maximum length of a wheel in radii; a longer round shape is a roller or a shaft."""
+"""The maximum length of a wheel in radii. A longer round shape is a roller or a shaft."""
 
 
 class RoundShape(NamedTuple):
@@ -142,7 +142,7 @@ def _visuals(links: list[tuple[Link, Placement]]) -> Iterator[tuple[Shape, Place
 def _measure_round(
     shape: Shape, frame: Placement, point: Vector3, axis: Vector3, meshes: MeshLibrary
 ) -> RoundShape | None:
-    """Return a shape with its size about an axis; None if it is not round about the axis."""
+    """Return a shape with its size about an axis, or None if it is not round about the axis."""
     geometry = shape.geometry
     if isinstance(geometry, Mesh):
         return _measure_round_mesh(shape, frame, point, axis, meshes)
@@ -221,7 +221,7 @@ def _points_from(shape: Shape, frame: Placement, point: Vector3, meshes: MeshLib
 
 
 def _split_along(vector: Vector3, axis: Vector3) -> tuple[float, float]:
-    """Return the components of a vector along an axis, which has a sign, and perpendicular to it."""
+    """Return the signed component of a vector along an axis, and the length of the perpendicular component."""
     along = dot(vector, axis)
     return along, length(subtract_vectors(vector, scaled(axis, along)))
 

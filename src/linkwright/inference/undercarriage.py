@@ -1,4 +1,4 @@
-"""Find the undercarriage of a robot: wheels, casters, and the height of the ground.
+"""The undercarriage of a robot: wheels, casters, and the height of the ground.
 
 All joints are at zero. Positions are in the base frame: that of ``base_link``, or of the root if there is no such link.
 By REP 103, its x points forward, y to the left and z up.
@@ -62,7 +62,7 @@ class Undercarriage:
 
 
 class Survey:
-    """Collects the facts about a robot's links and joints.
+    """The facts about a robot's links and joints.
 
     Args:
         robot: the robot.
@@ -206,7 +206,7 @@ class Survey:
         return bool(_CASTER_PATTERN.search(names)) or (is_endless(steering) and not _STEERING_PATTERN.search(names))
 
     def _sliding_links(self, ground: float) -> Iterator[str]:
-        """Yield the links that slide: they touch the ground and are fixed to the base, and are not the chassis."""
+        """Yield the links that slide: links except the chassis that touch the ground and are fixed to the base."""
         for name, height in self.heights.items():
             root = self.bodies.of(self.robot.root)
             if root is not None and name in root.frames and name != self.chassis and height - ground <= _MAX_GROUND_GAP:
@@ -214,7 +214,7 @@ class Survey:
 
     @cached_property
     def chassis(self) -> str:
-        """The link of the root's body that has the largest shapes; empty if none has shapes."""
+        """The name of the link of the root's body with the largest shapes, or an empty string without shapes."""
         root = self.bodies.of(self.robot.root)
         names = [] if root is None else [name for name in root.links if shapes_of(self.robot.links[name])]
         return max(names, key=lambda name: self._volume(self.robot.links[name]), default="")

@@ -1,4 +1,4 @@
-"""Write inferences to the source files of a description, and leave everything else unchanged."""
+"""The writing of inferences to the source files of a description, without other changes."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def write_inference(robot: Robot, inference: Inference) -> Written:
 
 
 class _Writer:
-    """Determines the edits that write an inference.
+    """A writer that determines the edits for an inference.
 
     Args:
         robot: the robot, read from a file, directly or through xacro.

@@ -1,4 +1,4 @@
-"""Kinematics of drives: the motion of a robot from the rotation of its wheels, and the inverse.
+"""Kinematics of drives: from wheel rotation to the robot's motion, and the inverse.
 
 The robot moves forward (x) and to the left (y), and rotates counterclockwise about z. A function of velocities in m/s
 and rad/s also works with distances in m and angles in rad, if the steering angles do not change during the motion.
@@ -39,7 +39,7 @@ class DifferentialDrive:
 
 @dataclass(frozen=True, slots=True)
 class MecanumDrive:
-    """A drive of four wheels with rollers at 45 degrees, which form an X when seen from above.
+    """A drive of four wheels with rollers at 45 degrees that form an X, seen from above.
 
     Attributes:
         arm: half the sum of the wheelbase and the track, in m.
@@ -79,7 +79,9 @@ class MecanumDrive:
 
 @dataclass(frozen=True, slots=True)
 class CarDrive:
-    """A drive with a driven and a steered axle; its frame is in the middle of the driven axle.
+    """A drive with a driven axle and a steered axle.
+
+    Its frame is in the middle of the driven axle.
 
     Attributes:
         wheelbase: the distance between the axles in m, positive.
@@ -94,7 +96,10 @@ class CarDrive:
     radius: float
 
     def steering_angle(self, forward: float, angular: float) -> float:
-        """Return the angle of a virtual wheel in the middle of the steered axle in rad; 0 at rest."""
+        """Return the angle, in rad, of a virtual wheel in the middle of the steered axle.
+
+        The angle is 0 at rest.
+        """
         return 0.0 if forward == 0.0 else atan(angular * self.wheelbase / forward)
 
     def steering_angles(self, angle: float) -> tuple[float, float]:

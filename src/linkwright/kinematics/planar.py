@@ -1,4 +1,4 @@
-"""Poses in a plane, which are changed by motions."""
+"""Poses in a plane, and their change by motions."""
 
 from __future__ import annotations
 

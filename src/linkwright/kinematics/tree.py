@@ -302,7 +302,7 @@ class UnknownNameError(LinkwrightError):
 
 
 class KinematicTree:
-    """The kinematic tree of a robot, which computes link frames from joint positions.
+    """The kinematic tree of a robot, for computing link frames from joint positions.
 
     Revolute, continuous and prismatic joints move. A mimic joint follows the joint at the end of its chain of mimics;
     if that chain ends in a cycle or at a joint that does not exist, the joint moves independently. A planar joint does
@@ -407,8 +407,8 @@ class KinematicTree:
         follower = self._relations.get(name)
         if follower is not None:
             hint = phrase("it mimics '{leader}': give the position of that joint", leader=follower.leader)
-            return UnknownNameError("KIN102", "joint with a position of its own called", name, (), hint)
+            return UnknownNameError("KIN102", "independent joint", name, (), hint)
         if name in self._types and self._types[name] not in MOVING:
             hint = phrase("it is {types} and does not move", types=self._types[name])
-            return UnknownNameError("KIN102", "joint with a position of its own called", name, (), hint)
+            return UnknownNameError("KIN102", "independent joint", name, (), hint)
         return UnknownNameError("KIN101", "joint", name, self.joint_names)

@@ -35,6 +35,7 @@ class Cursor:
         token: the tag at the place; None for texts.
         attribute: the attribute whose name or value contains the place.
         typed: the part of the name or value before the place.
+        elements: the start tags of `tags`.
     """
 
     spot: Spot
@@ -43,6 +44,7 @@ class Cursor:
     token: Token | None = None
     attribute: TokenAttribute | None = None
     typed: str = ""
+    elements: tuple[Token, ...] = ()
 
     @property
     def in_expression(self) -> bool:
@@ -56,6 +58,11 @@ class Cursor:
         return None if found is None else (found[1], found[2] if found[2] is not None else "")
 
     @property
+    def macro(self) -> Token | None:
+        """The start tag of the innermost macro definition around the place, or None."""
+        return next((element for element in reversed(self.elements) if element.name == "xacro:macro"), None)
+
+    @property
     def word(self) -> str:
         """The name in an expression that is typed at the place."""
         found = re.search(r"[A-Za-z_][\w.]*$", self.typed)
@@ -65,35 +72,40 @@ class Cursor:
 def cursor_at(text: str, offset: int) -> Cursor:
     """Return the place of an offset in a text, which may be incomplete."""
     tags: list[str] = []
+    elements: list[Token] = []
     for token in tokens(text):
         inside = token.start < offset < token.end or (offset == token.end and not token.is_closed)
         if inside and token.kind is Kind.END:
-            return Cursor(Spot.CLOSING_TAG, offset, tuple(tags), token, typed=text[token.start + 2 : offset])
+            typed = text[token.start + 2 : offset]
+            return Cursor(Spot.CLOSING_TAG, offset, tuple(tags), token, None, typed, tuple(elements))
         if inside and token.kind is Kind.START:
-            return _in_tag(text, offset, token, (*tags, token.name))
+            return _in_tag(text, offset, token, (*tags, token.name), (*elements, token))
         if inside and token.kind is not Kind.TEXT:
             return Cursor(Spot.ELSEWHERE, offset, tuple(tags))
         if offset <= token.start or (token.kind is Kind.TEXT and offset <= token.end):
             break
         if token.kind is Kind.START and token.name and not token.is_whole:
             tags.append(token.name)
+            elements.append(token)
         elif token.kind is Kind.END and token.name in tags:
             while tags.pop() != token.name:
                 pass
+            del elements[len(tags) :]
     begin = max(text.rfind(">", 0, offset), text.rfind("<", 0, offset)) + 1
-    return Cursor(Spot.TEXT, offset, tuple(tags), typed=text[begin:offset])
+    return Cursor(Spot.TEXT, offset, tuple(tags), typed=text[begin:offset], elements=tuple(elements))
 
 
-def _in_tag(text: str, offset: int, token: Token, tags: tuple[str, ...]) -> Cursor:
+def _in_tag(text: str, offset: int, token: Token, tags: tuple[str, ...], elements: tuple[Token, ...]) -> Cursor:
     if offset <= token.name_start + len(token.name):
-        return Cursor(Spot.TAG, offset, tags[:-1], token, typed=text[token.name_start : offset])
+        typed = text[token.name_start : offset]
+        return Cursor(Spot.TAG, offset, tags[:-1], token, typed=typed, elements=elements[:-1])
     for attribute in token.attributes():
         if attribute.start <= offset <= attribute.start + len(attribute.name):
-            return Cursor(Spot.ATTRIBUTE, offset, tags, token, attribute, text[attribute.start : offset])
+            return Cursor(Spot.ATTRIBUTE, offset, tags, token, attribute, text[attribute.start : offset], elements)
         if attribute.value is not None and attribute.value_start <= offset <= attribute.value_end:
             typed = text[attribute.value_start : offset]
-            return Cursor(Spot.VALUE, offset, tags, token, attribute, typed)
-    return Cursor(Spot.ATTRIBUTE, offset, tags, token)
+            return Cursor(Spot.VALUE, offset, tags, token, attribute, typed, elements)
+    return Cursor(Spot.ATTRIBUTE, offset, tags, token, elements=elements)
 
 
 def name_at(text: str, offset: int) -> tuple[str, int] | None:

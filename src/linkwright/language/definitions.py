@@ -22,8 +22,9 @@ class NameKind(Enum):
     MATERIAL = "material"
 
 
+_MACRO = "xacro:macro"
 _TAGS = {
-    "xacro:macro": NameKind.MACRO,
+    _MACRO: NameKind.MACRO,
     "xacro:property": NameKind.PROPERTY,
     "xacro:arg": NameKind.ARGUMENT,
     "link": NameKind.LINK,
@@ -43,6 +44,7 @@ class NameDefinition:
         file: the file.
         start: the offset of the name in the text of the file.
         detail: the parameters of a macro, the value of a property, the default of an argument, the type of a joint.
+        owner: the macro whose content defines the name; empty outside of macros, and for properties of a wider scope.
     """
 
     kind: NameKind
@@ -50,6 +52,7 @@ class NameDefinition:
     file: Path
     start: int
     detail: str
+    owner: str = ""
 
 
 def definitions_in(text: str, file: Path) -> Iterator[NameDefinition]:
@@ -57,12 +60,19 @@ def definitions_in(text: str, file: Path) -> Iterator[NameDefinition]:
 
     A ``<material name="..."/>`` without content is a use and not a definition.
     """
+    macros: list[str] = []
     for token in tokens(text):
+        if token.name == _MACRO and token.kind is Kind.END and macros:
+            macros.pop()
         kind = _TAGS.get(token.name) if token.kind is Kind.START else None
-        if kind is None or (kind is NameKind.MATERIAL and token.is_whole):
+        if kind is None:
             continue
         given: dict[str, TokenAttribute] = {attribute.name: attribute for attribute in token.attributes()}
         name = given.get("name")
-        if name is not None and name.value:
-            detail = given.get(_DETAILS.get(kind, ""))
-            yield NameDefinition(kind, name.value, file, name.value_start, (detail.value or "") if detail else "")
+        if name is not None and name.value and not (kind is NameKind.MATERIAL and token.is_whole):
+            detail, scope = given.get(_DETAILS.get(kind, "")), given.get("scope")
+            owner = "" if not macros or (scope is not None and scope.value) else macros[-1]
+            written = (detail.value or "") if detail else ""
+            yield NameDefinition(kind, name.value, file, name.value_start, written, owner)
+        if kind is NameKind.MACRO and not token.is_whole:
+            macros.append("" if name is None else name.value or "")

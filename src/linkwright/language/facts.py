@@ -13,6 +13,7 @@ from linkwright.language.definitions import NameKind
 from linkwright.language.links import file_references
 from linkwright.language.occurrences import Occurrence
 from linkwright.language.renaming import occurrence_at
+from linkwright.language.valid_parts import valid_parts
 from linkwright.language.values import ValuedText
 from linkwright.language.workspace import Workspace
 from linkwright.packages import PackageFinder
@@ -81,9 +82,13 @@ def _parts(
 
 
 def robots_of(project: Workspace, texts: Mapping[Path, str], file: Path) -> Iterator[Robot]:
-    """Yield the robots of the descriptions that include a file, one for each argument set that can be expanded."""
+    """Yield the robots of the descriptions that include a file, one for each argument set that can be expanded.
+
+    If none of them can be expanded, these are the valid parts of the descriptions, and the robot of the file alone.
+    """
     overlay = Overlay({str(path): text for path, text in texts.items()})
-    for entry in project.index.entries(file, texts):
+    entries, is_found = project.index.entries(file, texts), False
+    for entry in entries:
         for arguments, _ in project.calls(entry):
             try:
                 expansion = expand(entry, arguments, packages=project.finder(entry), overlay=overlay)
@@ -91,7 +96,13 @@ def robots_of(project: Workspace, texts: Mapping[Path, str], file: Path) -> Iter
                 continue
             robot = read(expansion.document).robot
             if robot is not None:
+                is_found = True
                 yield robot
+    for entry in () if is_found else dict.fromkeys((*entries, file)):
+        parts = valid_parts(project, texts, entry)
+        robot = None if parts is None else read(parts.document).robot
+        if robot is not None:
+            yield robot
 
 
 def part_facts(robot: Robot, kind: NameKind, name: str) -> str | None:

@@ -5,13 +5,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
+from linkwright.language.extension_schema import DESCRIPTION
 from linkwright.language.launch_schema import LAUNCH
 from linkwright.language.manifest_schema import PACKAGE
+from linkwright.language.simulator_plugins import plugin_of
 from linkwright.language.srdf_schema import SRDF
 from linkwright.packages.manifest import MANIFEST
 from linkwright.schema import AttributeRule, ElementRule, ValueType
 from linkwright.sdf.worlds import SDF
-from linkwright.urdf.schema import ROBOT
+from linkwright.xmltree.tokens import Token
 
 _TEXT = ValueType("text")
 _NAMES = ValueType("name")
@@ -102,7 +104,7 @@ def root_of(path: Path) -> ElementRule | None:
         return LAUNCH
     if path.name == MANIFEST:
         return PACKAGE
-    return ROBOT if path.name.endswith((".urdf", ".xacro")) and not name.endswith(".launch") else None
+    return DESCRIPTION if path.name.endswith((".urdf", ".xacro")) and not name.endswith(".launch") else None
 
 
 def is_launch_file(path: Path) -> bool:
@@ -115,7 +117,7 @@ def has_xacro(root: ElementRule) -> bool:
     return root not in (LAUNCH, PACKAGE)
 
 
-def rule_at(root: ElementRule, tags: Sequence[str]) -> ElementRule | None:
+def rule_at(root: ElementRule, tags: Sequence[str], elements: Sequence[Token] = ()) -> ElementRule | None:
     """Return the rule of an element.
 
     Content of xacro's tags and of macro calls is that of the element around them; the content of a macro may belong to
@@ -124,9 +126,10 @@ def rule_at(root: ElementRule, tags: Sequence[str]) -> ElementRule | None:
     Args:
         root: the rule of the root element.
         tags: the names of the elements from the root to the element.
+        elements: their start tags, which tell the parameters of a simulator's plugin; they may be left out.
     """
     current: ElementRule | None = None
-    for tag in tags:
+    for number, tag in enumerate(tags):
         if tag.startswith(PREFIX):
             continue
         if current is None:
@@ -135,7 +138,15 @@ def rule_at(root: ElementRule, tags: Sequence[str]) -> ElementRule | None:
             current = current.child_rules.get(tag) or _in_macro(root, tags, tag)
         if current is None:
             return None
+        if tag == "plugin" and "filename" in current.attribute_rules and number < len(elements):
+            current = _rule_of_plugin(elements[number]) or current
     return current
+
+
+def _rule_of_plugin(element: Token) -> ElementRule | None:
+    given = {attribute.name: attribute.value or "" for attribute in element.attributes()}
+    plugin = plugin_of(given.get("filename", ""), given.get("name", ""))
+    return None if plugin is None else plugin.rule
 
 
 def _in_macro(root: ElementRule, tags: Sequence[str], tag: str) -> ElementRule | None:

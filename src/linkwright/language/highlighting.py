@@ -8,8 +8,8 @@ from enum import Enum
 from pathlib import Path
 from typing import NamedTuple
 
-from linkwright.language.completion import FUNCTIONS
 from linkwright.language.definitions import NameKind
+from linkwright.language.expression_completion import FUNCTIONS
 from linkwright.language.occurrences import occurrences_in
 from linkwright.xacro.expressions.template import TokenKind, tokenize
 from linkwright.xacro.faults import Fault

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -10,6 +10,9 @@ from linkwright.diagnostics import Phrase
 from linkwright.language.cursor import Spot, cursor_at, name_at
 from linkwright.language.definitions import NameDefinition, NameKind
 from linkwright.language.grammar import PREFIX, XACRO, root_of, rule_at
+from linkwright.language.occurrences import Occurrence
+from linkwright.language.parameters import macro_parameters
+from linkwright.language.renaming import occurrence_at
 from linkwright.schema import describe_attribute, describe_element
 
 
@@ -31,6 +34,10 @@ class Explanation:
 def explain_at(text: str, offset: int, file: Path, names: Sequence[NameDefinition]) -> Explanation | None:
     """Explain what is at an offset; None if there is nothing to say."""
     cursor = cursor_at(text, offset)
+    use = occurrence_at(text, file, offset)
+    if use is not None and use.kind is NameKind.PARAMETER:
+        described = list(_described_parameter(use, names))
+        return Explanation("\n\n".join(described), use.start, use.end) if described else None
     found = definitions_at(text, offset, names)
     if found:
         name = name_at(text, offset)
@@ -74,6 +81,15 @@ def definitions_at(text: str, offset: int, names: Sequence[NameDefinition]) -> l
         kinds = (NameKind.LINK, NameKind.JOINT) if tag != "material" else (NameKind.MATERIAL,)
         return [name for name in names if name.kind in kinds and name.name == value]
     return []
+
+
+def _described_parameter(use: Occurrence, names: Sequence[NameDefinition]) -> Iterator[str]:
+    for macro in names:
+        if macro.kind is NameKind.MACRO and macro.name.removeprefix(PREFIX) == use.owner:
+            for parameter in macro_parameters(macro):
+                if parameter.name.lstrip("*") == use.name:
+                    default = "" if parameter.default is None else f" = `{parameter.default}`"
+                    yield f"**parameter {use.name}**{default}, macro {use.owner}, {macro.file.name}"
 
 
 def _described(name: NameDefinition) -> str:

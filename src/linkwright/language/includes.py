@@ -1,4 +1,4 @@
-"""Which descriptions include a file, found by the names of included files, before anything is expanded."""
+"""Which descriptions include a file, found by the texts of the includes, before anything is expanded."""
 
 from __future__ import annotations
 
@@ -6,11 +6,12 @@ import os
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
-from linkwright.lint.targets import DESCRIPTIONS, included_names, walk
+from linkwright.lint.inclusions import Inclusion, folders_by_package, inclusions_in
+from linkwright.lint.targets import DESCRIPTIONS, walk
 
 
 class IncludeIndex:
-    """The descriptions and packages below some folders, and the names of the files that each description includes.
+    """The descriptions and packages below some folders, and the includes of each description.
 
     A file is read again only when it has changed.
 
@@ -24,7 +25,8 @@ class IncludeIndex:
 
     def __init__(self, folders: Iterable[Path]) -> None:
         self._folders = [*folders]
-        self._names: dict[Path, tuple[int, frozenset[str]]] = {}
+        self._inclusions: dict[Path, tuple[int, frozenset[Inclusion]]] = {}
+        self._package_folders: dict[str, list[Path]] = {}
         self.files: tuple[Path, ...] = ()
         self.packages: tuple[Path, ...] = ()
 
@@ -37,23 +39,22 @@ class IncludeIndex:
             files.update(dict.fromkeys(real(file) for file in found))
             packages.update(dict.fromkeys(below))
         self.files, self.packages = tuple(files), tuple(packages)
+        self._package_folders = folders_by_package(map(real, packages))
 
-    def entries(self, file: Path, texts: Mapping[Path, str]) -> list[Path]:
+    def entries(self, file: Path, texts: Mapping[Path, str], *, computed: bool = False) -> list[Path]:
         """Return the descriptions that include a file, directly or through others; the file itself if none does.
 
         Args:
             file: the file, as `real` returns it.
             texts: texts that replace those of files.
+            computed: whether an include with a computed path counts for each file that it can mean.
         """
-        includers: dict[str, list[Path]] = {}
-        for other in dict.fromkeys((*self.files, *texts)):
-            for name in self._included(other, texts):
-                includers.setdefault(name, []).append(other)
+        includers = self._includers(texts)
         found: dict[Path, None] = {}
         seen, pending = {file}, [file]
         while pending:
             current = pending.pop()
-            above = [other for other in includers.get(current.name, ()) if other != current]
+            above = self._above(current, includers, computed=computed)
             if not above:
                 found[current] = None
             for other in above:
@@ -68,34 +69,68 @@ class IncludeIndex:
         Args:
             texts: texts that replace those of files.
         """
-        files = [*dict.fromkeys((*self.files, *(file for file in texts if file.name.endswith(DESCRIPTIONS))))]
-        included = {name for file in files for name in self._included(file, texts) if name != file.name}
-        return [file for file in files if file.name not in included]
+        files = dict.fromkeys((*self.files, *(file for file in texts if file.name.endswith(DESCRIPTIONS))))
+        includers = self._includers(texts)
+        return [file for file in files if not self._above(file, includers)]
 
-    def related(self, file: Path, texts: Mapping[Path, str]) -> list[Path]:
-        """Return a file, the descriptions that include it, and all files that these include, found by their names."""
+    def related(self, file: Path, texts: Mapping[Path, str], *, computed: bool = False) -> list[Path]:
+        """Return a file, the descriptions that include it, and all files that these include.
+
+        Args:
+            file: the file.
+            texts: texts that replace those of files.
+            computed: whether an include with a computed path counts for each file that it can mean.
+        """
         by_name: dict[str, list[Path]] = {}
         for other in dict.fromkeys((*self.files, *texts)):
             by_name.setdefault(other.name, []).append(other)
         found: dict[Path, None] = {}
-        pending = [file, *self.entries(file, texts)]
+        pending = [file, *self.entries(file, texts, computed=computed)]
         while pending:
             current = pending.pop()
-            if current not in found:
-                found[current] = None
-                pending += [other for name in self._included(current, texts) for other in by_name.get(name, ())]
+            if current in found:
+                continue
+            found[current] = None
+            for inclusion in self._included(current, texts):
+                named = by_name.get(inclusion.name, ())
+                pending += [other for other in named if inclusion.may_lead(current, other, self._package_folders)]
+                if computed:
+                    pending += filter(inclusion.may_compute, self.files)
         return list(found)
 
-    def _included(self, file: Path, texts: Mapping[Path, str]) -> frozenset[str]:
+    def _includers(self, texts: Mapping[Path, str]) -> dict[str, list[tuple[Path, Inclusion]]]:
+        """Return the includes of all files, by the names of the included files."""
+        found: dict[str, list[tuple[Path, Inclusion]]] = {}
+        for file in dict.fromkeys((*self.files, *texts)):
+            for inclusion in self._included(file, texts):
+                found.setdefault(inclusion.name, []).append((file, inclusion))
+        return found
+
+    def _above(
+        self, file: Path, includers: Mapping[str, list[tuple[Path, Inclusion]]], *, computed: bool = False
+    ) -> list[Path]:
+        """Return the other files that include a file."""
+        found = {
+            other: None
+            for other, inclusion in includers.get(file.name, ())
+            if inclusion.may_lead(other, file, self._package_folders)
+        }
+        if computed:
+            every = (pair for pairs in includers.values() for pair in pairs)
+            found |= {other: None for other, inclusion in every if inclusion.may_compute(file)}
+        found.pop(file, None)
+        return [*found]
+
+    def _included(self, file: Path, texts: Mapping[Path, str]) -> frozenset[Inclusion]:
         text = texts.get(file)
         if text is not None:
-            return frozenset(included_names(text))
+            return frozenset(inclusions_in(text))
         try:
             changed_ns = file.stat().st_mtime_ns
-            known = self._names.get(file)
+            known = self._inclusions.get(file)
             if known is None or known[0] != changed_ns:
-                names = frozenset(included_names(file.read_text(encoding="utf-8", errors="replace")))
-                known = self._names[file] = (changed_ns, names)
+                inclusions = frozenset(inclusions_in(file.read_text(encoding="utf-8", errors="replace")))
+                known = self._inclusions[file] = (changed_ns, inclusions)
         except OSError:
             return frozenset()
         return known[1]

@@ -35,7 +35,8 @@ from linkwright.packages.share_layout import source_of
 
 _PACKAGE_KEYWORDS = frozenset({"package", "package_name", "node_package"})
 _PROGRAM_KEYWORDS = frozenset({"executable", "node_executable"})
-_CONFIGURATIONS = frozenset({"LaunchConfiguration", "LaunchConfigurationEquals", "LaunchConfigurationNotEquals"})
+CONFIGURATIONS = frozenset({"LaunchConfiguration", "LaunchConfigurationEquals", "LaunchConfigurationNotEquals"})
+"""The classes whose first argument is the name of a launch configuration."""
 _ACTIONS = ("Node", "LifecycleNode", "ComposableNode", "ComposableNodeContainer", "IncludeLaunchDescription")
 _OUTPUTS = ("screen", "log", "both", "own_log", "full")
 _URI = "package://"
@@ -69,7 +70,7 @@ class _Place:
     choices: tuple[str, ...] = ()
 
 
-class _LaunchText:
+class PythonLaunchText:
     """A launch file in Python, with what it declares."""
 
     def __init__(self, document: Document) -> None:
@@ -98,7 +99,7 @@ class _LaunchText:
             given = next((other for other in group.items if other.keyword in _PACKAGE_KEYWORDS), None)
             kind = "program" if keyword in _PROGRAM_KEYWORDS else "component"
             return _Place(kind, text, package=self.paths.text_of(given))
-        if group.function in _CONFIGURATIONS and (index == 0 or keyword == "variable_name"):
+        if group.function in CONFIGURATIONS and (index == 0 or keyword == "variable_name"):
             return _Place("configuration", text, arguments=self.arguments)
         if keyword == "output":
             return _Place("output", text, choices=_OUTPUTS)
@@ -116,7 +117,7 @@ class _LaunchText:
 
     def used_names(self, apart: Text) -> list[str]:
         """Return the names of configurations that the file uses but does not declare, as its caller declares them."""
-        calls = self.python.calls_of(*_CONFIGURATIONS)
+        calls = self.python.calls_of(*CONFIGURATIONS)
         parts = (part for call in calls for item in call.items[:1] for part in item.parts[:1])
         names = dict.fromkeys(part.value for part in parts if isinstance(part, Text) and part is not apart)
         declared = {argument.name for argument in self.arguments}
@@ -191,7 +192,7 @@ def _include_around(item: Item) -> Group | None:
 
 
 def _complete(document: Document, offset: int) -> Iterator[Completion]:
-    launch = _LaunchText(document)
+    launch = PythonLaunchText(document)
     place = launch.place_at(offset)
     if place is None:
         yield from _keywords(launch, offset)
@@ -216,7 +217,7 @@ def _complete(document: Document, offset: int) -> Iterator[Completion]:
         yield from _offer_path(launch, place, offset)
 
 
-def _offer_path(launch: _LaunchText, place: _Place, offset: int) -> Iterator[Completion]:
+def _offer_path(launch: PythonLaunchText, place: _Place, offset: int) -> Iterator[Completion]:
     typed = place.text.value[: offset - place.text.start]
     if typed.startswith(_URI):
         name, slash, rest = typed[len(_URI) :].partition("/")
@@ -237,7 +238,7 @@ def _offer_path(launch: _LaunchText, place: _Place, offset: int) -> Iterator[Com
 
 
 def _explain(document: Document, offset: int) -> Explanation | None:
-    launch = _LaunchText(document)
+    launch = PythonLaunchText(document)
     place = launch.place_at(offset)
     if place is None:
         return _explain_name(launch, offset)
@@ -245,7 +246,7 @@ def _explain(document: Document, offset: int) -> Explanation | None:
     return Explanation(text, place.text.start, place.text.end) if text else None
 
 
-def _explanation(launch: _LaunchText, place: _Place, offset: int) -> str | None:
+def _explanation(launch: PythonLaunchText, place: _Place, offset: int) -> str | None:
     value = place.text.value
     if place.kind == "package":
         return explain_package(launch.document, value)
@@ -261,7 +262,7 @@ def _explanation(launch: _LaunchText, place: _Place, offset: int) -> str | None:
     return explain_file(Path(path or "")) if is_path else None
 
 
-def _explain_argument(launch: _LaunchText, place: _Place) -> str | None:
+def _explain_argument(launch: PythonLaunchText, place: _Place) -> str | None:
     """Explain the argument that a string is the value of: of an included file, or of a class of launch."""
     if place.kind == "choice" and place.arguments:
         return place.arguments[0].described()
@@ -272,7 +273,7 @@ def _explain_argument(launch: _LaunchText, place: _Place) -> str | None:
     return f"`{found[1].keyword}`: {meaning}" if meaning else None
 
 
-def _keywords(launch: _LaunchText, offset: int) -> Iterator[Completion]:
+def _keywords(launch: PythonLaunchText, offset: int) -> Iterator[Completion]:
     """Yield the arguments of the call around an offset that are not given yet."""
     text = launch.document.text
     typed = _WORD_BEFORE.search(text, text.rfind("\n", 0, offset) + 1, offset)
@@ -296,7 +297,7 @@ def _group_around(item: Item, offset: int) -> Group | None:
     return next((group for group in groups if group.start < offset < group.end), None)
 
 
-def _explain_name(launch: _LaunchText, offset: int) -> Explanation | None:
+def _explain_name(launch: PythonLaunchText, offset: int) -> Explanation | None:
     """Explain the class, argument or path in a variable at an offset."""
     found = name_at(launch.document.text, offset)
     if found is None:
@@ -314,7 +315,7 @@ def _explain_name(launch: _LaunchText, offset: int) -> Explanation | None:
 
 
 def _define(document: Document, offset: int) -> Iterator[Target]:
-    launch = _LaunchText(document)
+    launch = PythonLaunchText(document)
     place = launch.place_at(offset)
     if place is None:
         return
@@ -335,7 +336,7 @@ def _define(document: Document, offset: int) -> Iterator[Target]:
 
 
 def _links(document: Document) -> Iterator[FileReference]:
-    launch = _LaunchText(document)
+    launch = PythonLaunchText(document)
     for text, item in launch.python.strings:
         if text.value and item.parts[-1] is text and not _continues(item):
             base = launch.paths.before(text, item)
@@ -354,7 +355,7 @@ def _continues(item: Item) -> bool:
 
 
 def _symbols(document: Document) -> Iterator[Symbol]:
-    launch = _LaunchText(document)
+    launch = PythonLaunchText(document)
     for argument in launch.arguments:
         yield Symbol(
             f"arg {argument.name}", SymbolKind.ARGUMENT, argument.start, argument.end, detail=argument.default or ""
@@ -366,7 +367,7 @@ def _symbols(document: Document) -> Iterator[Symbol]:
         yield Symbol(_label(launch, call), kind, call.start - len(call.callee), max(call.end, call.start), (), detail)
 
 
-def _label(launch: _LaunchText, call: Group) -> str:
+def _label(launch: PythonLaunchText, call: Group) -> str:
     if call.function == "IncludeLaunchDescription":
         file = launch.included_file(call)
         return f"include {file.name}" if file is not None else "include"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from linkwright.language.completion import Completion, complete
+from linkwright.language.completion import Completion
 from linkwright.language.cursor import Spot, cursor_at
 from linkwright.language.format import Document, Format, Symbol, SymbolKind, Target
 from linkwright.language.grammar import is_launch_file
@@ -19,6 +19,7 @@ from linkwright.language.launch_values import (
 )
 from linkwright.language.links import FileReference
 from linkwright.language.outline import Outline, OutlineElement
+from linkwright.language.xml_completion import complete
 from linkwright.xmltree.tokens import Kind, Token, tokens
 
 
@@ -58,7 +59,7 @@ def _complete(document: Document, offset: int) -> Iterator[Completion]:
     if value is not None:
         yield from complete_value(LaunchText(document), value)
     else:
-        yield from complete(document.text, offset, document.file, (), lambda: document.finder)
+        yield from complete(document, offset)
 
 
 def _explain(document: Document, offset: int) -> Explanation | None:

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
-from linkwright.language.completion import Completion, ItemKind, complete
+from linkwright.language.completion import Completion, ItemKind
 from linkwright.language.cursor import Cursor, Spot, cursor_at
 from linkwright.language.format import Document, Format, Symbol, SymbolKind, Target
 from linkwright.language.grammar import rule_at
@@ -16,6 +16,7 @@ from linkwright.language.manifest_schema import DEPENDING, PACKAGE
 from linkwright.language.offers import explain_package, offer_packages, offer_values, target_of_package
 from linkwright.language.outline import Outline
 from linkwright.language.programs import used_packages
+from linkwright.language.xml_completion import complete
 from linkwright.packages.creation.licenses import known_licenses
 from linkwright.packages.manifest import MANIFEST
 
@@ -61,7 +62,7 @@ def _complete(document: Document, offset: int) -> Iterator[Completion]:
         yield from offer_values(_ATTRIBUTES.get(cursor.attribute.name, ()), offset - len(cursor.typed))
         return
     given = _single_children(document.text, offset)
-    for item in complete(document.text, offset, document.file, (), lambda: document.finder):
+    for item in complete(document, offset):
         if item.kind is not ItemKind.ELEMENT or item.label not in given:
             yield item
 

@@ -81,6 +81,8 @@ def mentions_in(text: str, file: Path, names: frozenset[str]) -> Iterator[Mentio
         yield from _in_yaml(text, file, names)
     elif file.name.endswith(".py"):
         yield from _in_python(text, file, names)
+    elif file.name.endswith((".sdf", ".world")):
+        yield from _in_sdf(text, file, names)
     else:
         yield from _in_launch_xml(text, file, names)
 
@@ -155,6 +157,13 @@ def _kinds_in_python(tree: ast.AST) -> Iterator[tuple[int, tuple[NameKind, ...]]
             for option, item in zip(node.elts, node.elts[1:], strict=False):
                 if isinstance(option, ast.Constant) and option.value in _FRAME_OPTIONS:
                     yield id(item), (NameKind.LINK,)
+
+
+def _in_sdf(text: str, file: Path, names: frozenset[str]) -> Iterator[Mention]:
+    """Yield values and texts of a model: its names are its own, but frames of sensors are often those of a robot."""
+    words = "|".join(map(re.escape, sorted(names, key=len, reverse=True)))
+    for found in re.finditer(rf"(?<=[>\"'])({words})(?=[<\"'])", text):
+        yield Mention(found[1], file, found.start(1))
 
 
 def _in_launch_xml(text: str, file: Path, names: frozenset[str]) -> Iterator[Mention]:

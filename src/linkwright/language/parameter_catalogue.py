@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, replace
-from functools import cache
+from functools import cache, lru_cache
 from importlib import resources
 from inspect import cleandoc
 from typing import Any
@@ -128,7 +128,7 @@ def node_names() -> tuple[str, ...]:
     return tuple(_table()["nodes"])
 
 
-@cache
+@lru_cache(maxsize=64)
 def node_parameters(node: str) -> tuple[ParameterInfo, ...]:
     """Return the parameters of a node by its name; none if the node is not known."""
     return _infos(_table()["nodes"].get(node, {}), node)

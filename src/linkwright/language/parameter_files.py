@@ -202,9 +202,8 @@ def _declaration(outline: YamlOutline, section: Section | None, cursor: YamlCurs
     entry = kind if kind is None or kind.key != "type" else kind.parent
     if entry is not None and entry.key == PARAMETERS:
         entry = entry.parent
-    if entry is None or entry is cursor.entry:
-        name = word if entry is not None else ""
-        return next((other for other in outline.root.all() if other.key == name and other is not entry), None)
+    if entry is not None and entry is cursor.entry:
+        return next((other for other in outline.root.all() if other.key == word and other is not entry), None)
     return entry
 
 

@@ -14,11 +14,12 @@ from typing import NamedTuple
 
 from linkwright.diagnostics import LinkwrightError, Phrase, Span, display_path, phrase
 from linkwright.language.includes import real
+from linkwright.language.trials import Trial, expanded, trials, without
 from linkwright.language.workspace import Workspace
 from linkwright.lint.targets import DESCRIPTIONS
 from linkwright.loading.deferred import lazy_pattern
-from linkwright.xacro import Expansion, expand
-from linkwright.xmltree import Element, Overlay
+from linkwright.xacro import Expansion
+from linkwright.xmltree import Element
 
 _COMMENT = lazy_pattern(r"\s*<!--.*?-->", re.DOTALL)
 
@@ -65,15 +66,6 @@ class ExpansionPair(NamedTuple):
     text_after: str
 
 
-class _Former(NamedTuple):
-    """The expansion of a description for one argument set, without the edits."""
-
-    entry: Path
-    arguments: Mapping[str, str]
-    root: Element
-    text: str
-
-
 def edited(text: str, edits: Collection[Edit]) -> str:
     """Return the text of a file with edits of this file, which must not overlap."""
     for edit in sorted(edits, key=lambda edit: (edit.start, edit.end), reverse=True):
@@ -103,19 +95,37 @@ class ExpansionProof:
         project: the workspace.
         texts: the texts of the open files.
         file: the file.
+        is_partial: whether descriptions are also compared that can be expanded only without some elements, and with
+            arguments that no caller passes.
 
     Attributes:
         entries: the descriptions that are compared.
         data: the files that their expansions read.
+        trials: the expansions without the edits.
     """
 
-    def __init__(self, project: Workspace, texts: Mapping[Path, str], file: Path) -> None:
+    def __init__(self, project: Workspace, texts: Mapping[Path, str], file: Path, *, is_partial: bool = False) -> None:
         self.entries: set[Path] = set()
         self.data: set[Path] = set()
+        self.trials: list[Trial] = []
         self._project, self._texts = project, texts
-        self._before: list[_Former] = []
+        self._is_partial = is_partial
         self._error: LinkwrightError | None = None
+        self._names: dict[Path, set[str]] = {}
         self._add_entries(file)
+
+    @property
+    def gap_reason(self) -> Phrase | None:
+        """Why elements of a description were left out, or None if the descriptions are complete."""
+        return next((trial.reason for trial in self.trials if trial.reason is not None), None)
+
+    def add(self, entry: Path) -> None:
+        """Compare one more description."""
+        self._add_entry(entry)
+
+    def names_of(self, file: Path) -> set[str]:
+        """Return the names under which the expansions know a file."""
+        return {str(file), *self._names.get(file, ())}
 
     def pairs(self, edits: Collection[Edit], renamed: Mapping[str, str] | None = None) -> Iterator[ExpansionPair]:
         """Yield the expansion of each description and argument set before and after edits.
@@ -132,20 +142,21 @@ class ExpansionProof:
                 raise UnprovedError(phrase("'{file}' is outside of the workspace", file=display_path(str(file))))
             if file.name.endswith(DESCRIPTIONS):
                 self._add_entries(file)
-        if not self._before:
+        if not self.trials:
             reason = self._error.diagnostics[0].message if self._error else phrase("no description includes its file")
             raise UnprovedError(phrase("no expansion can be compared: {reason}", reason=reason))
-        texts, names = edited_texts(self._project, self._texts, edits), renamed or {}
-        for former in self._before:
+        names = renamed or {}
+        for former in self.trials:
             arguments = {names.get(key, key): value for key, value in former.arguments.items()}
             try:
-                after = self._expand(former.entry, arguments, texts)
+                after = self._edited(former, arguments, edits)
             except LinkwrightError as error:
                 first = error.diagnostics[0]
                 raise UnprovedError(
                     phrase("the edit causes this error: {why}", why=first.message), first.span
                 ) from None
-            yield ExpansionPair(former.entry, former.root, after.document.root, former.text, str(after))
+            root = former.expansion.document.root
+            yield ExpansionPair(former.entry, root, after.document.root, str(former.expansion), str(after))
 
     def check_equal(self, edits: Collection[Edit], renamed: Mapping[str, str] | None = None) -> None:
         """Compare the expansions before and after edits, which must be equal.
@@ -166,19 +177,26 @@ class ExpansionProof:
 
     def _add_entries(self, file: Path) -> None:
         """Expand the descriptions that include a file, without the edits."""
-        for entry in self._project.index.entries(file, self._texts):
-            if entry in self.entries:
-                continue
-            self.entries.add(entry)
-            for arguments, _ in self._project.calls(entry):
-                try:
-                    expansion = self._expand(entry, arguments, self._texts)
-                except LinkwrightError as error:  # noqa: PERF203 - each may fail for itself
-                    self._error = error
-                else:
-                    self._before.append(_Former(entry, arguments, expansion.document.root, str(expansion)))
-                    self.data.update(map(real, expansion.dependencies))
+        for entry in self._project.index.entries(file, self._texts, computed=self._is_partial):
+            self._add_entry(entry)
 
-    def _expand(self, entry: Path, arguments: Mapping[str, str], texts: Mapping[Path, str]) -> Expansion:
-        overlay = Overlay({str(path): text for path, text in texts.items()})
-        return expand(entry, arguments, packages=self._project.finder(entry), overlay=overlay)
+    def _add_entry(self, entry: Path) -> None:
+        if entry in self.entries:
+            return
+        self.entries.add(entry)
+        found, error = trials(self._project, self._texts, entry, is_partial=self._is_partial)
+        self._error = error or self._error
+        self.trials += found
+        for path in {path for trial in found for path in trial.expansion.dependencies}:
+            self.data.add(real(path))
+            self._names.setdefault(real(path), set()).add(path)
+
+    def _edited(self, former: Trial, arguments: Mapping[str, str], edits: Collection[Edit]) -> Expansion:
+        """Return the expansion of a trial with edits; those of elements that it leaves out are left out, too."""
+        texts = dict(self._texts)
+        for file in {edit.file for edit in edits} | {*former.gaps}:
+            gaps = former.gaps.get(file, ())
+            inside = [edit for edit in edits if edit.file == file]
+            kept = [edit for edit in inside if not any(start <= edit.start < end for start, end in gaps)]
+            texts[file] = edited(without(self._project.text(file, self._texts) or "", gaps), kept)
+        return expanded(self._project, texts, former.entry, arguments)

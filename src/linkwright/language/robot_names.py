@@ -5,25 +5,30 @@ from __future__ import annotations
 import os
 import time
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from contextlib import suppress
+from dataclasses import dataclass, replace
 from pathlib import Path
 from weakref import WeakKeyDictionary
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.language.definitions import NameDefinition, NameKind, definitions_in
 from linkwright.language.includes import real
+from linkwright.language.valid_parts import valid_parts
 from linkwright.language.workspace import Workspace
 from linkwright.packages import enclosing_package
-from linkwright.xacro import expand
+from linkwright.xacro import Expansion, expand
 from linkwright.xmltree import Overlay
 from linkwright.xmltree.positions import start_tag_end
 
 _ENDINGS = (".urdf", ".xacro")
 _MAX_ROBOTS = 24
+_MAX_STORED = 4 * _MAX_ROBOTS
+_MAX_ENTRIES = 6
+_MAX_ARGUMENT_SETS = 4
 _MAX_SECONDS = 0.5
 _KINDS = {"link": NameKind.LINK, "joint": NameKind.JOINT}
 _State = tuple[tuple[str, object], ...]
-"""The files of an expansion, each with its open text or the time of its last change."""
+"""The files of an expansion, each with the hash of its open text or the time of its last change."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,6 +37,7 @@ class _Robot:
     names: tuple[NameDefinition, ...]
     texts: frozenset[str] = frozenset()
     """The names of files in its elements, such as that of the parameters of controllers."""
+    is_expanded: bool = True
 
 
 _robots: WeakKeyDictionary[Workspace, dict[Path, _Robot]] = WeakKeyDictionary()
@@ -56,13 +62,67 @@ def robot_names(project: Workspace, texts: Mapping[Path, str], file: Path) -> li
         if robot is None or robot.state != _state((path for path, _ in robot.state), texts):
             if time.monotonic() - begin > _MAX_SECONDS:
                 break  # the next request continues
-            robot = cache[entry] = _read(project, texts, entry)
+            robot = _read_again(cache, project, texts, entry)
         robots.append(robot)
     names: dict[tuple[NameKind, str], NameDefinition] = {}
     for robot in sorted(robots, key=lambda robot: file.name not in robot.texts):
         for name in robot.names:
             names.setdefault((name.kind, name.name), name)
     return list(names.values())
+
+
+class PartNames:
+    """The links and joints of the descriptions that include a file, after their expansion.
+
+    An editor asks for them at each key. So those of an earlier text are used until `read` has found the present ones.
+
+    Args:
+        project: the workspace.
+        texts: the texts of the open files.
+        file: a description, or a file that descriptions include.
+    """
+
+    def __init__(self, project: Workspace, texts: Mapping[Path, str], file: Path) -> None:
+        self._project = project
+        self._texts = texts
+        self._file = file
+        self._is_asked = False
+
+    def __call__(self) -> list[NameDefinition]:
+        """Return the known names, the first of each, without expanding anything."""
+        self._is_asked = True
+        names: dict[tuple[NameKind, str], NameDefinition] = {}
+        for name in (name for robot in self._known() for name in robot.names):
+            names.setdefault((name.kind, name.name), name)
+        return list(names.values())
+
+    @property
+    def is_missing(self) -> bool:
+        """Whether the names were asked for, and a description was never read."""
+        return self._is_asked and any(entry not in _robots.get(self._project, {}) for entry in self._entries())
+
+    @property
+    def is_stale(self) -> bool:
+        """Whether the names were asked for, and a text has changed since they were found."""
+        robots = self._known() if self._is_asked else []
+        return any(robot.state != _state((path for path, _ in robot.state), self._texts) for robot in robots)
+
+    def read(self) -> None:
+        """Expand the descriptions that have changed, or were never read."""
+        cache = _robots.setdefault(self._project, {})
+        for entry in (*self._entries(), self._file):
+            if entry == self._file and any(robot.is_expanded for robot in self._known()):
+                continue  # the file alone counts where what includes it cannot be expanded
+            robot = cache.get(entry)
+            if robot is None or robot.state != _state((path for path, _ in robot.state), self._texts):
+                _read_again(cache, self._project, self._texts, entry)
+
+    def _known(self) -> list[_Robot]:
+        cache = _robots.get(self._project, {})
+        return [cache[entry] for entry in dict.fromkeys((*self._entries(), self._file)) if entry in cache]
+
+    def _entries(self) -> list[Path]:
+        return self._project.index.entries(self._file, self._texts)[:_MAX_ENTRIES]
 
 
 def _likely_robots(project: Workspace, texts: Mapping[Path, str], file: Path) -> list[Path]:
@@ -84,14 +144,56 @@ def _common_beginning(name: str, other: str) -> int:
     return next((number for number, (a, b) in enumerate(pairs) if a != b), min(len(name), len(other)))
 
 
-def _read(project: Workspace, texts: Mapping[Path, str], entry: Path) -> _Robot:
+def _read_again(cache: dict[Path, _Robot], project: Workspace, texts: Mapping[Path, str], entry: Path) -> _Robot:
+    """Return the present names of a description, and store them in place of those that were read first."""
+    robot = _read(project, texts, entry, cache.pop(entry, None))
+    cache[entry] = robot
+    if len(cache) > _MAX_STORED:
+        del cache[next(iter(cache))]
+    return robot
+
+
+def _read(project: Workspace, texts: Mapping[Path, str], entry: Path, before: _Robot | None) -> _Robot:
+    """Return the names of a description.
+
+    While it cannot be expanded, because its text is being typed, these are the names from before, or those of the
+    saved files.
+
+    Args:
+        project: the workspace.
+        texts: the texts of the open files.
+        entry: the description.
+        before: its names from before; None if there are none.
+    """
+    robot = _expanded(project, texts, entry)
+    if robot is not None:
+        return robot
+    related = dict.fromkeys((entry, *project.index.related(entry, texts)))
+    state = _state([*map(str, related), *(path for path, _ in (() if before is None else before.state))], texts)
+    if before is not None and before.is_expanded:
+        return replace(before, state=state)
+    saved = _expanded(project, {}, entry) if texts else None
+    if saved is not None:
+        return replace(saved, state=state)
+    parts = valid_parts(project, texts, entry)
+    if parts is not None:
+        return _of_expansion(parts, state, is_whole=False)
+    text = project.text(entry, texts) or ""
+    literal = (name for name in definitions_in(text, entry) if "$" not in name.name)
+    return _Robot(state, tuple(name for name in literal if name.kind in _KINDS.values()), is_expanded=False)
+
+
+def _expanded(project: Workspace, texts: Mapping[Path, str], entry: Path) -> _Robot | None:
+    """Return the names after the expansion, for the first argument set that has one; None if there is none."""
     overlay = Overlay({str(path): text for path, text in texts.items()})
-    try:
-        expansion = expand(entry, {}, packages=project.finder(entry), overlay=overlay)
-    except (LinkwrightError, OSError, RecursionError):
-        text = project.text(entry, texts) or ""
-        literal = (name for name in definitions_in(text, entry) if "$" not in name.name)
-        return _Robot(_state([str(entry)], texts), tuple(name for name in literal if name.kind in _KINDS.values()))
+    for arguments, _ in project.calls(entry)[:_MAX_ARGUMENT_SETS]:
+        with suppress(LinkwrightError, OSError, RecursionError):
+            expansion = expand(entry, arguments, packages=project.finder(entry), overlay=overlay)
+            return _of_expansion(expansion, _state(map(str, expansion.dependencies), texts))
+    return None
+
+
+def _of_expansion(expansion: Expansion, state: _State, *, is_whole: bool = True) -> _Robot:
     names: list[NameDefinition] = []
     for element in expansion.document.root.elements():
         kind, name = _KINDS.get(element.tag), element.attributes.get("name")
@@ -105,7 +207,7 @@ def _read(project: Workspace, texts: Mapping[Path, str], entry: Path) -> _Robot:
     contents = (element.text() for element in expansion.document.root.walk())
     files = (content.strip().rpartition("/")[2] for content in contents)
     mentioned = frozenset(file for file in files if file.endswith((".yaml", ".yml")))
-    return _Robot(_state(map(str, expansion.dependencies), texts), tuple(names), mentioned)
+    return _Robot(state, tuple(names), mentioned, is_whole)
 
 
 def _state(files: Iterator[str] | list[str] | map[str], texts: Mapping[Path, str]) -> _State:
@@ -113,7 +215,7 @@ def _state(files: Iterator[str] | list[str] | map[str], texts: Mapping[Path, str
     for file in files:
         text = texts.get(Path(file)) or texts.get(real(file))
         try:
-            state.append((file, text if text is not None else os.stat(file).st_mtime_ns))  # noqa: PTH116
+            state.append((file, os.stat(file).st_mtime_ns if text is None else str(hash(text))))  # noqa: PTH116
         except OSError:
             state.append((file, None))
     return tuple(state)

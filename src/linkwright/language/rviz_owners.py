@@ -7,7 +7,7 @@ from functools import cache
 from typing import Any
 
 from linkwright.language.yaml_outline import YamlEntry
-from linkwright.loading.extensions import extensions
+from linkwright.loading.extensions import EntryPoint, extensions
 from linkwright.rviz.config.former_names import modern_class
 from linkwright.rviz.config.rviz_config import GLOBAL_OPTIONS
 from linkwright.rviz.config.schema import PropertySpec, Schema
@@ -151,12 +151,16 @@ def owner_of(entry: YamlEntry) -> ConfigOwner:
     return ConfigOwner("", entry)
 
 
-@cache
 def display_class(name: str) -> Any:
     """Return the class of a display, or None if it cannot be imported."""
     entry = extensions(DISPLAYS).get(name)
+    return None if entry is None else _loaded(entry)
+
+
+@cache
+def _loaded(entry: EntryPoint) -> Any:
     try:
-        return None if entry is None else entry.load()
+        return entry.load()
     except Exception:  # noqa: BLE001  # of a package that is not ours anything may be wrong
         return None
 

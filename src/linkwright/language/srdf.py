@@ -8,7 +8,7 @@ from functools import cached_property
 from itertools import islice
 from pathlib import Path
 
-from linkwright.language.completion import Completion, ItemKind, complete
+from linkwright.language.completion import Completion, ItemKind
 from linkwright.language.cursor import Cursor, Spot, cursor_at
 from linkwright.language.definitions import NameDefinition, NameKind
 from linkwright.language.facts import facts_at, part_facts
@@ -20,6 +20,7 @@ from linkwright.language.links import FileReference, file_references
 from linkwright.language.outline import Outline
 from linkwright.language.srdf_schema import CHOICES, GROUP, JOINT, LINK, SRDF
 from linkwright.language.values import values_in
+from linkwright.language.xml_completion import complete
 from linkwright.packages import enclosing_package
 from linkwright.packages.readers.entry_points import text_of
 from linkwright.packages.share_layout import source_of
@@ -110,7 +111,7 @@ def _complete(document: Document, offset: int) -> Iterator[Completion]:
     semantics, cursor = _Semantics(document), cursor_at(document.text, offset)
     rule = _rule_of(cursor)
     if rule is None or "$" in cursor.typed:
-        yield from complete(document.text, offset, document.file, semantics.names, lambda: document.finder)
+        yield from complete(document, offset, semantics.names)
         return
     start = offset - len(cursor.typed)
     for choice in CHOICES.get((cursor.tags[-1], rule.name), ()):

@@ -12,7 +12,7 @@ from linkwright.language.includes import IncludeIndex, real
 from linkwright.language.mentions import FILES as MENTIONING_FILES
 from linkwright.lint.checking import Checker, UniqueFindings
 from linkwright.lint.contexts import Contexts
-from linkwright.lint.finding import Finding
+from linkwright.lint.finding import Finding, without_element
 from linkwright.lint.folders import Examined, relevant_findings, relevant_package_findings
 from linkwright.lint.targets import DESCRIPTIONS, Targets, walk
 from linkwright.packages import PackageFinder, enclosing_package
@@ -37,14 +37,23 @@ _CALLERS = (
 """Files that decide how descriptions are checked: what calls them, where packages are, and settings."""
 
 
+_MAX_ROBOTS = 16
+"""The number of descriptions whose robots are stored."""
+
+
 class _Result(NamedTuple):
-    """The findings about a subject, and the texts of the open files with which it was checked."""
+    """The findings about a subject, and the versions of the open texts with which it was checked."""
 
     findings: tuple[Diagnostic, ...]
-    texts: Mapping[Path, str]
+    versions: Mapping[Path, int]
 
 
 _NOTHING = _Result((), {})
+
+
+def versions_of(texts: Mapping[Path, str]) -> dict[Path, int]:
+    """Return a number for each text that differs if the text differs, instead of a copy of all texts."""
+    return {file: hash(text) for file, text in texts.items()}
 
 
 class Workspace:
@@ -66,7 +75,7 @@ class Workspace:
         self._checker = Checker(folders=self._folders)
         self._names: dict[Path, tuple[int, tuple[NameDefinition, ...]]] = {}
         self._results: dict[Path, _Result] = {}
-        self._robots: dict[Path, tuple[Mapping[Path, str], Robot | None]] = {}
+        self._robots: dict[Path, tuple[Mapping[Path, int], Robot | None]] = {}
 
     def file_saved(self, file: Path) -> None:
         """Note that a file on the disk was changed, made or removed."""
@@ -95,13 +104,24 @@ class Workspace:
         """Return the argument sets of a description, each with the call that gives it, if its file has one."""
         return [({}, None), *self._checker.calls(entry, self.index.packages)]
 
+    def possible_arguments(self, entry: Path) -> list[Mapping[str, str]]:
+        """Return the argument sets of a description, also those of calls whose values are not all known."""
+        return [*self._checker.possible_arguments(entry, self.index.packages), {}]
+
     def configuration_files(self, file: Path) -> list[Path]:
         """Return the files of a file's package that may mention links and joints; empty if it is in no package."""
         package = enclosing_package(file.parent)
-        if package is None:
-            return []
-        found, _ = walk(package[1], (*MENTIONING_FILES, ".srdf"))
+        return [] if package is None else self.configurations_below(package[1])
+
+    def configurations_below(self, folder: Path) -> list[Path]:
+        """Return the files below a folder that may mention links and joints."""
+        found, _ = walk(folder, (*MENTIONING_FILES, ".srdf", ".srdf.xacro", ".sdf", ".world"))
         return [real(path) for path in found]
+
+    def files(self, suffixes: tuple[str, ...]) -> list[Path]:
+        """Return the files of the workspace with some endings, also those outside of packages."""
+        found = (path for folder in self._folders for path in walk(folder, suffixes)[0])
+        return [*dict.fromkeys(map(real, found))]
 
     def neighbours(self, file: Path, known: Container[Path]) -> list[Path]:
         """Return the other descriptions in a file's package."""
@@ -130,14 +150,18 @@ class Workspace:
         texts = {
             file: text for file, text in texts.items() if file.name.endswith(DESCRIPTIONS) and file in self.index.files
         }
-        known = self._robots.get(entry)
-        if known is None or known[0] != texts:
+        versions = versions_of(texts)
+        known = self._robots.pop(entry, None)
+        if known is None or known[0] != versions:
             overlay = Overlay({str(path): text for path, text in texts.items()})
             try:
                 robot = read(expand(entry, {}, packages=self.finder(entry), overlay=overlay).document).robot
             except LinkwrightError:
                 robot = None
-            known = self._robots[entry] = texts, robot
+            known = versions, robot
+        self._robots[entry] = known
+        if len(self._robots) > _MAX_ROBOTS:
+            del self._robots[next(iter(self._robots))]
         return known[1]
 
     def all_names(self, texts: Mapping[Path, str]) -> list[NameDefinition]:
@@ -193,7 +217,7 @@ class Workspace:
         before = self._results.pop(subject, _NOTHING).findings
         found = self._checked(subject, texts) if subject in texts or subject.exists() else ()
         if found:
-            self._results[subject] = _Result(found, texts)
+            self._results[subject] = _Result(tuple(map(without_element, found)), versions_of(texts))
         return self._of_files({_file(diagnostic, subject) for diagnostic in (*before, *found)} | {*changed})
 
     def fixable(self, file: Path, texts: Mapping[Path, str]) -> list[Finding]:
@@ -204,11 +228,12 @@ class Workspace:
             texts: the texts of the open files.
         """
         found = UniqueFindings()
+        versions = versions_of(texts)
         for subject, result in self._results.items():
             for finding in result.findings:
                 if isinstance(finding, Finding) and finding.fix is not None and _file(finding, subject) == file:
                     edited = {real(edit.source_file) for edit in finding.fix.edits}
-                    if all(result.texts.get(other) == texts.get(other) for other in edited):
+                    if all(result.versions.get(other) == versions.get(other) for other in edited):
                         found.add([finding])
         return [finding for finding in found.all() if isinstance(finding, Finding)]
 
@@ -220,8 +245,9 @@ class Workspace:
             texts: the texts of the open files.
         """
         found = UniqueFindings()
+        versions = versions_of(texts)
         for result in self._results.values():
-            if result.texts.get(file) == texts.get(file):
+            if result.versions.get(file) == versions.get(file):
                 found.add([one for one in result.findings if one.span is not None and real(one.span.file) == file])
         return found.all()
 

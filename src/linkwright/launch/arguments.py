@@ -40,10 +40,10 @@ def _malformed_error(argument: str, hint: Phrase) -> Diagnostic:
 
 
 def check_arguments(description: LaunchDescription, values: Mapping[str, str]) -> list[Diagnostic]:
-    """Return warnings about launch arguments, which are checked before the launch starts.
+    """Check launch arguments before the launch starts, and return warnings.
 
     Returns:
-        Warnings (LAUNCH113) about undeclared arguments, which are still set, as in ROS.
+        Warnings (LAUNCH113) about undeclared arguments. As in ROS, these are still set.
 
     Raises:
         LinkwrightError: LAUNCH112 and LAUNCH114, values are not valid or arguments are missing; the error lists all.
@@ -76,7 +76,10 @@ def _argument_errors(argument: DeclareLaunchArgument, values: Mapping[str, str])
 
 
 def _misspelt(name: str, undeclared: Sequence[str], error: Diagnostic) -> Diagnostic:
-    """Return the error for a missing argument, with a hint if an undeclared argument has a similar name."""
+    """Return the error for a missing argument.
+
+    If a similar undeclared argument was passed, the error has a hint.
+    """
     similar_names = nearest(name, undeclared, limit=1)
     return (
         error.with_changes(

@@ -46,7 +46,7 @@ def find_program(finder: PackageFinder, package: str, executable: str) -> Progra
 
 
 def run_viewer(arguments: Sequence[str], options: LaunchOptions | None = None) -> int:
-    """Run the viewer, which replaces RViz, until the user ends it.
+    """Run the viewer, Linkwright's replacement for RViz, until the user ends it.
 
     Args:
         arguments: the command-line arguments of ``rviz2``.

@@ -131,7 +131,7 @@ def show_arguments(target: LaunchTarget) -> str:
 
 
 def print_description(target: LaunchTarget) -> str:
-    """Return the text that ``--print`` prints for a launch file, which is the tree of its entities.
+    """Return the tree of entities that ``--print`` prints for a launch file.
 
     Raises:
         LinkwrightError: the errors in the target or the launch file.
@@ -142,9 +142,9 @@ def print_description(target: LaunchTarget) -> str:
 
 
 def _read(target: LaunchTarget, describe: Callable[[LaunchDescription], str]) -> str:
-    """Return a text about a launch file, which is read but not launched.
+    """Read a launch file without launching it, and return a text about it.
 
-    The function `describe` returns the text for the launch description.
+    `describe` returns the text for the launch description.
     """
     finder = target.finder()
     with own_environment(finder):

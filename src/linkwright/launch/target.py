@@ -1,4 +1,4 @@
-"""The launch file to run, which is named by a path, or by a package and a file name."""
+"""The launch file to run: a path, or a file name in a package."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from linkwright.packages.launch_files import is_launch_file_name, launch_files_b
 
 @dataclass(frozen=True)
 class LaunchTarget:
-    """A launch file as it is named on the command line.
+    """A launch file as specified on the command line.
 
     Attributes:
         file: the path of the file. If there is a package, the name of the file, or its path relative to the package's
@@ -27,7 +27,10 @@ class LaunchTarget:
     package: str | None = None
 
     def finder(self) -> PackageFinder:
-        """Return a finder of ROS packages that starts in the launch file's folder and the current folder."""
+        """Return a finder of ROS packages.
+
+        It starts in the current folder and, if the launch file is a path, in its folder.
+        """
         if self.package is None:
             return PackageFinder(start=[Path(self.file).absolute().parent, Path.cwd()])
         return PackageFinder()
@@ -94,7 +97,7 @@ def parse_launch_words(words: Sequence[str]) -> tuple[LaunchTarget, dict[str, st
     """
     split_index = next((index for index, argument in enumerate(words) if ":=" in argument), len(words))
     split_index = min(split_index, 2)
-    if split_index == 2 and _is_file(words[0]):  # the second argument is probably a malformed launch argument
+    if split_index == 2 and _is_file(words[0]):  # probably a malformed launch argument
         split_index = 1
     target_names, argument_texts = words[:split_index], words[split_index:]
     values = parse_arguments(argument_texts)

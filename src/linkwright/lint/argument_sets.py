@@ -1,4 +1,4 @@
-"""Check a description with every set of values that its arguments receive, and report each finding once."""
+"""Checks of a description with every set of values that its arguments receive, with each finding reported once."""
 
 from __future__ import annotations
 
@@ -93,7 +93,7 @@ class SetCheck:
     _is_expanded: bool = field(default=False, init=False)
 
     def with_configured(self, sets: Sequence[Mapping[str, str]]) -> Checked:
-        """Return the merged result for configured argument sets, which replace the argument sets of callers."""
+        """Return the merged result for configured argument sets, without the argument sets of callers."""
         return self._merge_runs([self._run(ArgumentSet(values)) for values in sets], ())
 
     def with_callers(self, find_sets: Callable[[], Sequence[ArgumentSet]]) -> Checked:
@@ -138,9 +138,9 @@ class SetCheck:
         return self._merge_runs(usable_runs, self._needs_arguments_finding(usable_runs[0], default, common, sets))
 
     def _run_expanded(self, sets: Sequence[ArgumentSet]) -> _Run | None:
-        """Return the default run of a file that launch files pass to xacro, now with expansion.
+        """Check the file again with expansion, because launch files pass it to xacro, and return the default run.
 
-        Return None if there are no argument sets, or if the defaults and all sets cause errors.
+        The result is None if there are no argument sets, or if the defaults and all sets cause errors.
         """
         if not sets:
             return None

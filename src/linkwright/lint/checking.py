@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 class UniqueFindings:
-    """A collection of findings without duplicates, which occur if two robots include the same file."""
+    """A collection of findings without duplicates, such as those of a file that two robots include."""
 
     def __init__(self) -> None:
         self._found: dict[tuple[str, Span | None, str], Diagnostic] = {}
@@ -57,7 +57,7 @@ def _place(diagnostic: Diagnostic) -> Span | None:
 
 @dataclass(frozen=True, slots=True)
 class Checker:
-    """Checks files and packages; searches for packages and callers of descriptions only once.
+    """A checker of files and packages that searches for packages and callers of descriptions only once.
 
     Attributes:
         values: the values of arguments; if empty, the values of the settings or of callers are used.
@@ -186,6 +186,15 @@ class Checker:
             for argument_set in self._argument_sets(file, packages)
             if argument_set.is_complete
         ]
+
+    def possible_arguments(self, file: Path, packages: Sequence[Path]) -> list[Mapping[str, str]]:
+        """Return the argument values that callers pass to a description, also if some are known only at runtime.
+
+        Args:
+            file: the description.
+            packages: the folders that are searched for callers.
+        """
+        return [argument_set.values for argument_set in self._argument_sets(file, packages)]
 
     def _argument_sets(self, file: Path, packages: Sequence[Path]) -> tuple[ArgumentSet, ...]:
         """Return the argument sets that callers pass to a file.

@@ -289,7 +289,7 @@ def _fits(option: Option, value: object) -> bool:
 
 
 def _is_plain(value: object) -> bool:
-    """Return whether a TOML value is a string, number or boolean, which an argument accepts."""
+    """Return whether an argument accepts a TOML value: a string, number or boolean."""
     return isinstance(value, (str, int, float))
 
 

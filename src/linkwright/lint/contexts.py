@@ -77,9 +77,9 @@ class FileContext:
         return stored_facts
 
     def results_for(self, facts: XacroFacts, root: Element, *, is_whole: bool) -> dict[Any, Any]:
-        """Return the results that descriptions with this expansion share; the caller adds its results.
+        """Return the results that descriptions with this expansion share.
 
-        The results are empty for the first description with this expansion.
+        The results are empty for the first description with this expansion. The caller adds its results to them.
 
         Args:
             facts: the facts about the description's files, as `facts` returns them.

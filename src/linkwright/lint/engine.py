@@ -178,7 +178,7 @@ def _find_with_rules(subject: Subject, scopes: Collection[Scope], suppressions: 
 
 
 def _findings_cache(_: Subject) -> dict[frozenset[Scope], list[Diagnostic]]:
-    """Return a new cache of findings by scopes, which subjects with the same expansion share."""
+    """Return a new cache of findings by scopes, for all subjects with the same expansion."""
     return {}
 
 

@@ -22,7 +22,7 @@ _SECTION = lazy_pattern(r"^## ([A-Z]+[0-9]{3}): (.+?)\n(.*?)(?=^## [A-Z]+[0-9]{3
 _HEADINGS: dict[str, str] = {
     heading: heading for heading in (phrase("## Why"), phrase("## Example"), phrase("## Use instead"))
 }
-"""The headings that all docstrings of rules share, which are translated; the text between them is in English only."""
+"""The headings in the docstrings of rules. They are translated, whereas the text between them is in English only."""
 
 
 @dataclass(frozen=True, slots=True)

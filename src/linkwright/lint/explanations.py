@@ -45,7 +45,7 @@ def is_explained(element: Element | None, tag: str) -> bool:
 
 
 def _comments(element: Element | None, *, beside: bool) -> list[str]:
-    """Return the comments directly above an element or, if `on_same_lines` is set, those on its lines."""
+    """Return the comments directly above an element or, if `beside` is set, those on its lines."""
     element_span = element_range(element) if element is not None else None
     if element is None or element.source is None or element_span is None:
         return []

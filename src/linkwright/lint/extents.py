@@ -31,10 +31,10 @@ _NEGLIGIBLE = 0.01
 """The fraction of a body's mass below which the mass of one of its links is a negligible placeholder."""
 
 WEIGHTLESS = 1e-5
-"""The mass in kg below which a value is a placeholder, written because simulators and exporters require a mass."""
+"""The mass in kg below which a value is a placeholder, because simulators and exporters require a mass."""
 
 _MAX_LINK_FRAMES = 200
-"""The maximum number of links of a body that is measured for each link; a larger body is measured only once."""
+"""The maximum number of links of a body that is measured for each link. A larger body is measured only once."""
 
 _ORIGIN = Placement(IDENTITY, (0.0, 0.0, 0.0))
 
@@ -106,7 +106,7 @@ class Extents:
         return self._shape_boxes[key]
 
     def link_bounds(self, link: Link) -> Bounds | None:
-        """Return the box around a link's shapes in the link's frame; None if it cannot be measured."""
+        """Return the box around a link's shapes in the link's frame, or None if it cannot be measured."""
         return self._union_of_bounds([*link.visuals, *link.collisions])
 
     def separate_bounds(self, link: Link) -> list[Bounds]:
@@ -124,7 +124,7 @@ class Extents:
         return union(known_boxes) if len(known_boxes) == len(boxes) else None
 
     def body_bounds(self, link: Link) -> Bounds | None:
-        """Return the box around a link's body in the link's frame; None if it cannot be measured.
+        """Return the box around a link's body in the link's frame, or None if it cannot be measured.
 
         For a body of very many links, one box is computed in the frame of the body's first link. The result is then the
         box around this box, which may be larger than necessary.
@@ -192,6 +192,6 @@ class Extents:
 
 
 def _clamp_position(frame: Placement) -> Placement:
-    """Return a placement with its position clamped to `FARTHEST`, to avoid overflow."""
+    """Return a placement with each coordinate clamped to `MAX_COORDINATE`, to avoid overflow."""
     x, y, z = (min(max(coordinate, -MAX_COORDINATE), MAX_COORDINATE) for coordinate in frame.position)
     return Placement(frame.rotation, (x, y, z))

@@ -55,5 +55,5 @@ def with_related(first: Diagnostic, others: Sequence[Diagnostic]) -> Diagnostic:
 
 
 def without_element(diagnostic: Diagnostic) -> Diagnostic:
-    """Return a finding without its element, which would keep its whole description in memory."""
+    """Return a finding without its element, so that it does not keep the whole description in memory."""
     return diagnostic.with_changes(element=None) if isinstance(diagnostic, Finding) else diagnostic

@@ -51,7 +51,10 @@ def replace_value(element: Element, attribute: str, value: str, *, safe: bool = 
 
 
 def rename_attribute(element: Element, old: str, new: str, *, safe: bool = True) -> Fix | None:
-    """Return a fix that renames an attribute; None if the attribute is not written in the file."""
+    """Return a fix that renames an attribute.
+
+    Return None if the attribute is not written in the file, or the element already has the new one.
+    """
     source = element.source
     if source is None or new in element.attributes:
         return None
@@ -102,7 +105,7 @@ def remove_element(element: Element, *, safe: bool = True) -> Fix | None:
 
 
 def value_edit(element: Element, attribute: str, value: str) -> Edit | None:
-    """Return the edit that changes an attribute's value; None if the value is not written literally."""
+    """Return the edit that changes an attribute's value, or None if the value is not written literally."""
     source = element.source
     if source is None or not is_literal(element, attribute):
         return None

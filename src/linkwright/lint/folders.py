@@ -27,7 +27,7 @@ Parts: TypeAlias = "tuple[Path, frozenset[str], frozenset[str]]"
 
 MISSING_PACKAGE = "PKG101"
 _ONLY_FOR_NAMED_FILES = frozenset({"LINT302", "SDF160", "SDF162"})
-"""Information that is only reported for a named file: it is a part of a robot, or Gazebo fetches its models."""
+"""Findings that are only reported for a named file: it is a part of a robot, or Gazebo fetches its models."""
 _UNSET_VARIABLE = "XAC214"
 """The finding about an environment variable without a value, which the user sets before starting the robot."""
 _NO_LINK = "URDF150"
@@ -89,7 +89,7 @@ def relevant_findings(
 
 
 def relevant_package_findings(findings: Iterable[Diagnostic], paths: Sequence[Path]) -> Iterator[Diagnostic]:
-    """Yield the findings about a package; in tests and discarded files, only the errors."""
+    """Yield the findings about a package, but only the errors of tests and discarded files."""
     roots = [path.absolute() for path in paths]
     for diagnostic in findings:
         is_error = diagnostic.severity is Severity.ERROR

@@ -18,7 +18,7 @@ _MISSING = "XML101"
 def with_file_severity(diagnostics: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
     """Yield the diagnostics, with a lower severity for some missing files.
 
-    A file that the build creates later becomes an information. Files that exist relative to the package's folder, which
+    A file that the build creates later becomes informational. Files that exist relative to the package's folder, which
     another program may use as the base, become one warning for each file that includes them.
     """
     package_findings: dict[str, list[Diagnostic]] = {}

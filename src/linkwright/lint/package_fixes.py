@@ -104,7 +104,7 @@ def cmake_folder_fix(source: SourceText, folder: str, *, safe: bool) -> Fix | No
 
 
 def _last_folders(source: SourceText) -> Iterator[Token]:
-    """Yield the last folder of each command that installs whole folders into the share folder, under no condition."""
+    """Yield the last folder of each unconditional command that installs folders into the share folder."""
     from linkwright.packages.readers.cmake_syntax import BLOCK_ENDS, statements
 
     depth = 0
@@ -152,7 +152,10 @@ def _data_files_fix(setup: SetupFile, entries: list[str], imports: tuple[Edit, .
 
 
 def _after_last(source: SourceText, last: tuple[int, int], entries: list[str]) -> Edit:
-    """Return the edit that inserts entries after the last one, on lines of their own if this one has its own line."""
+    """Return the edit that inserts entries after the last one.
+
+    If the last entry is on its own line, so is each new entry.
+    """
     text, (start, end) = source.text, last
     indent = text[text.rfind("\n", 0, start) + 1 : start]
     if indent.strip():
@@ -185,7 +188,10 @@ def _data_files_list(setup: SetupFile) -> tuple[int, list[tuple[int, int]]] | No
 
 
 def _glob(setup: SetupFile) -> tuple[str | None, tuple[Edit, ...]]:
-    """Return how ``setup.py`` calls ``glob``, and the edit that imports it if it does not; None if it cannot."""
+    """Return the name under which ``setup.py`` can call ``glob``, and the edit that adds a missing import.
+
+    The name is None if there is no place for the import.
+    """
     for node in () if setup.tree is None else setup.tree.body:
         if isinstance(node, ast.ImportFrom) and node.module == "glob":
             name = next((alias.asname or alias.name for alias in node.names if alias.name == "glob"), None)
@@ -213,7 +219,11 @@ def _share_folder(setup: SetupFile, name: str, folder: str = "") -> str:
 
 
 def _patterns(package: PackageContext, folder: str, glob: str) -> str:
-    """Return the patterns of the files in a folder; ``glob`` would also return the folders in it, which is an error."""
+    """Return the expression that lists the files in a folder.
+
+    If the folder has subfolders, the expression has one pattern for each extension, because a folder in ``data_files``
+    is an error.
+    """
     if not any(other.startswith(f"{folder}/") for other in package.folders):
         return f"{glob}('{folder}/*')"
     files = [file for file in package.files if file.rpartition("/")[0] == folder]

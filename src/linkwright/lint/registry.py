@@ -25,7 +25,7 @@ GROUP = "linkwright.lint_rules"
 
 _OWN_PREFIX = "LW"
 _PACKAGE_MODULE_PREFIXES = ("launch_", "package_")
-"""The name prefixes of our modules with rules about packages, which the check of a file does not need."""
+"""The name prefixes of Linkwright's modules with rules about packages. The check of a file does not need them."""
 _CODE = lazy_pattern("[A-Z]{2,10}[0-9]{3}")
 _NAME = lazy_pattern("[a-z0-9]+(-[a-z0-9]+)*")
 
@@ -49,7 +49,7 @@ def unusable_rules() -> tuple[Diagnostic, ...]:
 
 
 def has_external_rules() -> bool:
-    """Return whether another package adds rules, whose findings may depend on anything."""
+    """Return whether another package adds rules. The findings of such rules may depend on anything."""
     return any(is_external(rule) for rule in _found(whole=False)[0])
 
 
@@ -91,8 +91,8 @@ def _index(*, whole: bool) -> Mapping[str, Rule]:
 def _found(*, whole: bool) -> tuple[tuple[Rule, ...], tuple[Diagnostic, ...]]:
     """Return the rules, sorted by code, and the findings about rules that cannot be used.
 
-    Linkwright's rules about packages are left out unless `include_packages` is true, or another package adds rules.
-    The names of the added rules must differ from all of ours.
+    Linkwright's rules about packages are left out unless `whole` is true, or another package adds rules. The names of
+    the added rules must differ from those of Linkwright's rules.
     """
     rules: dict[str, Rule] = {}
     problems: list[Diagnostic] = []
@@ -114,13 +114,13 @@ def _is_ours(entry: EntryPoint) -> bool:
 def _rules_of(entry: EntryPoint, used_names: set[str], *, include_packages: bool) -> list[Rule] | Diagnostic:
     """Return the rules of an entry point, or a diagnostic if they cannot be used.
 
-    An exception in our own rules is not caught.
+    An exception in Linkwright's own rules is not caught.
     """
     if _is_ours(entry):
         return _load(entry, used_names, is_ours=True, whole=include_packages)
     try:
         return _load(entry, used_names, is_ours=False, whole=True)
-    except Exception as error:  # noqa: BLE001  # of a package that is not ours anything may be wrong
+    except Exception as error:  # noqa: BLE001  # code of another package may raise any exception
         return _unusable_finding(entry, error)
 
 

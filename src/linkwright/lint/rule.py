@@ -20,11 +20,11 @@ class Scope(Enum):
     """The kind of input that a rule checks."""
 
     DESCRIPTION = "description"
-    """One robot description; the rule runs once for each."""
+    """A robot description. The rule runs once for each description."""
     PACKAGE = "package"
-    """The ROS package that contains a description; the rule runs once for each package."""
+    """The ROS package that contains a description. The rule runs once for each package."""
     COMMENTS = "comments"
-    """The comments that suppress findings; the engine reports the rule's findings without running the rule."""
+    """The comments that suppress findings. The engine reports the rule's findings without running the rule."""
 
 
 class Rule:
@@ -65,7 +65,10 @@ class Rule:
     replaces: ClassVar[tuple[str, ...]] = ()
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Yield the findings of the rule; must not raise, whatever the description contains."""
+        """Yield the findings of the rule.
+
+        A rule must not raise an exception, whatever the description contains.
+        """
         raise NotImplementedError(f"{self.code} cannot check {subject.path}")
 
     def option(self, subject: Subject, name: str, kind: type[Value]) -> Value:

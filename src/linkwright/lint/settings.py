@@ -97,7 +97,7 @@ class Settings:
         )
 
     def arguments_of(self, file: Path) -> tuple[Mapping[str, str], ...]:
-        """Return the configured argument sets of a description; empty if there are none."""
+        """Return the configured argument sets of a description, or an empty tuple."""
         return tuple(
             values for pattern, sets in self.arguments if self._matches_pattern(file, pattern) for values in sets
         )

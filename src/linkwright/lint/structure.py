@@ -1,4 +1,4 @@
-"""The elements of a description as the URDF schema sees them: known and unknown ones."""
+"""The elements of a description that the URDF schema defines, and those that it does not define."""
 
 from __future__ import annotations
 
@@ -40,7 +40,9 @@ class Place(NamedTuple):
 
 
 class Structure:
-    """The known and unknown elements of a description; each list is computed on first use.
+    """The known and unknown elements of a description.
+
+    Each list is computed on first use.
 
     Args:
         root: the root element.
@@ -51,7 +53,7 @@ class Structure:
 
     @cached_property
     def places(self) -> list[Place]:
-        """The elements that URDF defines, in document order; empty if the root is not a ``<robot>``."""
+        """The elements that URDF defines, in document order. The list is empty if the root is not a ``<robot>``."""
         return self._classified_elements[0]
 
     @cached_property

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 Value = TypeVar("Value")
 
 _DEFINITIONS = {"material", "xacro:macro", "xacro:property"}
-"""Elements that only define something; a file without any other element is a library."""
+"""Elements that only define something. A file without any other element is a library."""
 
 
 class Subject:
@@ -46,7 +46,7 @@ class Subject:
     Attributes:
         description: the description to check.
         path: the checked file, whose folder is the base of relative paths in the description.
-        document: the expanded document, whose elements know their file and position in the source.
+        document: the expanded document. Each element has its file and position in the source.
         reading: the result of the URDF reader.
         expansion: the expansion, or None for plain URDF.
         is_whole: whether the description is complete. An incomplete description only has the parts that could be
@@ -109,7 +109,7 @@ class Subject:
         return self._shared.results_for(self.xacro, self.root, is_whole=self.is_whole)
 
     def elements(self, tag: str | None = None) -> Iterator[Element]:
-        """Return the direct children of ``<robot>`` in document order; with `tag`, only children with this tag."""
+        """Return the direct children of ``<robot>`` in document order, or only those with a tag."""
         return self.root.elements() if tag is None else iter(self._elements_by_tag.get(tag, ()))
 
     @cached_property
@@ -122,7 +122,10 @@ class Subject:
 
     @cached_property
     def joints(self) -> tuple[Joint, ...]:
-        """All joints in source order; for a refused model, the readable joints, including those with repeated names."""
+        """All joints in source order.
+
+        If urdfdom would refuse the model, these are the readable joints, including those with repeated names.
+        """
         if self.robot is not None:
             return tuple(self.robot.joints.values())
         from linkwright.urdf.reader import read_joint
@@ -132,7 +135,10 @@ class Subject:
 
     @cached_property
     def links(self) -> tuple[Link, ...]:
-        """All links in source order; for a refused model, the readable links, including those with repeated names."""
+        """All links in source order.
+
+        If urdfdom would refuse the model, these are the readable links, including those with repeated names.
+        """
         if self.robot is not None:
             return tuple(self.robot.links.values())
         from linkwright.urdf.reader import MaterialTable, read_link

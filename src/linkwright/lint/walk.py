@@ -66,7 +66,7 @@ def limits(subject: Subject, *types: str) -> Iterator[tuple[Joint, Element]]:
 
 
 def bounds(limit: Element) -> tuple[float, float] | None:
-    """Return the lower and upper bounds as urdfdom reads them; None if one is not a number.
+    """Return the lower and upper bounds as urdfdom reads them, or None if one is not a number.
 
     A missing bound is 0.
     """
@@ -88,7 +88,7 @@ def value(element: Element, attribute: str) -> float | None:
 
 
 def values(element: Element, attribute: str) -> tuple[float, ...]:
-    """Return the numbers in an attribute; empty if it is absent or contains anything else."""
+    """Return the numbers in an attribute, or an empty tuple if it is absent or contains anything else."""
     text = element.attributes.get(attribute)
     if text is None:
         return ()

@@ -39,9 +39,9 @@ _FLAW_RULES = {
 }
 _URI_TAGS = ("uri", "filename")
 _MISSING_RESOURCES = frozenset({"SDF160", "SDF162"})
-"""Findings on models and meshes that are not on this machine, which have a common fix."""
+"""Findings that have a common fix because models and meshes are missing on this machine."""
 _RESERVED_NAME = "SDF111"
-"""The finding on a reserved name, which is a warning if Gazebo classic accepts the name."""
+"""The finding on a reserved name. It is a warning if Gazebo classic accepts the name."""
 _CLASSIC_PACKAGES = ("gazebo_ros", "gazebo_ros_pkgs", "gazebo_plugins", "gazebo_dev", "gazebo_ros2_control")
 _ZERO_MASS, _NEGATIVE_MASS = ZeroMass(), NegativeMass()
 
@@ -93,7 +93,7 @@ def merge_missing_resources(findings: Iterable[Diagnostic]) -> list[Diagnostic]:
 def adapt_to_classic(findings: Iterable[Diagnostic], path: Path) -> Iterator[Diagnostic]:
     """Yield the findings on a world, adapted if its package is for Gazebo classic.
 
-    A warning about a construct that only gz refuses then becomes an information.
+    A warning about a construct that only gz refuses then becomes informational.
     """
     package = find_package(path.absolute().parent)
     manifest = None if package is None else package.manifest

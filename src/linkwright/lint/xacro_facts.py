@@ -35,7 +35,7 @@ _MAX_FOLDER_FILES = 200
 _CACHE_SIZE = 2_000_000
 """The maximum number of characters of the documents with cached facts."""
 _MAX_DEPTH = 1_000
-"""The maximum depth of elements that are examined; an expansion does not go deeper, either."""
+"""The maximum nesting depth of the elements that are examined, the same as in an expansion."""
 
 
 @dataclass(frozen=True)
@@ -161,7 +161,7 @@ class FileFacts:
         return facts
 
     def parameters(self, macro: Element) -> tuple[Parameter, ...]:
-        """Return the parameters that a macro of this file declares; empty if they are malformed."""
+        """Return the parameters that a macro of this file declares, or an empty tuple if they are malformed."""
         try:
             return parse_parameters(macro.attributes.get("params", ""))
         except Fault:
@@ -259,7 +259,7 @@ def _character_count(_: int, facts: FileFacts) -> int:
 
 
 _CACHE: BoundedCache[int, FileFacts] = BoundedCache(_CACHE_SIZE, _character_count)
-"""The facts about documents by `id`, which stays unique because the facts keep the documents alive."""
+"""The facts about documents by `id`. An ID stays unique because the facts keep the documents alive."""
 
 
 class XacroFacts:

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 def deferred(package: str, names: Mapping[str, Sequence[str]]) -> Callable[[str], Any]:
-    """Return a ``__getattr__`` for the ``__init__`` of a package, which imports modules on first access.
+    """Return a ``__getattr__`` for a package's ``__init__`` that imports modules on first access.
 
     Source: PEP 562.
 
@@ -39,7 +39,7 @@ class _Pattern:
     """A pattern that is compiled when one of its attributes is used for the first time.
 
     Modules define their patterns at the top. A check of one robot imports seventy patterns, and uses a quarter of
-    them. To compile one pattern takes as long as to import a small module.
+    them. Compiling one pattern takes as long as importing a small module.
     """
 
     def __init__(self, text: Any, flags: int) -> None:
@@ -62,7 +62,7 @@ def _lazy_pattern(text: Any, flags: int = 0) -> Any:
 if TYPE_CHECKING:
 
     def lazy_pattern(text: AnyStr, flags: int = 0) -> re.Pattern[AnyStr]:
-        """Return a pattern like `re.compile`, but raise errors in the pattern only on first use."""
+        """Return a pattern like `re.compile`. Errors in the pattern are raised only on first use."""
 
 else:
     lazy_pattern = _lazy_pattern

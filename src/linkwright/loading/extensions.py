@@ -1,12 +1,12 @@
-"""Extensions of Linkwright, which packages declare as entry points.
+"""Extensions of Linkwright. Packages declare them as entry points.
 
 Linkwright declares its own extensions in the same way. Each group, such as ``linkwright.displays`` or
 ``linkwright.page_features``, belongs to one subpackage. The entry points of all installed packages are read once, and
 an object is imported only when it is loaded.
 
 Entry points are read from ``*.dist-info`` in the folders of the search path (PyPA, "Entry points specification").
-`importlib.metadata` would also find them in archives. However, to import it takes as long as all other imports of
-``linkwright check`` before a file is read.
+`importlib.metadata` would also find them in archives. However, importing it takes as long as all other imports of
+``linkwright check`` together.
 """
 
 from __future__ import annotations
@@ -25,7 +25,10 @@ _OWN_PREFIX = "linkwright."
 _NODES_GROUP = "linkwright.nodes"
 """A group that the distribution linkwright declares, but not linkwright-core."""
 _READ_PREFIXES = (_OWN_PREFIX, "launch_ros.")
-"""The prefixes of the groups that are read: those of Linkwright, and of launch_ros, which packages also extend."""
+"""The prefixes of the groups that are read.
+
+They are the groups of Linkwright, and those of launch_ros, which packages also extend.
+"""
 
 
 class EntryPoint(NamedTuple):
@@ -54,7 +57,9 @@ class EntryPoint(NamedTuple):
 
 
 def extensions(group: str) -> Mapping[str, EntryPoint]:
-    """Return the entry points of a group by name, Linkwright's own before those of other packages.
+    """Return the entry points of a group by name.
+
+    Linkwright's own entry points precede those of other packages.
 
     The entry points of a package are sorted by name, because the order in which a package declares them is not
     reliable: some build tools sort them in the metadata. If two packages declare the same name, the first one that was
@@ -83,7 +88,7 @@ def _all_groups() -> Mapping[str, Mapping[str, EntryPoint]]:
 
 
 def _read_declarations() -> Iterator[tuple[str, str]]:
-    """Yield the name of each distribution that has entry points, and the text of its entry-point file.
+    """Yield the name and the entry-point text of each distribution that has entry points.
 
     If several distributions have the same name, only the first one is yielded.
     """

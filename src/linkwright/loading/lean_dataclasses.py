@@ -1,9 +1,9 @@
-"""A faster replacement of `dataclasses`, whose methods are compiled on first use.
+"""A faster replacement for `dataclasses`. Its methods are compiled on first use.
 
 The standard library generates the methods of a class as source code, and compiles them when the class is defined. For
 this purpose, it also imports `inspect`. A check of a small robot defines sixty classes and creates objects of half of
-them, so this took a quarter of its time. Here, ``__init__`` is compiled when the first object is created, and all
-classes share the remaining methods.
+them. The compilation took a quarter of its time. Here, ``__init__`` is compiled when the first object is created, and
+all classes share the remaining methods.
 
 For type checkers, the functions are `dataclasses.dataclass`, `field` and `replace`, with those of their arguments that
 are used here. The functions of `dataclasses` for a class or an object, such as ``fields`` and ``asdict``, also accept
@@ -138,7 +138,7 @@ def _compile_init(cls: Any) -> Callable[..., None]:
     slow_statements = [f"set_value(self, {entry.name!r}, {entry.value})" for entry in set_fields]
     fast_statements = [f"self.{entry.name} = {entry.value}" for entry in set_fields]
     if frozen and slots:
-        # To set an attribute of a frozen class requires a function call. Instead, the object temporarily has a class
+        # Setting an attribute of a frozen class requires a function call. Instead, the object temporarily has a class
         # with the same slots that permits assignment, which takes half the time.
         scope["draft"] = type("Draft", cls.__bases__, {"__slots__": cls.__slots__, "__setattr__": _set})
         fast_statements = ["set_class(self, draft)", *fast_statements, "self.__class__ = cls"]
@@ -210,7 +210,7 @@ def _set_state(self: Any, state: list[Any]) -> None:
 
 
 class _StandardAttribute:
-    """An attribute that `dataclasses` sets on a class, which is computed on first access."""
+    """An attribute that `dataclasses` sets on a class. It is computed on first access."""
 
     def __init__(self, name: str) -> None:
         self._name = name
@@ -239,7 +239,7 @@ _SHARED: dict[str, Any] = {
 }
 _FROZEN: dict[str, Any] = {"__setattr__": _refuse_to_set, "__delattr__": _refuse_to_delete}
 _PICKLE_METHODS: dict[str, Any] = {"__getstate__": _get_state, "__setstate__": _set_state}
-"""Methods without which frozen objects with slots could be pickled, but not unpickled."""
+"""The methods without which frozen objects with slots cannot be unpickled."""
 
 # --- named tuples ----------------------------------------------------------------------------------------------------
 

@@ -1,6 +1,6 @@
-"""A faster replacement of `typing`, with the names that annotations use.
+"""A faster replacement for `typing`, with the names that annotations use.
 
-To import `typing` took a seventh of the time of ``linkwright xacro`` for a small file. Annotations are never evaluated
+Importing `typing` took a seventh of the time of ``linkwright xacro`` for a small file. Annotations are never evaluated
 (``from __future__ import annotations``), so almost all of `typing` is needed only by type checkers, for which this
 module imports the names of `typing`. At run time, the names are classes that can be subscripted, joined by ``|`` and
 subclassed. Code that evaluates annotations, as ``typing.get_type_hints`` does, needs `typing` itself.

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import logging
 from collections.abc import Callable, Iterable
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor
 from functools import cache, partial
 from pathlib import Path
 from typing import NamedTuple, TypeVar
@@ -28,14 +28,18 @@ from linkwright.language.workspace import Workspace
 from linkwright.lint.targets import XML_FILES
 from linkwright.lsp.findings import as_diagnostics
 from linkwright.lsp.positions import UTF_16, TextPositions
+from linkwright.lsp.protocol import LeanProtocol
+from linkwright.xacro.cache import BoundedCache
 from linkwright.xmltree.decoding import decode
+from linkwright.xmltree.nodes import seldom_collected
 from linkwright.xmltree.reader import read_bytes
 
 T = TypeVar("T")
 
 _log = logging.getLogger(__name__)
-_KEPT_TEXTS = 200
-"""The number of files on the disk whose lines are kept, for the places of findings."""
+_MAX_TEXTS = 200
+"""The number of files on the disk whose lines are stored, for the positions of findings."""
+_CACHE_DIVISOR = 8
 
 
 class FormattedText(NamedTuple):
@@ -54,7 +58,7 @@ class LinkwrightServer(LanguageServer):
     """
 
     def __init__(self) -> None:
-        super().__init__("linkwright", __version__)
+        super().__init__("linkwright", __version__, protocol_cls=LeanProtocol)
         self.project: Workspace | None = None
         self._uris: dict[Path, str] = {}
         self._files: dict[Path, tuple[int, TextPositions]] = {}
@@ -63,12 +67,15 @@ class LinkwrightServer(LanguageServer):
         self._has_changes = asyncio.Event()
         self._is_indexed = asyncio.Event()
         self._thread = ThreadPoolExecutor(1, thread_name_prefix="check")
+        self._background: dict[Path, Future[None]] = {}
         self._work: asyncio.Task[None] | None = None
 
     # --- files ------------------------------------------------------------------------------------------------
 
     def begin(self, folders: Iterable[Path]) -> None:
         """Open the folders of the editor, and check what changes from now on."""
+        BoundedCache.divisor = _CACHE_DIVISOR
+        seldom_collected.ages_objects = False
         self.project = Workspace(folders)
         self._work = asyncio.get_running_loop().create_task(self._check_changes(self.project))
 
@@ -166,10 +173,15 @@ class LinkwrightServer(LanguageServer):
     @property
     def opens_pages(self) -> bool:
         """Whether the client follows the address of a finding's code, and asks for virtual documents."""
-        document, workspace = self.client_capabilities.text_document, self.client_capabilities.workspace
+        document = self.client_capabilities.text_document
         published = None if document is None else document.publish_diagnostics
-        asks = workspace is not None and workspace.text_document_content is not None
-        return asks and published is not None and bool(published.code_description_support)
+        return self.opens_virtual_documents and published is not None and bool(published.code_description_support)
+
+    @property
+    def opens_virtual_documents(self) -> bool:
+        """Whether the client asks for the content of virtual documents; other clients show an empty file."""
+        workspace = self.client_capabilities.workspace
+        return workspace is not None and workspace.text_document_content is not None
 
     async def when_indexed(self) -> None:
         """Wait until the folders have been searched."""
@@ -188,7 +200,7 @@ class LinkwrightServer(LanguageServer):
             if known is None or known[0] != changed_ns:
                 known = changed_ns, TextPositions(decode(read_bytes(file), str(file)), encoding)
                 self._files[file] = known
-                if len(self._files) > _KEPT_TEXTS:
+                if len(self._files) > _MAX_TEXTS:
                     del self._files[next(iter(self._files))]
         except (OSError, LinkwrightError):
             return None
@@ -250,6 +262,13 @@ class LinkwrightServer(LanguageServer):
         except Exception:  # noqa: BLE001 - the editor continues to work, and the log has the reason
             _log.exception("The check of '%s' failed", about)
             return None
+
+    def in_background(self, work: Callable[[], None], about: Path) -> None:
+        """Do work in the thread of the checks without waiting for it; work about a file replaces what still waits."""
+        waiting = self._background.get(about)
+        if waiting is not None:
+            waiting.cancel()
+        self._background[about] = self._thread.submit(work)
 
     async def in_thread(self, work: Callable[[], T]) -> T:
         """Return the result of work in the thread of the checks, which is the only one that reads the workspace."""

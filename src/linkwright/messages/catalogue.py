@@ -2,8 +2,8 @@
 
 Each package has one text file in ``data/`` with its interface files, each after a heading such as
 ``=== msg/JointState``. The comments are not those of ROS, and rarely used types have none. A file is read when the
-first of its interfaces is requested. If ``jazzy`` follows the name in a heading, the definition is that of later
-distributions, and is used if ``ROS_DISTRO`` names one of them.
+first of its interfaces is requested. If ``jazzy`` follows the name in a heading, the definition applies to later
+distributions. It is used if ``ROS_DISTRO`` names one of them.
 """
 
 from __future__ import annotations

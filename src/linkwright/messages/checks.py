@@ -213,7 +213,7 @@ def is_scalar(value: Any) -> TypeGuard[np.generic]:
 
 
 def ndarray_class() -> type[NDArray[Any]] | None:
-    """Return ``numpy.ndarray``; None if numpy has not been imported."""
+    """Return ``numpy.ndarray``, or None if numpy has not been imported."""
     return getattr(sys.modules.get("numpy"), "ndarray", None)
 
 

@@ -156,7 +156,10 @@ class _FieldCode:
         return f"    if not ({self._usual_test('value')}): value = Checks.{check}\n"
 
     def _length_check(self) -> str:
-        """Return an expression that tests the number of values, or an empty string if any number is valid."""
+        """Return an expression that tests the number of values.
+
+        The expression is empty if any number is valid.
+        """
         if self.kind.size is None:
             return ""
         return f" and len(value) {'==' if self.kind.container is Container.ARRAY else '<='} {self.kind.size}"
@@ -237,7 +240,10 @@ _BASE_CLASSES: dict[str, type[Message]] = {
 """The base classes of message classes with additional methods, by type name."""
 
 _HAND_WRITTEN_MODULES = {"tf2_msgs/msg/TFMessage": "linkwright.messages.tf_message"}
-"""The modules of hand-written classes by type name; they are imported on demand, because this one needs numpy."""
+"""The modules of hand-written classes, by type name.
+
+They are imported on demand, because their import of numpy takes long.
+"""
 
 
 def get_message(name: str) -> type[Any]:
@@ -280,7 +286,7 @@ def get_interface(name: str) -> type[Any]:
 
 
 def class_of(structure: Structure) -> type[Any]:
-    """Return the message class for a structure, which is created on first use."""
+    """Return the message class for a structure. The class is created on first use."""
     return cast("type[Any]", _class_for(structure))
 
 

@@ -28,7 +28,7 @@ class Abridgement(NamedTuple):
     no_str: bool = False
 
     def text(self, text: str) -> str:
-        """Return a string value as it is displayed: truncated, or replaced by its length."""
+        """Return a string value for display: truncated, or replaced by its length."""
         return f"<string length: <{len(text)}>>" if self.no_str else self.cut(text)
 
     def cut(self, text: str) -> str:

@@ -6,7 +6,10 @@ import os
 from collections.abc import Mapping
 
 ASSUMED = "LINKWRIGHT_ROS_DISTRO_ASSUMED"
-"""The variable that is set if ``ROS_DISTRO`` does not come from the user, but is only set for launch files."""
+"""The variable that is set if ``ROS_DISTRO`` does not come from the user.
+
+In that case, ``ROS_DISTRO`` is set only for launch files.
+"""
 
 BEFORE_IRON = ("dashing", "eloquent", "foxy", "galactic", "humble")
 """The distributions up to Humble."""
@@ -30,10 +33,10 @@ def is_before_kilted(variables: Mapping[str, str] = os.environ) -> bool:
 
 
 def checks_fields_as_ros(variables: Mapping[str, str] = os.environ) -> bool:
-    """Return whether field values are checked as in ROS 2, which accepts fewer values.
+    """Return whether field values are checked as in ROS 2, where fewer values are accepted.
 
-    They are if ``ROS_DISTRO`` of the user names Humble or an earlier distribution, or if ``ROS_PYTHON_CHECK_FIELDS`` is
-    1. Newer distributions accept any value unless the latter variable is set.
+    This is the case if the user's ``ROS_DISTRO`` names Humble or an earlier distribution, or if
+    ``ROS_PYTHON_CHECK_FIELDS`` is 1. Newer distributions accept any value unless ``ROS_PYTHON_CHECK_FIELDS`` is set.
     """
     if variables.get("ROS_PYTHON_CHECK_FIELDS") == "1":
         return True

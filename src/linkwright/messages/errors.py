@@ -30,5 +30,5 @@ class WrongValueError(FieldValueError, TypeError):
 
 
 def data_error(code: str, message: Phrase) -> MessageDataError:
-    """Create the error for bytes that cannot be deserialized, or a message that cannot be serialized."""
+    """Create the error for a message that cannot be deserialized or serialized."""
     return MessageDataError(Diagnostic(code, message))

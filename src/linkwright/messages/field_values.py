@@ -51,7 +51,7 @@ def set_fields(
 
 
 class _InvalidValueError(Exception):
-    """Raised when a value is invalid for a field; the argument describes a valid value."""
+    """Raised when a value is invalid for a field. The argument describes a valid value."""
 
 
 class _Setter:
@@ -158,7 +158,10 @@ class _Setter:
 
 
 def _converted_value(primitive: Primitive, kind: FieldType, value: Any) -> Any:
-    """Return a value converted to the Python type of its field; the setter checks ranges and lengths."""
+    """Return a value converted to the Python type of its field.
+
+    The setter checks ranges and lengths.
+    """
     if is_scalar(value):
         value = value.item()
     python = primitive.python

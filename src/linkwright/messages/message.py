@@ -253,7 +253,7 @@ def serialize(message: Message) -> bytes:
 
 
 def deserialize(data: bytes | bytearray | memoryview, message_class: type[MessageT]) -> MessageT:
-    """Deserialize a message from CDR bytes, which include the header.
+    """Deserialize a message from CDR bytes with a header.
 
     Bytes after the end of the message are ignored.
 
@@ -322,7 +322,7 @@ def _write_error(message: object, fault: Exception) -> MessageDataError:
 
 
 def _invalid_field(message: Message, path: str) -> str | None:
-    """Return a message about the first field with an invalid value, or None if all values are valid.
+    """Return a message about the first field with an invalid value, or None.
 
     The message is the one that the checks on assignment raise.
     """

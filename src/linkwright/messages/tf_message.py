@@ -80,7 +80,7 @@ class TransformLayout:
         """
         sec, nanosec = divmod(stamp_ns, NANOSECONDS_PER_SECOND)
         if not -(1 << 31) <= sec < 1 << 31:
-            raise OverflowError(f"the stamp {stamp_ns} ns is more than 32 bits of seconds can hold")
+            raise OverflowError(f"the seconds of the stamp {stamp_ns} ns do not fit into 32 bits")
         words = self._words.copy()
         halves = words.view(np.uint32)
         halves[self._stamps] = sec & 0xFFFFFFFF
@@ -173,7 +173,7 @@ def layout_for(parents: tuple[str, ...], children: tuple[str, ...]) -> Transform
 
 
 def matching_layout(data: bytes) -> ReceivedTransforms | None:
-    """Return a received message with the registered layout that it matches, or None if no layout matches.
+    """Return a received message with the registered layout that it matches, or None.
 
     Args:
         data: the bytes of a message with a little-endian header.
@@ -189,7 +189,7 @@ def matching_layout(data: bytes) -> ReceivedTransforms | None:
 
 
 def _mask(text: str) -> bytes:
-    """Return a mask for an encoded string: ones for its length and bytes, zeros for the padding.
+    """Return a mask for an encoded string, with ones for its bytes and zeros for the padding.
 
     Padding may have any value.
     """
@@ -235,7 +235,7 @@ class TransformBatch:
 
     @classmethod
     def from_messages(cls, transforms: Iterable[TransformStamped]) -> TransformBatch:
-        """Create a batch from message objects; its stamp is the newest of their stamps."""
+        """Create a batch from message objects. Its stamp is the newest of their stamps."""
         transforms = list(transforms)
         return cls(
             parents=tuple(transform.header.frame_id for transform in transforms),
@@ -319,7 +319,10 @@ class TFMessage(Message):
 
     @property
     def batch(self) -> TransformBatch:
-        """The transforms as arrays; created on demand if the message was not created from a batch."""
+        """The transforms as arrays.
+
+        They are created on demand if the message was not created from a batch.
+        """
         if self._batch is not None:
             return self._batch
         if self._received is not None:

@@ -17,4 +17,7 @@ Vector3 = get_message("geometry_msgs/msg/Vector3")
 JointState = get_message("sensor_msgs/msg/JointState")
 
 FloatSequence = Sequence[float]
-"""Numbers for a float64[] field: any sequence of floats, or a numpy array where there are many."""
+"""Numbers for a float64[] field: any sequence of floats.
+
+For many numbers, this is a numpy array.
+"""

@@ -172,7 +172,7 @@ def _scalar(text: str) -> str:
 
 
 def _block_scalar(text: str, path: tuple[str, ...]) -> str:
-    """Format a multi-line string; its indentation depends on its path.
+    """Format a multi-line string. Its indentation depends on its path.
 
     To get this indentation, PyYAML formats the string inside containers of the same kinds.
     """
@@ -191,7 +191,7 @@ def _dump(data: Any, *, flow_style: bool) -> str:
     import yaml  # imported here because only programs that show messages need it
 
     class Dumper(yaml.SafeDumper):
-        """PyYAML's dumper, except that the fields of a message are never in braces.
+        """PyYAML's dumper, except that it never writes the fields of a message in braces.
 
         As in rosidl_runtime_py, this does not depend on the style of lists.
         """

@@ -14,19 +14,21 @@ from linkwright.model_files.installed import manual_download_hint
 from linkwright.model_files.table import ModelEntry
 
 _MOST_BYTES = 1 << 29
-"""The maximum size of an unpacked model; the models in the table need a tenth of it."""
+"""The maximum size of an unpacked model in bytes. The models in the table need a tenth of it."""
 
 _BLOCK_BYTES = 1 << 20
 
 
 def unpack(entry: ModelEntry, archive: Path, target: Path, origin: str | None = None) -> None:
-    """Extract the files of a model from a ZIP archive; paths in the archive are never used for writing.
+    """Extract the files of a model from a ZIP archive.
+
+    Paths in the archive are never used for writing.
 
     Args:
         entry: the model.
         archive: the file.
         target: the folder to create for the extracted files.
-        origin: the source of the download, to be named in messages to users that do not know the archive's path.
+        origin: the source of the download, named in messages in place of the archive's temporary path.
 
     Raises:
         LinkwrightError: MODEL105 if it is not such an archive, lacks a file or is too large, or MODEL106 if a file

@@ -27,14 +27,14 @@ _PARTIAL, _NOT_SATISFIABLE = 206, 416
 
 
 def fetch(entry: ModelEntry, address: str, part_file: Path, progress: Progress) -> None:
-    """Download a file; an existing part is resumed if the server supports it.
+    """Download a file, or resume its download if there is a part and the server supports it.
 
     The system's proxy settings apply (``https_proxy``).
 
     Args:
         entry: the model, for messages and the size limit.
         address: an http or https URL.
-        part_file: the file to write; it stays after an error, and the next call resumes it.
+        part_file: the file to write. It stays after an error, and the next call resumes it.
         progress: the function that receives the progress.
 
     Raises:

@@ -22,7 +22,9 @@ def models_folder() -> Path:
 
 
 def is_installed(entry: ModelEntry, folder: Path | None = None) -> bool:
-    """Return whether a model is installed; it was verified at its installation.
+    """Return whether a model is installed.
+
+    An installed model was verified at its installation.
 
     Args:
         entry: the model.
@@ -96,8 +98,8 @@ def check_sum(entry: ModelEntry, path: Path, expected: str | None, origin: str |
     Args:
         entry: the model.
         path: the file.
-        expected: the SHA-256 of the file, or None if it is not known; then nothing is verified.
-        origin: the source of the download, for messages to users that do not know its path.
+        expected: the SHA-256 of the file, or None to verify nothing.
+        origin: the source of the download, named in messages in place of the file's temporary path.
 
     Raises:
         LinkwrightError: MODEL104 if the checksum differs, or MODEL105 if the file cannot be read.

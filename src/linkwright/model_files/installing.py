@@ -21,8 +21,8 @@ def install(entry: ModelEntry, source: str | None, folder: Path | None, progress
 
     Args:
         entry: the model.
-        source: None for the publisher's address; else the address of a mirror's file or folder; the file to download;
-            or a folder with this file or with the unpacked model.
+        source: None for the publisher's address. Otherwise, the address of a mirror's file or folder, a downloaded
+            file, or a folder with this file or with the unpacked model.
         folder: the folder of models; `models_folder` if omitted.
         progress: the function that receives the progress of the download.
 
@@ -114,7 +114,7 @@ def _install_folder(entry: ModelEntry, folder: Path, target: Path) -> Path:
 
 @contextmanager
 def _draft(entry: ModelEntry, target: Path) -> Iterator[Path]:
-    """Provide a temporary path for the model, which is renamed on success and deleted on an error."""
+    """Provide a temporary path for the model. It is renamed on success and deleted on an error."""
     installed_path = target / entry.place
     draft = target / f".{entry.place}.draft-{os.urandom(4).hex()}"
     previous = target / f".{entry.place}.former-{os.urandom(4).hex()}"

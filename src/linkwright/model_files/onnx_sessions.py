@@ -1,6 +1,6 @@
 """Sessions of onnxruntime for ONNX files, and explanations of load errors.
 
-Speech and vision share them; each reports errors with its own findings.
+Speech and vision share them, and report errors with their own findings.
 """
 
 from __future__ import annotations
@@ -15,9 +15,9 @@ CPU, CUDA = "CPUExecutionProvider", "CUDAExecutionProvider"
 
 _ERRORS_ONLY = 3
 _SOURCE_LOCATION = re.compile(r"^.* failed:\s*|/onnxruntime_src/\S+ (?:.*?\) (?=[A-Z]))?")
-"""The location in onnxruntime's code, which precedes the reason in its messages."""
+"""The location in onnxruntime's code that precedes the reason in its messages."""
 _MISSING_WEIGHTS = re.compile(r"\bexternal\b|cannot get file size", re.IGNORECASE)
-"""onnxruntime's messages about a missing weights file; the second is of 1.23 (the last for Python 3.10) or older."""
+"""onnxruntime's messages about a missing weights file. The second is of 1.23 or older, as on Python 3.10."""
 
 _TOO_NEW = re.compile(r"IR version|[Oo]pset \d+")
 _HEADER_BYTES = 512
@@ -38,7 +38,7 @@ class UnloadableNetworkError(Exception):
 
 
 def load_onnxruntime() -> Any:
-    """Import and return the module ``onnxruntime``, which has no types.
+    """Import and return the untyped module ``onnxruntime``.
 
     Raises:
         ModuleNotFoundError: if onnxruntime is not installed.
@@ -74,7 +74,9 @@ def load_session(file: Path, gpu: str | None = None, threads: int = 0) -> Any:
 
 
 def has_cuda() -> bool:
-    """Return whether the installed onnxruntime was built for CUDA; a GPU may still be missing.
+    """Return whether the installed onnxruntime was built for CUDA.
+
+    A GPU may still be missing.
 
     Raises:
         ModuleNotFoundError: onnxruntime is not installed.

@@ -37,7 +37,9 @@ async def wait_for_future(node: Node, future: Any, seconds: float | None) -> boo
 
 
 async def wait_for_service(node: Node, client: Client[Any, Any], seconds: float | None, *, wanted: bool = True) -> bool:
-    """Wait until a service appears or disappears; return False if the timeout expires first.
+    """Wait until a service appears or disappears.
+
+    Return False if the timeout expires first.
 
     Args:
         node: the node that waits.

@@ -1,4 +1,4 @@
-"""cam2image of image_tools without a camera: publishes a moving test pattern on the topic ``image``."""
+"""cam2image of image_tools without a camera. It publishes a test pattern on ``image``."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""talker_qos and listener_qos of demo_nodes_py, with options for the reliability and the number of messages."""
+"""talker_qos and listener_qos of demo_nodes_py, with options for reliability and count."""
 
 from __future__ import annotations
 

@@ -36,7 +36,7 @@ class DiagnosticUpdater:
     Args:
         node: the node, whose name is the prefix of the task's name.
         task: the name of the diagnostic task.
-        ask: returns the current health.
+        ask: returns the current diagnostic status.
         hardware_id: the ID of the hardware; ``none`` for no hardware, as in diagnostic_updater.
     """
 

@@ -36,7 +36,7 @@ class ReadWorld(Protocol):
 
 
 class FileFollower(Protocol):
-    """The host of a node, which watches the node's files.
+    """The host of a node. It watches the node's files.
 
     All methods are called on the event loop.
     """
@@ -54,7 +54,9 @@ class FileFollower(Protocol):
         read: Callable[[str], ReadWorld],
         load: Callable[[str], Awaitable[Sequence[Diagnostic]]],
     ) -> None:
-        """Watch the files of a world; when one is saved, read the world again and load it if it has no new errors.
+        """Watch the files of a world, and reload the world when one of them is saved.
+
+        A world with new errors is not loaded.
 
         Args:
             world: the current world.
@@ -63,7 +65,9 @@ class FileFollower(Protocol):
         """
 
     def follow_text(self, text: str, name: str, renew: Callable[[str], None]) -> None:
-        """Watch the file from which this process expanded a description, and pass on each new version.
+        """Watch the file from which this process expanded a description.
+
+        Each new version of the description is passed on. If this process did not expand the description, do nothing.
 
         If this process did not expand the description, do nothing.
 

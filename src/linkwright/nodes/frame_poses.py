@@ -28,7 +28,7 @@ class FramePoses:
         TransformListener(self.buffer, node)
 
     def pose(self, target: str, source: str, time_ns: int) -> Transform | None:
-        """Return the pose of the frame `source` in the frame `target` at a time, or None if there is no transform.
+        """Return the pose of the frame `source` in the frame `target` at a time, or None.
 
         The lookup does not wait. If there is no transform for the time, the latest transform is used. If there is no
         transform at all, a throttled warning is logged.

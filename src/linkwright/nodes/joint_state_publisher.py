@@ -47,7 +47,7 @@ Array = NDArray[np.float64]
 
 
 class _Quantity:
-    """The positions, velocities or efforts of the free joints; NaN for a joint without a value."""
+    """The positions, velocities or efforts of the free joints. NaN marks a joint without a value."""
 
     def __init__(self, values: Array) -> None:
         self._values_and_zero = np.append(values, 0.0)
@@ -76,7 +76,9 @@ class _Quantity:
 
 
 class JointPositions:
-    """Positions (rad or m), velocities and efforts of the free joints; mimic joints depend on them.
+    """Positions (rad or m), velocities and efforts of the free joints.
+
+    The values of mimic joints are computed from them.
 
     Args:
         settings: the settings, which determine the quantities that joints have from the start.
@@ -93,7 +95,8 @@ class JointPositions:
         """Change to another layout.
 
         Joints that are free in both layouts and have left their initial position keep their state, clamped to the new
-        limits. All other joints start at their zero position.
+        limits. All other joints start at their zero position, or without a position if ``publish_default_positions`` is
+        false.
         """
         old_states, old_rows = self._free_states(), self._rows
         old_zeros = {joint.name: joint.zero for joint in self.layout.free}
@@ -115,7 +118,7 @@ class JointPositions:
                 self._store(joint, old_states[:, row], old_zeros[joint.name])
 
     def apply_message(self, message: JointState) -> None:
-        """Apply the values of a message to the free joints, without clamping positions to the limits."""
+        """Apply the values of a message to the free joints. Positions are not clamped to the limits."""
         for index, name in enumerate(message.name):
             row = self._rows.get(name)
             if row is None:
@@ -129,7 +132,7 @@ class JointPositions:
                     quantity.values[row] = values[index]
 
     def sweep(self, delta: float) -> None:
-        """Move every free joint by `delta` (rad or m); joints reverse at their limits.
+        """Move every free joint by `delta` (rad or m). Joints reverse at their limits.
 
         Continuous joints wrap around instead.
         """
@@ -153,12 +156,18 @@ class JointPositions:
         self._position.values[row] = min(max(position, self._lower[row]), self._upper[row])
 
     def published(self) -> Array:
-        """Return the positions of all published joints in the order of messages; 0 for unknown positions."""
+        """Return the positions of all published joints, in the order of messages.
+
+        Unknown positions are 0.
+        """
         positions = self._position.spread(self.layout, scaled=True, shifted=True)
         return np.zeros(len(self.layout.ranges)) if positions is None else positions
 
     def fill(self, message: JointState) -> None:
-        """Write the joint names and values to a message; quantities without any value remain empty."""
+        """Write the joint names and values to a message.
+
+        Quantities without any value remain empty.
+        """
         message.name = list(self.layout.ranges)
         velocities = self._velocity.spread(self.layout, scaled=True, shifted=False)
         efforts = self._effort.spread(self.layout, scaled=False, shifted=False)
@@ -246,11 +255,11 @@ class JointStatePublisher(SingleNode):
         return self._joints
 
     def watch(self, watcher: Watcher) -> None:
-        """Register a watcher, which is notified of changes to the joints."""
+        """Register a watcher that is notified of changes to the joints."""
         self._watchers.append(watcher)
 
     def publish_soon(self) -> None:
-        """Publish once in the next iteration of the event loop, even if called several times."""
+        """Publish in the next iteration of the event loop, once even after several calls."""
         self._soon.trigger()
 
     def _robot_from_arguments(self, arguments: Sequence[str]) -> Robot | None:
@@ -375,6 +384,6 @@ class JointStatePublisher(SingleNode):
 
 
 def _other_format(text: str) -> str | None:
-    """Return the name of another robot format if the root element indicates one, otherwise None."""
+    """Return the name of another robot format that the root element indicates, or None."""
     element = _FIRST_ELEMENT.search(text)
     return None if element is None else _OTHER_FORMATS.get(element[1])

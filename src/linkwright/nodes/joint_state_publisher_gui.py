@@ -1,4 +1,4 @@
-"""joint_state_publisher_gui: joint_state_publisher with sliders, which the viewer displays."""
+"""joint_state_publisher_gui: joint_state_publisher with sliders, which the viewer shows."""
 
 from __future__ import annotations
 
@@ -106,7 +106,7 @@ class JointPanel:
         self._publish_move()
 
     def center(self) -> None:
-        """Set every free joint to its zero position, which need not be the middle of its range."""
+        """Set every free joint to its zero position. It need not be the middle of the joint's range."""
         self._logger.info("Centering")
         for slider in self._free_sliders():
             self._joints.set(slider.name, slider.zero)
@@ -183,7 +183,9 @@ class JointPanel:
 
 
 class JointStatePublisherGui(JointStatePublisher):
-    """The running joint_state_publisher_gui node, named ``joint_state_publisher`` by default as in ROS.
+    """The running joint_state_publisher_gui node.
+
+    As in ROS, its default name is ``joint_state_publisher``.
 
     When sliders move, one message is published in the next iteration of the event loop. Messages on the topics of
     ``source_list`` move the sliders, too.

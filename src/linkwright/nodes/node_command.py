@@ -30,4 +30,7 @@ class NodeCommand:
 
 
 CommandParser = Callable[[Sequence[str]], NodeCommand | None]
-"""Returns the node for the arguments of a command line, starting with the program; None if it does not replace it."""
+"""Returns the node that replaces a program, given its command line.
+
+The command line starts with the program. The result is None if the node does not replace it.
+"""

@@ -126,7 +126,7 @@ class NodeWithFiles(RunningNode, Protocol):
 
 
 class SingleNode:
-    """The base class of nodes with a single node in the graph, `_node`, which `close` destroys.
+    """The base class of nodes with a single graph node, `_node`. `close` destroys it.
 
     Attributes:
         DEFAULT_NAME: the name of a node whose options do not set a name; not defined if each node has a different name.
@@ -147,7 +147,7 @@ class SingleNode:
 
 
 Factory = Callable[[Graph, NodeOptions], RunningNode]
-"""Starts a node; raises LinkwrightError when it cannot start."""
+"""Starts a node. Raises LinkwrightError if the node cannot start."""
 
 
 def create_node(
@@ -173,7 +173,9 @@ def create_node(
 def create_node_with_class(
     node_class: Callable[..., N], graph: Graph, options: NodeOptions, default_name: str, *, any_parameters: bool = False
 ) -> tuple[N, list[str]]:
-    """Create a node as `create_node` does, with a subclass of `Node` or a function that creates one.
+    """Create a node as `create_node` does, with a given class.
+
+    The class is a subclass of `Node`, or a function that creates one.
 
     Raises:
         LinkwrightError: a name, a remapping or a ROS argument is not valid.
@@ -201,7 +203,10 @@ def create_node_with_class(
 
 @contextmanager
 def starting(node: Node) -> Iterator[None]:
-    """Return a context that, on an error, logs it as FATAL, destroys the node and raises the error again."""
+    """Return a context that handles a LinkwrightError during the start of a node.
+
+    The error is logged as FATAL, the node is destroyed, and the error is raised again.
+    """
     try:
         yield
     except LinkwrightError as error:
@@ -259,7 +264,9 @@ class NodeRegistry(Mapping[tuple[str, str], Factory]):
             package, name = key
             message = phrase("the node '{package}/{name}' cannot be imported", package=package, name=name)
             hint = phrase(
-                ("it is part of '{place}': {problem}"), place=entry_point.distribution, problem=foreign(error)
+                "the Python package '{place}' provides it, but its import fails: {problem}",
+                place=entry_point.distribution,
+                problem=foreign(error),
             )
             raise LinkwrightError(Diagnostic("NODE002", message, hint=hint)) from error
         return factory

@@ -1,4 +1,4 @@
-"""Parameters of nodes and controllers, declared by a dataclass with their names, types and defaults.
+"""Parameters of nodes and controllers, declared by the fields of a dataclass.
 
     @dataclass(frozen=True, kw_only=True)
     class Gains:
@@ -117,7 +117,7 @@ class TableEntry:
         name: the name with dots; ``*`` represents the names in another parameter, as in ``gains.*.p``.
         kind: the type.
         default: the default value; None if it has none.
-        description: the purpose, with its unit; empty if the table does not tell it.
+        description: the purpose, with its unit; empty if the table does not contain it.
         choices: the allowed values; empty if any value of the type is allowed.
         only: the only distribution that has the parameter; empty if both have it.
         keys: the parameters that contain the names for ``*``.
@@ -135,7 +135,7 @@ class TableEntry:
 def entries(table: Any, prefix: str = "", keys: tuple[str, ...] = ()) -> Iterator[TableEntry]:
     """Yield the parameters of a table, without a node.
 
-    A parameter without a description has the one that the docstring of the table gives below ``Attributes:``.
+    If a parameter has no description, its entry below ``Attributes:`` in the docstring of the table is used.
 
     Args:
         table: the dataclass.
@@ -216,7 +216,10 @@ class ParameterTable(Generic[P]):
         self.values = self._read()
 
     def unknown(self) -> Iterator[tuple[str, Phrase | None]]:
-        """Yield each given parameter that does not exist, with a suggestion of the intended name or None."""
+        """Yield each given parameter that does not exist.
+
+        Each is yielded with a suggestion of the intended name, or None.
+        """
         for name in self._node.undeclared_overrides():
             if not name.startswith(_COMMON_PARAMETERS):
                 yield name, did_you_mean(name, self._reader.declared)
@@ -298,7 +301,7 @@ def _distribution() -> str:
 
 
 def _listed(names: Any) -> Iterable[str]:
-    """Return the names in a parameter value, which is a string or a sequence of strings."""
+    """Return the names in a parameter value. The value is one string or a sequence of strings."""
     return (names,) if isinstance(names, str) else names
 
 
@@ -311,7 +314,7 @@ def _kinds(table: Hashable) -> Mapping[str, Any]:
 
 
 def not_empty(name: str, value: Any) -> Phrase | None:
-    """Check that a string or sequence is not empty; return the error message, or None if it is valid."""
+    """Return an error message if a string or sequence is empty, otherwise None."""
     return None if len(value) else phrase("Parameter '{name}' cannot be empty", name=name)
 
 

@@ -3,8 +3,8 @@
 The node follows the ROS 2 node of that name (Humble 3.0.3 and later; see the notes on each rule), with these deliberate
 differences:
 
-- A message that the throttle delays is published as soon as the throttle permits, unless a newer one arrives before.
-  The ROS node drops the message, so that the last move of a slider can be missing.
+- A message that the throttle delays is published as soon as the throttle permits, unless a newer message arrives
+  before. The ROS node drops the message, so the last move of a slider can be missing.
 - A message that repeats the last positions does not delay a move that arrives right after it (see `Throttle`).
 - A new description resets the throttle, and a new ``frame_prefix`` publishes the fixed transforms again.
 - ``publish_frequency`` 0, for which the ROS node divides by zero, is rejected.
@@ -104,7 +104,7 @@ node must publish their transforms.
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Conversion:
-    """The conversion of joint-state messages with a certain list of joint names to transforms.
+    """The conversion of joint states with a certain list of names to transforms.
 
     Transform i is the pose of joint i of `motion` at position ``message[source[i]] * factor[i] + offset[i]``.
     """
@@ -217,7 +217,7 @@ class Throttle:
         self._stamp_ns: NDArray[np.int64] = np.zeros(0, dtype=np.int64)
 
     def group(self, names: Sequence[str]) -> JointGroup:
-        """Return the group for a list of joint names, which must not be empty."""
+        """Return the group for a list of joint names. The list must not be empty."""
         key = tuple(names)
         group = self._groups.get(key)
         if group is None:
@@ -245,7 +245,7 @@ class Throttle:
         return min(int(publication_times[group.rows].min()), now_ns) + self.interval_ns
 
     def is_in_order(self, group: JointGroup, stamp_ns: int) -> bool:
-        """Return whether every joint of the group was published before, and none with a later stamp."""
+        """Return whether every joint of the group was published before, and none of them later."""
         stamps = self._stamp_ns[group.rows]
         return bool(stamps.all() and (stamps <= stamp_ns).all())
 
@@ -322,7 +322,9 @@ class RobotStatePublisher(SingleNode):
                 Diagnostic(
                     "NODE101",
                     EMPTY_DESCRIPTION,
-                    hint=phrase("give it the URDF text: parameters=[{'robot_description': Command(['xacro ', path])}]"),
+                    hint=phrase(
+                        "set it to the URDF text: parameters=[{'robot_description': Command(['xacro ', path])}]"
+                    ),
                 )
             )
         robot = self._read(text)

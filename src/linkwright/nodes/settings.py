@@ -38,7 +38,7 @@ def declare_required(node: Node, name: str, kind: ParameterType, usage: str) -> 
 def options_from_words(
     options: NodeOptions, words: Sequence[str], names: Mapping[str, Callable[[str], Any]], usage: str
 ) -> NodeOptions:
-    """Return the options with parameters that are set by command-line arguments.
+    """Return the options with the parameters that command-line arguments set.
 
     Args:
         options: the options of the node.
@@ -93,7 +93,9 @@ def bad_value(name: str, value: object, node: str, known: Sequence[str] = ()) ->
 
 
 def log_unknown(node: Node) -> None:
-    """Log the parameters that are set but not declared; call this after all declarations.
+    """Log the parameters that are set but not declared.
+
+    This must be called after all declarations.
 
     A name that looks misspelt causes a warning. Other names are logged only as information, because parameters for all
     nodes of a launch (``/**``) also reach nodes that do not have them.
@@ -109,4 +111,4 @@ def log_unknown(node: Node) -> None:
         else:
             logger.warning(f"'{name}' is not a parameter of this node; {hint}")
     if unread_names:
-        logger.info(f"parameters that this node does not have are not read: {', '.join(unread_names)}")
+        logger.info(f"parameters that this node does not have are ignored: {', '.join(unread_names)}")

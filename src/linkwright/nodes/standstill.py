@@ -1,4 +1,7 @@
-"""Stops a robot when the publisher of its forwarded velocities disappears; see `Commander`."""
+"""Stops a robot when the publisher of its forwarded velocities disappears.
+
+See `linkwright.graph.endpoints.commander.Commander`.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""The component ``StaticTransformBroadcasterNode`` of tf2_ros: static_transform_publisher for containers."""
+"""The component ``StaticTransformBroadcasterNode`` of tf2_ros.
+
+It is static_transform_publisher for containers.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""static_transform_publisher of tf2_ros: publishes a static transform given on the command line."""
+"""static_transform_publisher of tf2_ros: publishes a static transform from the command line."""
 
 from __future__ import annotations
 

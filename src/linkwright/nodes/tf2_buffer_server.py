@@ -1,4 +1,4 @@
-"""buffer_server of tf2_ros: looks up transforms for processes that do not receive ``/tf`` themselves."""
+"""buffer_server of tf2_ros: looks up transforms for processes that do not receive ``/tf``."""
 
 from __future__ import annotations
 
@@ -33,7 +33,9 @@ _ERROR_CODES: dict[type[TransformException], int] = {
 
 
 class Tf2BufferServer(SingleNode):
-    """The running buffer_server node, with the action ``tf2_buffer_server`` (tf2_msgs LookupTransform).
+    """The running buffer_server node.
+
+    It serves the action ``tf2_buffer_server`` (tf2_msgs LookupTransform).
 
     If the transform for a goal is not available yet, the lookup is repeated until the goal's timeout. As in tf2_ros, an
     error is returned in the result, so every goal that is not canceled succeeds.

@@ -79,7 +79,10 @@ class Tf2Monitor(SingleNode):
             self._report()
 
     def _begin(self) -> bool:
-        """Start gathering data if the chain between the two frames is available; return whether gathering started."""
+        """Start gathering data if the chain between the two frames is available.
+
+        Return whether gathering started.
+        """
         subject = "all frames"
         if self._ends is not None:
             first, second = self._ends

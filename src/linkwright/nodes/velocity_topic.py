@@ -1,4 +1,4 @@
-"""Publishes velocities as geometry_msgs/msg/Twist or TwistStamped, depending on the subscribers."""
+"""Publishes velocities as Twist or TwistStamped, depending on the subscribers."""
 
 from __future__ import annotations
 
@@ -25,7 +25,9 @@ def velocity_types(node: Node, topic: str, stamped: bool | None) -> tuple[str, .
 
 
 class VelocityTopic:
-    """Publishes velocities on a topic, unless the topic has a type other than Twist and TwistStamped.
+    """Publishes velocities on a topic whose type is Twist or TwistStamped.
+
+    If the topic has another type, nothing is published.
 
     Args:
         node: the node that publishes.

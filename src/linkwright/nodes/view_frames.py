@@ -18,7 +18,9 @@ from linkwright.nodes.options import NodeOptions, SingleNode, create_node, start
 
 
 class ViewFrames(SingleNode):
-    """The running view_frames node, which writes ``frames_DATE.gv`` and ``frames_DATE.pdf`` to the current folder.
+    """The running view_frames node.
+
+    It writes ``frames_DATE.gv`` and ``frames_DATE.pdf`` to the current folder.
 
     Raises:
         LinkwrightError: NODE411 if an argument is invalid.
@@ -84,7 +86,7 @@ class ViewFrames(SingleNode):
 
 
 def frames_as_dot(frames: Mapping[str, Mapping[str, Any]], recorded_s: float) -> str:
-    """Return the tree of frames in the DOT language of Graphviz.
+    """Return the tree of frames as a graph in the DOT language of Graphviz.
 
     Args:
         frames: the data of the transform buffer for each frame, by frame name.

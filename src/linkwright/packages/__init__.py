@@ -1,4 +1,4 @@
-"""Search for ROS packages in the environment, workspaces, source trees and shipped packages."""
+"""The search for ROS packages in the environment, workspaces, source trees and shipped packages."""
 
 from linkwright.packages.active import current_finder, use_finder
 from linkwright.packages.ament import install_prefix, is_installed

@@ -18,7 +18,7 @@ PREFIX_PATH = "AMENT_PREFIX_PATH"
 """The environment variable that is set when ROS or a workspace is sourced."""
 
 ROS_VARIABLES = {"ROS_DISTRO": "humble", "ROS_VERSION": "2", "ROS_PYTHON_VERSION": "3"}
-"""The other variables that are set when ROS 2 is sourced, with the values for Humble, which Linkwright follows."""
+"""The other variables that are set when ROS 2 is sourced, with the values of Humble."""
 
 _MARKERS = Path("share", "ament_index", "resource_index", "packages")
 _COLCON_LAYOUT = ".colcon_install_layout"

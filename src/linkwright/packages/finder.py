@@ -23,7 +23,7 @@ from linkwright.packages.manifest import SourceScan, enclosing_package
 from linkwright.packages.share_layout import share_of_sources, substituted_share, substitutes
 
 START_VARIABLE = "LINKWRIGHT_START"
-"""The environment variable with the start folders of a launcher, which its processes also search for packages."""
+"""The environment variable with the start folders of a launcher. Its processes also search them for packages."""
 
 
 class PackageNotFoundError(LinkwrightError, KeyError):

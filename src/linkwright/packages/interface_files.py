@@ -1,4 +1,4 @@
-"""The interface files of a package: ``msg/NAME.msg``, ``srv/NAME.srv``, ``action/NAME.action``, and ``.idl`` files."""
+"""The interface files of a package: ``.msg``, ``.srv``, ``.action`` and ``.idl`` files."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ _EXTENSIONS = {"msg": (".msg", ".idl"), "srv": (".srv", ".idl"), "action": (".ac
 def interface_files(share: Path, kind: str) -> dict[str, Path]:
     """Return the files of the interfaces of one kind that a package defines.
 
-    An IDL file with the name of another interface file, which a build has generated, is left out.
+    An IDL file that a build generated from another interface file with the same name is left out.
 
     Args:
         share: the package's share folder, or its source folder.

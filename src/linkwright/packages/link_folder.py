@@ -1,4 +1,4 @@
-"""Folders of links in the user's cache; see `linkwright.packages.share_layout`."""
+"""Folders of links in the user's cache for `linkwright.packages.share_layout`."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from linkwright.packages.readers.installed_file import InstalledFile
 
 _MAX_LINKS = 5000
 _RETENTION_SECONDS = 7 * 24 * 3600.0
-"""Seconds before an unused layout is deleted; until then, a running program may still use the layout."""
+"""Seconds before an unused layout is deleted. Until then, a running program may still use it."""
 
 
 def link_folder(name: str, folder: Path, moved: Mapping[str, InstalledFile]) -> Path:

@@ -1,1 +1,1 @@
-"""The server side of the page in the browser: protocol, access control, open pages, and outboxes."""
+"""The server side of the page: protocol, access control, open pages, and outboxes."""

@@ -7,7 +7,7 @@ foreign site can point its name to the address of this machine (DNS rebinding). 
 origin as the server. Connections that have not sent the token are limited in number and time.
 
 When the program ends, its pages try to reconnect at the same port, where the program of another user may be
-listening. The page sends the token only to a server that proves that it knows the token (`Gate.proof`).
+listening. The page sends the token only to a server that proves that it has the token (`Gate.proof`).
 
 The token of a port is stored for the next start, so that open pages can reconnect when the program is started again.
 There is a file for each port, which only its user can read. A token is valid for a week after its creation, which
@@ -55,7 +55,7 @@ class PortToken:
 
     Attributes:
         token: the token that pages send.
-        pages_wait: whether pages were open when the previous program ended, which now try to reconnect.
+        pages_wait: whether pages that were open when the previous program ended now try to reconnect.
     """
 
     token: str
@@ -68,7 +68,7 @@ def token_folder() -> Path:
 
 
 def load_token(port: int) -> PortToken:
-    """Return the stored token of a port, or a new token if there is no valid one, and store it.
+    """Return the stored token of a port. If there is no valid one, create and store a new token.
 
     The result contains the `pages_wait` of the previous program, which is reset in the file.
     """
@@ -118,7 +118,10 @@ def _is_private(status: os.stat_result) -> bool:
 
 
 def _write(port: int, created: float, port_token: PortToken) -> None:
-    """Store a token; failures are ignored, and then the next program gets a new token."""
+    """Store a token.
+
+    A failure is ignored. The next program then gets a new token.
+    """
     folder = token_folder()
     with suppress(OSError):
         folder.mkdir(parents=True, exist_ok=True, mode=0o700)
@@ -146,7 +149,7 @@ class Gate:
         self._names = {"localhost", host.lower(), machine, f"{machine}.local"}
 
     def refusal(self, headers: Mapping[str, str]) -> str | None:
-        """Return the reason why a request is refused because of its Host or Origin header (403), or None."""
+        """Return the reason to refuse a request because of its Host or Origin header (403), or None."""
         host = headers.get("Host", "")
         if not self.knows(host):
             return f"this server does not answer to the name '{host[:200]}': open the address that linkwright printed"
@@ -165,7 +168,7 @@ class Gate:
     def proof(self, nonce: str) -> str | None:
         """Return the HMAC-SHA256 of a page's nonce under the token, or None if the nonce is not valid.
 
-        A nonce has 32 hexadecimal digits. The result proves that the server knows the token, but does not reveal it.
+        A nonce has 32 hexadecimal digits. The result proves that the server has the token, but does not reveal it.
         """
         return hmac.digest(self.token.encode(), nonce.encode(), "sha256").hex() if _NONCE.fullmatch(nonce) else None
 
@@ -224,7 +227,7 @@ def security_headers(host: str) -> dict[str, str]:
 
 
 MAX_CONNECTIONS = 256
-"""The largest number of open connections; a browser opens about six for a page."""
+"""The largest number of open connections. A browser opens about six for a page."""
 
 PATIENCE = 10.0
 """Seconds within which a new connection must send a request."""
@@ -251,7 +254,10 @@ class Admission:
         return LimitedConnection(self, self._make())
 
     def asked(self, inner_protocol: object) -> None:
-        """Record that a connection has sent a request in time, so that it is closed only if its slot is needed."""
+        """Record that a connection has sent a request in time.
+
+        It is then closed only if its slot is needed.
+        """
         connection = self._strangers.get(inner_protocol)  # type: ignore[call-overload]
         if connection is not None:
             connection.cancel_deadline()
@@ -263,7 +269,10 @@ class Admission:
             connection.cancel_deadline()
 
     def opened(self, connection: LimitedConnection) -> bool:
-        """Count a new connection, and return False if it must be refused."""
+        """Count a new connection, or return False to refuse it.
+
+        At the limit, the oldest connection that is not admitted is closed to make room.
+        """
         if self._count >= MAX_CONNECTIONS:
             oldest = next(iter(self._strangers.values()), None)
             if oldest is None:
@@ -283,7 +292,7 @@ _FORWARDED_EVENTS = ("data_received", "eof_received", "pause_writing", "resume_w
 
 
 class LimitedConnection(asyncio.Protocol):
-    """The outer protocol of a connection, which counts and limits the connection.
+    """The outer protocol of a connection. It counts and limits the connection.
 
     Received data goes directly to the inner protocol.
     """

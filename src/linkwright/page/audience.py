@@ -63,7 +63,7 @@ class LoopLag:
 
     @property
     def mean(self) -> float:
-        """The mean lag over the last second, in seconds; 0.0 before the first measurement."""
+        """The mean lag over the last second, in seconds, or 0.0 before the first measurement."""
         return sum(self._lags) / len(self._lags) if self._lags else 0.0
 
     def close(self) -> None:
@@ -91,7 +91,10 @@ _QUIET = 0.3
 
 
 def requested_language(request: Request) -> str:
-    """Return the language that a page requests, one of `LANGUAGES`; by default the language of the terminal."""
+    """Return the language that a page requests, one of `LANGUAGES`.
+
+    The default is the language of the terminal.
+    """
     return language_of(request.query.get("language", "")) or language_of_terminal()
 
 
@@ -131,7 +134,7 @@ class Page:
         self.outbox.put(redundancy_key(message), encode(message, self.language))
 
     async def write(self) -> None:
-        """Send the opening payloads and then the payloads of the outbox, until the connection is lost."""
+        """Send the opening payloads, and then those of the outbox, until the connection is lost."""
         try:
             for payload in self._opening:
                 content = self.outbox.make(payload)
@@ -236,7 +239,7 @@ class Page:
             del self._reduced[completion.key]
 
     def _chunk_size(self) -> int:
-        """Return the size of a chunk in bytes; at most two chunks are in transit."""
+        """Return the size of a chunk in bytes. At most two chunks are in transit."""
         return max(MIN_MEASURED_SIZE, self.line.room // 2)
 
 
@@ -269,7 +272,10 @@ class PageGroup:
                 page.outbox.put(key, texts[page.language])
 
     def send_data(self, key: str, payload: Payload) -> None:
-        """Send data of a display to every page, replacing data that is still queued under the same key."""
+        """Send data of a display to every page.
+
+        Data that is still queued under the same key is replaced.
+        """
         for page in self._pages:
             page.outbox.put(key, payload)
 
@@ -312,7 +318,7 @@ class Audience(PageGroup):
 
     @contextmanager
     def expecting(self) -> Iterator[None]:
-        """Reserve a slot for a page while its socket is opened; then `attend` uses the slot."""
+        """Reserve a slot for a page while its socket is opened. `attend` then uses the slot."""
         self._reserved_slots += 1
         try:
             yield
@@ -379,7 +385,7 @@ class Audience(PageGroup):
             return
         try:
             receive(page, message)
-        except Exception as error:  # noqa: BLE001 - one message must not take the page's others with it
+        except Exception as error:  # noqa: BLE001 - one message must not affect the page's other messages
             log_failure(self._logger, f"'{type(message).__name__}' of a page", error)
 
 

@@ -1,9 +1,9 @@
 """The files that pages may fetch: meshes, files next to them, and generated files.
 
 Neither a description nor a request can be trusted. Pages can read only meshes and images, only in folders that the
-current descriptions name, and only if the real path, with links followed, is inside such a
-folder. A file generated for a page
-can be fetched once, and only for a short time. Recordings of pages can be fetched as long as the program runs.
+current descriptions name, and only if the real path, with links followed, is inside such a folder. A file generated
+for a page can be fetched once, and only for a short time. Recordings of pages can be fetched as long as the program
+runs.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ _MAX_LOOSE_DEPTH = 2
 
 @dataclass(frozen=True, slots=True)
 class ServedFolder:
-    """A folder that pages may read from: a package, a Gazebo model, or the folder of a mesh outside of both.
+    """A folder that pages may read: a package, a Gazebo model, or the folder of another mesh.
 
     Attributes:
         root: the folder.
@@ -171,7 +171,7 @@ def without_secrets(text: str) -> str:
 
 
 class MeshFolders:
-    """The folders that pages may read from, by key; each display adds the folders of its description."""
+    """The folders that pages may read, by key. Each display adds the folders of its description."""
 
     def __init__(self) -> None:
         self._folders: dict[str, dict[str, ServedFolder]] = {}
@@ -198,7 +198,7 @@ class MeshFolders:
         """
         folder = next((folders[key] for folders in self._folders.values() if key in folders), None)
         if folder is None:
-            raise FileRefusedError(404, "no description that is shown names this folder")
+            raise FileRefusedError(404, "no shown description refers to this folder")
         return resolve(folder, relative)
 
 
@@ -217,7 +217,7 @@ def resolve(folder: ServedFolder, relative: str) -> Path:
     if PurePosixPath(relative).suffix.lower() not in CONTENT_TYPES:
         raise FileRefusedError(403, "only meshes and images are served")
     if folder.package is None and not folder.is_model and len(parts) > _MAX_LOOSE_DEPTH:
-        raise FileRefusedError(403, "too deep below a mesh that is in no package")
+        raise FileRefusedError(403, "the path is too deep below the folder of a mesh outside of packages")
     try:
         real_path = _existing_or_texture(folder.root / relative).resolve(strict=True)
         root = folder.root.resolve(strict=True)
@@ -233,7 +233,7 @@ def resolve(folder: ServedFolder, relative: str) -> Path:
 
 
 def _existing_or_texture(path: Path) -> Path:
-    """Return the path, or the path of the image with the same name in the texture folder of a Gazebo model.
+    """Return the path, or the path of an image of this name in a Gazebo model's texture folder.
 
     The texture folder is used only if there is no file at the path.
     """
@@ -265,7 +265,10 @@ class Download:
 
 
 class Downloads:
-    """Files that can be fetched under secret keys, which only the page that requested them receives."""
+    """Files that can be fetched under secret keys.
+
+    Only the page that requested a file receives its key.
+    """
 
     def __init__(self) -> None:
         self._files: dict[str, Download] = {}
@@ -290,7 +293,7 @@ class Downloads:
         return f"/export/{key}/{quote(file.name)}"
 
     def take(self, key: str) -> Download | None:
-        """Return the file that `put` offers under a key and withdraw the file; None if there is none."""
+        """Withdraw and return the file that `put` offers under a key, or return None."""
         now = time.monotonic()
         for old in [expired_key for expired_key, file in self._files.items() if now - file.made > _OFFER_SECONDS]:
             del self._files[old]

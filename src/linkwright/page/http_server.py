@@ -1,8 +1,9 @@
-"""Loads the server of aiohttp without the client, which takes about as long to load as the server.
+"""Loads the server of aiohttp without the client.
 
-``import aiohttp`` loads both, and the client reads the certificates of the system twice. This module
-registers the package without running its ``__init__``, and loads only the modules that a server needs. ``__init__``
-runs when one of its names is first used, for example by a node of the user that downloads a file.
+``import aiohttp`` loads both. The client takes about as long to load as the server, because it reads the certificates
+of the system twice. This module registers the package without running its ``__init__``, and loads only the modules that
+a server needs. ``__init__`` runs when one of its names is first used, for example by a node of the user that downloads
+a file.
 """
 
 from __future__ import annotations
@@ -59,11 +60,14 @@ __all__ = ["SERVER_LOGGER", "HttpProcessingError", "web"]
 
 
 def _is_server_error(record: logging.LogRecord) -> bool:
-    """Return whether to log a record: not if a malformed request or a disconnect caused the error."""
+    """Return whether to log a record.
+
+    An error that a malformed request or a disconnect caused is not logged.
+    """
     error = record.exc_info[1] if record.exc_info else None
     return not isinstance(error, (HttpProcessingError, web.RequestPayloadError, ConnectionError))
 
 
 SERVER_LOGGER = logging.getLogger(__name__)
-"""The logger for each ``web.AppRunner``; the logger of aiohttp prints a traceback if a client disconnects."""
+"""The logger for each ``web.AppRunner``. The logger of aiohttp prints a traceback if a client disconnects."""
 SERVER_LOGGER.addFilter(_is_server_error)

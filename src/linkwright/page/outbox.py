@@ -18,11 +18,11 @@ from linkwright.page.protocol.message import DataContent, pack_chunk
 
 Pack = Callable[[DataContent], bytes]
 Shrink = Callable[[int], DataContent]
-"""Returns the content reduced to about the given number of bytes, or as far as possible; runs in a thread."""
+"""Returns the content reduced to about the given number of bytes, or as far as possible. Called in a thread."""
 
 
 class ScaledData:
-    """The content of a display, which is packed for a page just before it is sent.
+    """The content of a display, packed for each page just before it is sent.
 
     Args:
         key: the key of the content in outboxes.
@@ -106,7 +106,9 @@ Outgoing = str | bytes
 
 
 class Changes(Protocol):
-    """Content that is sent as changes; each page receives all changes since its last message in one message.
+    """Content that is sent as changes.
+
+    Each page receives all changes since its last message in one message.
 
     A slow page therefore receives many changes in one frame, and no content that was removed in the meantime.
     """
@@ -182,7 +184,7 @@ class Outbox:
                 return content
 
     def make(self, payload: Payload) -> Outgoing | ScaledData | None:
-        """Return the content to send for a payload, or None if there is nothing to send."""
+        """Return the content to send for a payload, or None if there is none."""
         if isinstance(payload, (str, bytes)):
             return payload
         if isinstance(payload, ScaledData):
@@ -192,7 +194,7 @@ class Outbox:
 
 
 MIN_MEASURED_SIZE = 4096
-"""The minimum size in bytes of messages that are measured; pages acknowledge all of these messages."""
+"""The minimum size in bytes of messages that are measured. Pages acknowledge all of these messages."""
 
 _MAX_BUSY_TIME = 0.1
 """The time in s for which one payload may occupy the connection."""
@@ -257,7 +259,7 @@ class ConnectionMeter:
         return self._has_acknowledged and not self._in_transit
 
     def sending(self, size: int) -> float:
-        """Record that `size` bytes are passed to the socket; return the time to pass to `sent`."""
+        """Record that `size` bytes are passed to the socket, and return the time for `sent`."""
         now = self._clock()
         self._number += 1
         if self._number == 1:

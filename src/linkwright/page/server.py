@@ -1,4 +1,4 @@
-"""The web server: its listening socket, the page, the page's WebSocket, and files for the page."""
+"""The web server: its listening socket, the page, its WebSocket, and its files."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ PAGE_FOLDER = Path(__file__).parent / "built"
 """The folder into which ``frontend/`` is built."""
 
 MAX_MESSAGE_SIZE = 1024 * 1024
-"""The size in bytes of the longest message from a page, such as a configuration; a longer one closes it (1009)."""
+"""The maximum size in bytes of a message from a page. A longer message closes the page's socket (1009)."""
 
 _OWN_CONFIGURATION_KEY = re.compile(r"[0-9A-Za-z-]{8,64}")
 _HEARTBEAT = 15.0
@@ -78,7 +78,7 @@ DEFAULT_PORT = 7448
 """The port after 7447, on which Zenoh routers listen (decision 0066)."""
 
 _PORT_COUNT = 10
-_WILDCARDS = {"0.0.0.0": "127.0.0.1", "::": "::1"}  # noqa: S104 - what an address to open is instead of
+_WILDCARDS = {"0.0.0.0": "127.0.0.1", "::": "::1"}  # noqa: S104 - not bound here, only replaced in URLs
 
 MAX_UNSENT_BYTES = 16 * 1024
 """The number of unsent bytes, in the program and again in the operating system, above which writers wait."""
@@ -220,10 +220,10 @@ class WebServer:
         return await self._page_response(request, index, _PAGE_TYPES[".html"], "no-cache")
 
     async def _proof(self, request: web.Request) -> web.Response:
-        """Prove to a page with the token that this program knows the token too; see `Gate.proof`."""
+        """Prove to a page that this program also has the token. See `Gate.proof`."""
         proof = self._gate.proof(request.query.get("nonce", ""))
         if proof is None:
-            return web.Response(status=400, text="This address only answers the page.\n")
+            return web.Response(status=400, text="This address is for the page only.\n")
         return web.Response(text=proof)
 
     async def _page_file(self, request: web.Request) -> web.StreamResponse:
@@ -255,7 +255,7 @@ class WebServer:
         *,
         unpack: bool = False,
     ) -> web.StreamResponse:
-        """Send a file of the page; concurrent requests share one copy of the file in memory."""
+        """Send a file of the page, with one copy in memory for concurrent requests."""
         async with self._read_lock:
             cached = self._page_contents.get((path, unpack))
             try:
@@ -379,7 +379,7 @@ _UPLOADS: tuple[tuple[str, str, Callable[[Uploads, web.Request], Awaitable[web.R
 
 
 def _audience_of(services: _Services, request: web.Request) -> Audience:
-    """Return the audience of the recording that a request names, if the recording is still shown.
+    """Return the audience of the recording that a request names, if it is still shown.
 
     Otherwise, return the audience of the viewer.
     """
@@ -389,7 +389,7 @@ def _audience_of(services: _Services, request: web.Request) -> Audience:
 
 
 def _is_from_here(request: web.Request) -> bool:
-    """Return whether a request comes from this machine, over loopback or from the address of the server."""
+    """Return whether a request comes from this machine: over loopback, or from its own address."""
     transport = request.transport
     peer_address, own_address = (transport and transport.get_extra_info(name) for name in ("peername", "sockname"))
     if not peer_address or not own_address:
@@ -400,7 +400,7 @@ def _is_from_here(request: web.Request) -> bool:
 
 
 def _own_configuration(request: web.Request) -> str:
-    """Return the name of the page's own configuration in a request; empty for the shared configuration."""
+    """Return the page's own configuration in a request, or empty for the shared configuration."""
     key = request.query.get("own", "")
     return key if _OWN_CONFIGURATION_KEY.fullmatch(key) else ""
 
@@ -429,8 +429,8 @@ async def _file_response(
     The ETag changes with the content. If `packs` is true, the file is compressed if that makes it clearly smaller, and
     a header contains the uncompressed length.
 
-    FileResponse of aiohttp is not used, because it also looks for compressed files next to the requested file, which
-    no check covers.
+    FileResponse of aiohttp is not used, because it also looks for compressed files next to the requested file. These
+    files would not be checked.
     """
     try:
         file_version = await asyncio.to_thread(_read, path, request.headers.get("If-None-Match", ""))
@@ -532,7 +532,7 @@ def listen(host: str, port: int | None) -> socket.socket:
     for candidate in candidates:
         try:
             return _listen_at(family, (address[0], candidate))
-        except OSError as error:  # noqa: PERF203 - few ports, and each may be taken
+        except OSError as error:  # noqa: PERF203 - few ports, and each may be in use
             if candidate == candidates[-1] or error.errno != errno.EADDRINUSE:
                 raise LinkwrightError(_cannot_listen(host, candidate, error)) from None
     raise AssertionError("the last port listens or raises")
@@ -582,7 +582,7 @@ def _cannot_listen(host: str, port: int, error: OSError) -> Diagnostic:
 
 
 def limit_buffers(transport: asyncio.Transport) -> None:
-    """Limit the amount of unsent data in a connection's buffers, without limiting the data in flight.
+    """Limit the unsent data in a connection's buffers, but not the data in flight.
 
     Buffered data can be neither replaced by newer data nor overtaken. The send buffer of the operating system can grow
     to megabytes, which take many seconds on a slow connection. On Windows, which does not offer this limit, only the

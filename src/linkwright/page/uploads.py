@@ -1,7 +1,8 @@
-"""Recordings that pages upload; their files arrive in blocks and are stored in a temporary folder.
+"""Recordings that pages upload.
 
-A page first announces the files, and receives a key if there is enough space. Uploads that are cancelled or stall are
-removed. Every page with the token may upload. File names are checked, and none can refer to a file outside the folder.
+A page first announces the files, and receives a key if there is enough space. The files arrive in blocks, and are
+stored in a temporary folder. Uploads that are cancelled or stall are removed. Every page with the token may upload.
+File names are checked, so that they cannot refer to files outside the folder.
 """
 
 from __future__ import annotations
@@ -53,7 +54,7 @@ class Guests(Protocol):
         """
 
     def audience(self, key: str) -> Audience | None:
-        """Return the pages that show the recording with a key, or None if there is no such recording."""
+        """Return the pages that show the recording with a key, or None if there is none."""
 
     async def close(self) -> None:
         """Stop showing recordings."""
@@ -87,7 +88,7 @@ class _Upload:
 
     @property
     def target(self) -> Path:
-        """The path of the file or folder of the recording, which is opened when the upload is complete."""
+        """The path of the recording's file or folder, to be opened when the upload is complete."""
         files = self.announced.files
         return self.folder / files[0].name if len(files) == 1 else self.folder
 

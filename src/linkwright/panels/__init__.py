@@ -1,1 +1,4 @@
-"""The page features of a viewer, which handle most requests of pages; each is a module or a package."""
+"""The page features of a viewer, each in a module or package.
+
+They handle most requests of pages.
+"""

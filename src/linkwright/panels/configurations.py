@@ -1,4 +1,4 @@
-"""Handles edits of configurations from pages: adding and removing displays, undo, open, and save."""
+"""Handles edits of configurations from pages: displays, undo, opening and saving."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ class ConfigurationFeature(PageFeature):
         self._sent_states: dict[VisualizationManager, Configuration] = {}
 
     def configured(self, manager: VisualizationManager) -> list[ServerMessage]:
-        """Return the state of the configuration: its file, and the names of the edits to undo and redo."""
+        """Return the state of the configuration: its file, and the edits to undo and redo."""
         self._sent_states[manager] = self._state(manager)
         return [self._sent_states[manager]]
 
@@ -264,13 +264,16 @@ ConfigurationFeature.RECEIVES = tuple(_HANDLERS)
 
 
 def _displays_of(manager: VisualizationManager, identities: list[str]) -> list[ViewerDisplay]:
-    """Return the displays with these IDs, in the order of the tree; unknown IDs are ignored."""
+    """Return the displays with these IDs, in the order of the tree. Unknown IDs are ignored."""
     selected = set(identities)
     return [display for display in manager.displays if display.id in selected]
 
 
 def _base_folder(manager: VisualizationManager) -> Path:
-    """Return the folder that paths are relative to: the folder of the open file, or the working directory."""
+    """Return the base folder of relative paths.
+
+    This is the folder of the open file, or the working directory.
+    """
     path = manager.config.path
     return path.absolute().parent if path is not None else Path.cwd()
 
@@ -288,7 +291,7 @@ def _name(text: str) -> str:
 
 
 class PanelsFeature(PageFeature):
-    """The open panels of pages, which are initially the panels that the file opens.
+    """The open panels of pages. Initially they are the panels that the file opens.
 
     Each page has its own panels, so a change does not affect the other pages. The panels of the page that was changed
     last are written to the file. If there is no file, only the browser stores the panels.

@@ -42,7 +42,10 @@ OnValues = Callable[[dict[str, str]], object]
 
 
 class ArgumentsFeature(PageFeature):
-    """Shows a form for arguments in all pages, and passes on the values from the first page that answers."""
+    """Shows a form for arguments in all pages.
+
+    The values from the first page that answers are used.
+    """
 
     RECEIVES: ClassVar[tuple[type, ...]] = (GiveArguments,)
 
@@ -52,7 +55,7 @@ class ArgumentsFeature(PageFeature):
         self._on_values: OnValues | None = None
 
     def opening(self) -> list[ServerMessage]:
-        """Return the form, which is empty if no arguments are requested."""
+        """Return the form. It is empty if no arguments are requested."""
         return [self._form]
 
     def ask(self, form: ArgumentForm, on_values: OnValues | None) -> None:
@@ -66,7 +69,7 @@ class ArgumentsFeature(PageFeature):
         self.context.pages.publish(form)
 
     def receive(self, page: Page, message: GiveArguments) -> None:
-        """Close the form, and pass on the values of the requested arguments."""
+        """Close the form, and report the values of the requested arguments."""
         on_values, names = self._on_values, set(self._form.names)
         if on_values is not None:
             self.ask(NOTHING_ASKED, None)
@@ -147,7 +150,7 @@ class KnownDescription:
 
 
 def _changed(previous: Mapping[str, Part], after: Mapping[str, Part]) -> list[str]:
-    """Return the names of the links or joints that are new or have changed, ignoring source positions."""
+    """Return the names of new or changed links or joints. Source positions are ignored."""
     # Links and joints are compared without their elements, which contain the source positions.
     return [name for name, element in after.items() if previous.get(name) != element]
 
@@ -192,7 +195,7 @@ class DescriptionFeature(PageFeature):
         }
 
     def files(self, page: Page) -> list[str]:
-        """Return the files of the descriptions that a page shows, and those with findings."""
+        """Return the files of the descriptions that a page shows, and the files with findings."""
         models = self.managers.of(page).robot_models()
         return [
             *(str(path) for model in models for path in self.context.library.files(model.text)),
@@ -209,7 +212,7 @@ class DescriptionFeature(PageFeature):
         ]
 
     def receive(self, page: Page, message: _Request) -> None:
-        """Queue a request."""
+        """Answer a request in the background, and cancel an earlier equal request."""
         file_name = message.file if isinstance(message, AskDescriptionText) else ""
         key = (page, f"{tag_of(message)} {message.display} {file_name}")
         if key in self._answer_tasks:
@@ -254,7 +257,10 @@ class DescriptionFeature(PageFeature):
             page.send(response)
 
     def _look_at(self, display: RobotModelDisplay) -> KnownDescription | None:
-        """Return the current description of a display, with a new revision if it has changed, or None."""
+        """Return the current description of a display, or None.
+
+        If the description has changed, it has a new revision.
+        """
         robot, prefix = display.robot, display.properties.text("TF Prefix")
         known = self._descriptions.get(display.id)
         if robot is None:
@@ -270,7 +276,10 @@ class DescriptionFeature(PageFeature):
 def _text(
     known: KnownDescription | None, texts_with_findings: dict[str, str], request: AskDescriptionText
 ) -> DescriptionText:
-    """Return the text of a file; if the file has findings, return the text that they refer to."""
+    """Return the text of a file.
+
+    If the file has findings, this is the text that the findings refer to.
+    """
     file = request.file
     if file in texts_with_findings:
         return DescriptionText(request.display, known.revision if known else 0, file, texts_with_findings[file])
@@ -292,7 +301,7 @@ class DiagnosticsFeature(PageFeature):
         return [self._shown_diagnostics]
 
     def diagnostics_changed(self, diagnostics: Sequence[Diagnostic]) -> None:
-        """Replace the current findings with new findings; the list may be empty."""
+        """Replace the current findings with new findings. The list may be empty."""
         self._found = diagnostics
         self._shown_diagnostics = self._all()
         self.context.pages.publish(self._shown_diagnostics)
@@ -313,7 +322,7 @@ class DiagnosticsFeature(PageFeature):
 
 
 def _invisibility_finding(model: RobotModelDisplay) -> Diagnostic | None:
-    """Return the finding that no visual of a robot can be drawn (VIEW207), or None if any visual can be drawn."""
+    """Return the finding VIEW207 if no visual of a robot can be drawn, otherwise None."""
     robot, problems = model.robot, model.file_problems
     if robot is None or not problems or not model.enabled or any(link.visuals for link in model.scene.links):
         return None

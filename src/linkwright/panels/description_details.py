@@ -1,4 +1,4 @@
-"""Details of a description for pages: links, joints, source positions, texts and implausible masses.
+"""Details of a description for pages: parts, source positions, texts, implausible masses.
 
 This module is imported when the first page requests details.
 """
@@ -72,7 +72,10 @@ class SourcePositions:
 
 
 def _calls(element: Element) -> Iterator[CallSite]:
-    """Yield the macro calls and includes that produced an element, innermost first, without duplicates."""
+    """Yield the macro calls and includes that produced an element.
+
+    They begin with the innermost, without duplicates.
+    """
     innermost = element.origin
     if not isinstance(innermost, Frame):
         return
@@ -92,9 +95,9 @@ def _source_range(element: Element) -> SourceRange | None:
 
 
 def account(robot: Robot, text: str, files: list[str], *, display: str, revision: int, prefix: str) -> Description:
-    """Return all details of a robot except its shapes, which pages already have.
+    """Return all details of a robot except its shapes. Pages already have the shapes.
 
-    The text is parsed again, which takes as long as reading the description.
+    The text is parsed again. This takes as long as reading the description.
 
     Args:
         robot: the robot that was read from the text.
@@ -174,7 +177,9 @@ def _unit_axis(axis: tuple[float, float, float]) -> list[float]:
 
 
 class SourceTexts:
-    """The texts of the source files of one description; other files cannot be read through this class.
+    """The texts of the source files of one description.
+
+    Other files cannot be read through this class.
 
     The texts with elements are stored as they were when the description was read. A file that contributed only values,
     such as a YAML file, is read on request.
@@ -194,7 +199,10 @@ class SourceTexts:
         return list(dict.fromkeys([*self._files, *self._read]))
 
     def text(self, name: str) -> str | None:
-        """Return the text of a file, or None if it cannot be read or does not belong to the description."""
+        """Return the text of a file, or None.
+
+        None means that the file cannot be read, or does not belong to the description.
+        """
         source = self._read.get(name)
         if source is not None:
             return source.text
@@ -228,7 +236,7 @@ def _call_sources(element: Element, visited_frames: set[int]) -> Iterator[Source
 
 
 def implausible_inertias(robot: Robot, finder: PackageFinder) -> list[InertiaFinding]:
-    """Return the findings about implausible masses and inertias of a robot, with the names of the links."""
+    """Return the findings about implausible masses and inertias, with the names of the links."""
     return [
         InertiaFinding(link, finding.code, finding.message, finding.hint or "")
         for link, finding in inertia_findings(robot, finder)

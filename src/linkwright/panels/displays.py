@@ -19,14 +19,17 @@ from linkwright.rviz.displays.catalogue import display_classes
 
 
 class DisplaysFeature(PageFeature):
-    """Passes on messages of pages to the displays that they concern."""
+    """Forwards messages of pages to displays."""
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
         self._sizes_by_display: WeakKeyDictionary[ViewerDisplay, dict[Page, ImageSize]] = WeakKeyDictionary()
 
     def receive(self, page: Page, message: SetProperty | MeshStatus | MarkerFeedback | ImageSize) -> None:
-        """Set a property, or pass the message on; a message for a removed display is ignored."""
+        """Set a property, or forward the message to its display.
+
+        A message for a removed display is ignored.
+        """
         manager = self.managers.of(page)
         if isinstance(message, SetProperty):
             manager.set_property(page, message.id, message.value)
@@ -38,13 +41,13 @@ class DisplaysFeature(PageFeature):
                 display.receive(message)
 
     def page_closed(self, page: Page) -> None:
-        """Remove the panel sizes of a page, so that images are sized for the panels of the other pages."""
+        """Remove the panel sizes of a page. Images are then sized for the other pages."""
         for display, sizes in list(self._sizes_by_display.items()):
             if sizes.pop(page, None) is not None:
                 self._send_size(display)
 
     def _send_size(self, display: ViewerDisplay) -> None:
-        """Send a display the largest width and height of its panels in all pages, or 0 if there are none."""
+        """Send a display the largest size of its panels in all pages, or 0 if there are none."""
         sizes = self._sizes_by_display[display].values()
         width = max((size.width for size in sizes), default=0)
         height = max((size.height for size in sizes), default=0)
@@ -52,7 +55,10 @@ class DisplaysFeature(PageFeature):
 
 
 class PointsFeature(PageFeature):
-    """Sends the fields of selected points, because pages have only the positions and colours of points."""
+    """Sends the fields of selected points.
+
+    Pages have only the positions and colours of points.
+    """
 
     def receive(self, page: Page, message: AskPoint) -> None:
         """Send the fields of a point, if it is still shown."""
@@ -67,9 +73,9 @@ class PointsFeature(PageFeature):
 
 
 def choices(node: Node) -> DisplayChoices:
-    """Return the display classes for the Add dialog, with groups last, and the topics of other nodes.
+    """Return the display classes and topics for the Add dialog, with groups last.
 
-    This imports all displays, so that pages request it only when the user opens the dialog.
+    This imports all displays. Pages therefore request it only when the user opens the dialog.
     """
     displays = sorted(display_classes(), key=lambda display: (display.CLASS == GROUP, display.CLASS))
     classes_by_message: dict[str, list[str]] = {}

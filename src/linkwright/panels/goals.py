@@ -26,7 +26,7 @@ class GoalSender:
         self._client = ActionClient(node, kind, name)
 
     def send(self, pose: Any, on_refusal: Callable[[str], None]) -> None:
-        """Send a pose as a goal; report an error if no server accepts it.
+        """Send a pose as a goal, and report an error if no server accepts it.
 
         Args:
             pose: a geometry_msgs/msg/PoseStamped.

@@ -1,4 +1,4 @@
-"""The page's Joints panel, which shows and moves the sliders of a joint_state_publisher_gui."""
+"""The page's Joints panel: shows and moves the sliders of a joint_state_publisher_gui."""
 
 from __future__ import annotations
 
@@ -48,7 +48,10 @@ class JointsFeature(PageFeature):
         self._soon: asyncio.TimerHandle | None = None
 
     def attach(self, panel: JointPanel | None) -> None:
-        """Show the sliders of a node instead of the previous ones; None closes the panel in pages."""
+        """Show the sliders of a node instead of the previous ones.
+
+        None closes the panel in pages.
+        """
         if self._unsubscribe is not None:
             self._unsubscribe()
         if self._soon is not None:
@@ -66,7 +69,7 @@ class JointsFeature(PageFeature):
         return [self._joints_message(self._panel), JointPositions(self._panel.positions())]
 
     def receive(self, page: Page, message: SetJoint | SetJoints | RandomizeJoints | CenterJoints) -> None:
-        """Move joints; unknown joints, and joints that mimic another joint, are ignored."""
+        """Move joints. Unknown joints, and joints that mimic another joint, are ignored."""
         panel = self._panel
         if panel is None:
             return

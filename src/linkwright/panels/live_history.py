@@ -25,11 +25,11 @@ if TYPE_CHECKING:
 _BYTES = (bytes, bytearray, memoryview)
 
 _MAX_NEW_MESSAGES = 16
-"""The number of new messages that are stored before they are serialized, which delays the page less."""
+"""The number of new messages that are stored before they are serialized. This delays the page less."""
 
 
 class LiveHistory:
-    """Stores the messages of the viewer's subscriptions, and delivers the messages of a past time again.
+    """Stores the messages of the viewer's subscriptions, and delivers earlier ones again.
 
     The history creates no subscriptions. While a past time is shown, new messages are stored but not shown.
 
@@ -40,7 +40,7 @@ class LiveHistory:
 
     Attributes:
         live: whether the current time is shown.
-        on_reset: called when the displayed time jumps back; displays must then discard their content.
+        on_reset: called when the displayed time jumps back. Displays must then discard their content.
         changed: called when `live` has changed.
     """
 
@@ -69,7 +69,7 @@ class LiveHistory:
 
     @cached_property
     def playback(self) -> Playback:
-        """The playback that delivers messages to the subscriptions, created when a past time is first shown."""
+        """The playback to the subscriptions, created when an earlier time is first shown."""
         from linkwright.bag.playback import Playback
 
         made = Playback(self._handle, self.history, self, self._failed)
@@ -96,11 +96,11 @@ class LiveHistory:
 
     @property
     def size(self) -> int:
-        """The size of the stored messages in bytes, without new messages that are not serialized yet."""
+        """The size of the stored messages in bytes, without messages that are not serialized yet."""
         return 0 if self._stored_history is None else self._stored_history.size
 
     def freeze(self) -> None:
-        """Stop showing new messages, which are still stored."""
+        """Stop showing new messages. They are still stored."""
         if not self.live:
             return
         with self._lock:
@@ -120,12 +120,12 @@ class LiveHistory:
         self.playback.pause()
         self._context.graph_changes.unwatch(self._update_new_subscriptions)
         self._context.held_time.release(self._context.node.get_clock())
-        # Listeners to the time jump must discard past data first, so show the present in the next iteration of the
-        # loop.
+        # Listeners to the time jump must discard past data first. The present is therefore shown in the next iteration
+        # of the loop.
         asyncio.get_running_loop().call_soon(self._show_present)
 
     def topics(self) -> dict[str, SavedTopic]:
-        """Return the topics whose messages are stored, with the QoS profiles of their current publishers."""
+        """Return the stored topics, with the QoS profiles of their current publishers."""
         from linkwright.bag.saving import SavedTopic
 
         graph = self._context.node.graph
@@ -138,7 +138,7 @@ class LiveHistory:
         return saved_topics
 
     def part(self, topics: Mapping[str, SavedTopic], start_ns: int, end_ns: int, *, simulated: bool) -> list[Recorded]:
-        """Return the stored messages between two times, and earlier messages that the state at the start requires.
+        """Return the stored messages between two times, and earlier ones for the state at the start.
 
         Args:
             topics: see `topics`.
@@ -162,7 +162,7 @@ class LiveHistory:
         return to_simulated_time(messages)
 
     def before(self, topics: Collection[str], length_ns: int, most_bytes: int) -> list[Recorded]:
-        """Return the messages of topics in the last `length_ns` nanoseconds before the displayed time.
+        """Return the messages of topics for a duration in ns before the displayed time.
 
         The list is empty if the messages exceed `most_bytes`.
         """
@@ -181,7 +181,7 @@ class LiveHistory:
         return messages
 
     def close(self) -> None:
-        """Stop storing messages."""
+        """Stop storing messages, and close the history and its playback."""
         self._handle.message_filter = None
         self._context.graph_changes.unwatch(self._update_new_subscriptions)
         if self._stored_history is not None:
@@ -192,11 +192,17 @@ class LiveHistory:
     # --- the output of the playback ---------------------------------------------------------------------------
 
     def wanted(self) -> frozenset[str]:
-        """Return the topics of the viewer's subscriptions, except the clock, which `publish_time` handles."""
+        """Return the topics of the viewer's subscriptions, except the clock.
+
+        `publish_time` handles the clock.
+        """
         return frozenset(subscription.name for subscription in self._subscriptions()) - {CLOCK_TOPIC}
 
     def publish_time(self, stamp_ns: int) -> None:
-        """Hold the viewer's clock at a time or, if it follows simulated time, deliver the simulated time then."""
+        """Hold the viewer's clock at a time.
+
+        If it follows simulated time, deliver the simulated time at this time instead.
+        """
         if self.live:
             return
         self._has_gone_back = self._has_gone_back or stamp_ns < self.playback.position_ns
@@ -212,7 +218,7 @@ class LiveHistory:
     def _store_if_first(self, subscription: Subscription[Any], message: Any) -> bool:
         """Store a message, once per topic, and return whether to deliver it to the subscription.
 
-        Thread-safe.
+        This method is thread-safe.
         """
         topic = subscription.name
         storing_subscription = self._storing_subscriptions.get(topic)
@@ -244,7 +250,7 @@ class LiveHistory:
         return history
 
     def _store(self, history: History, topic: str, time_ns: int, message: Any, *, thins: bool) -> None:
-        """Add a message to the history; a failure is logged, so that other messages are not affected.
+        """Add a message to the history. A failure is logged, and does not affect other messages.
 
         If `thins` is true, some messages without a change of content are omitted. While a past time is shown, playback
         needs every message.
@@ -256,7 +262,7 @@ class LiveHistory:
             history.add(
                 topic, data, time_ns, content_of(self._storing_subscriptions[topic].type_name, data) if thins else None
             )
-        except Exception as error:  # noqa: BLE001  # a publisher may send anything
+        except Exception as error:  # noqa: BLE001  # a publisher may send any bytes
             log_failure(self._handle.logger, f"keeping a message of '{topic}'", error)
 
     def _subscriptions(self) -> list[Subscription[Any]]:

@@ -1,11 +1,12 @@
-"""The base class of page features, which handle most requests of pages, and the creation of features.
+"""The base class of page features, and the creation of features.
 
-Most features are found through the entry points ``linkwright.page_features`` and are created with the viewer.
+Features handle most requests of pages. Most features are found through the entry points ``linkwright.page_features``,
+and are created with the viewer.
 
 Other features are created on demand: when a page sends one of their messages, or when one of their topics is
 published. An `OnDemand` declares the class by name, so that its module is imported only then. Until then, pages
 receive a default message. The declarations are found through the entry points
-``linkwright.page_features_on_demand``, whose values are modules with a tuple ``ON_DEMAND``.
+``linkwright.page_features_on_demand``. The value of such an entry point is a module with a tuple ``ON_DEMAND``.
 """
 
 from __future__ import annotations
@@ -32,7 +33,7 @@ F = TypeVar("F", bound="PageFeature")
 
 
 class FeatureHost(Protocol):
-    """The viewer, as far as its page features use it.
+    """The interface of the viewer for its page features.
 
     Attributes:
         context: the viewer's node, files and pages.
@@ -67,7 +68,7 @@ class FeatureHost(Protocol):
 class PageFeature:
     """The base class of features, each of which handles some of the messages of pages.
 
-    A feature must cost nothing while no page uses it. It subscribes when a page needs it, and unsubscribes in
+    A feature must use no resources while no page uses it. It subscribes when a page needs it, and unsubscribes in
     `page_closed`.
 
     Args:
@@ -91,14 +92,17 @@ class PageFeature:
         return tuple(map(address_of, self.RECEIVES))
 
     def start(self) -> None:
-        """Start the feature; called when the viewer starts."""
+        """Start the feature when the viewer starts."""
 
     def opening(self) -> list[ServerMessage]:
         """Return the messages that do not concern a configuration, for a page that has just opened."""
         return []
 
     def configured(self, manager: VisualizationManager) -> list[ServerMessage]:
-        """Return the messages about a configuration, for a page that opens, or after a file was opened."""
+        """Return the messages about a configuration.
+
+        They are sent to a page that opens, and to all its pages after a file was opened.
+        """
         return []
 
     def edited(self, manager: VisualizationManager) -> None:
@@ -111,13 +115,16 @@ class PageFeature:
         """Handle a new robot of any display."""
 
     def diagnostics_changed(self, diagnostics: Sequence[Diagnostic]) -> None:
-        """Handle new findings about the description, which replace the previous findings; the list may be empty."""
+        """Handle new findings about the description.
+
+        They replace the previous findings. The list may be empty.
+        """
 
     def recording_shown(self) -> None:
-        """Handle that a recording is shown; requests to robots and simulations must be refused from now on."""
+        """Handle the display of a recording. Refuse requests to robots and simulations from now on."""
 
     def receive(self, page: Page, message: Any) -> None:
-        """Handle a message of a page; its class is one of `receives`."""
+        """Handle a message of a page. Its class is one of `receives`."""
 
     def page_closed(self, page: Page) -> None:
         """Discard the data of a page that was closed."""
@@ -127,7 +134,7 @@ class PageFeature:
         return []
 
     def close(self) -> None:
-        """Release all resources; called when the viewer closes."""
+        """Release all resources when the viewer closes."""
 
 
 GROUP = "linkwright.page_features"
@@ -135,12 +142,15 @@ GROUP = "linkwright.page_features"
 
 
 def make_features(viewer: FeatureHost) -> list[PageFeature]:
-    """Return new features for all entry points; features that fail are logged and omitted."""
+    """Return new features for all entry points.
+
+    Features that fail are logged and omitted.
+    """
     features: list[PageFeature] = []
     for name, entry_point in extensions(GROUP).items():
         try:
             feature = entry_point.load()(viewer)
-        except Exception as error:  # noqa: BLE001  # of a package that is not ours anything may be wrong
+        except Exception as error:  # noqa: BLE001  # a third-party package may raise any exception
             problem = f"{type(error).__name__}: {error}"
         else:
             if isinstance(feature, PageFeature):
@@ -181,11 +191,14 @@ def messages(module: str, *names: str) -> tuple[str, ...]:
 
 
 def _load_declarations(logger: Logger) -> Iterator[OnDemand]:
-    """Yield the declarations of all packages; log and skip modules that cannot be imported."""
+    """Yield the declarations of all packages.
+
+    Modules that cannot be imported are logged and skipped.
+    """
     for name, entry_point in extensions(ON_DEMAND_GROUP).items():
         try:
             declarations: tuple[OnDemand, ...] = entry_point.load().ON_DEMAND
-        except Exception as error:  # noqa: BLE001  # of a package that is not ours anything may be wrong
+        except Exception as error:  # noqa: BLE001  # a third-party package may raise any exception
             problem = f"{type(error).__name__}: {error}"
         else:
             yield from declarations
@@ -196,7 +209,7 @@ def _load_declarations(logger: Logger) -> Iterator[OnDemand]:
 class OnDemandFeatures(PageFeature):
     """Creates features on demand, and passes on the message for which a feature was created.
 
-    Each feature is created once; later messages are passed to it directly.
+    Each feature is created once. Later messages are passed to it directly.
     """
 
     def __init__(self, viewer: FeatureHost) -> None:
@@ -215,7 +228,7 @@ class OnDemandFeatures(PageFeature):
         return tuple(self._declaration_by_message)
 
     def opening(self) -> list[ServerMessage]:
-        """Return the `until` messages of features that do not exist yet, and begin to watch their topics."""
+        """Return the `until` messages of features that do not exist yet, and watch their topics."""
         if not self._is_watching and self._declaration_by_topic:
             self._is_watching = True
             self.context.graph_changes.watch(self._create_published)
@@ -228,7 +241,7 @@ class OnDemandFeatures(PageFeature):
         self._create(self._declaration_by_message[address_of(type(message))]).receive(page, message)
 
     def recording_shown(self) -> None:
-        """Create the features that refuse requests while a recording is shown, so that they are notified too."""
+        """Create and notify the features that refuse requests while a recording is shown."""
         for feature in self._declared:
             if feature.refuses_recordings:
                 self._create(feature)

@@ -1,6 +1,6 @@
-"""Records topics for pages, with one recording at a time for all pages, and saves the last minutes.
+"""Records topics for pages, one recording at a time, and saves the last minutes.
 
-Files are written to the working directory of the program. The program chooses their names; pages cannot.
+Files are written to the working directory of the program. The program chooses their names, not the pages.
 """
 
 from __future__ import annotations
@@ -69,7 +69,7 @@ class RecordingFeature(PageFeature):
         self._loop = asyncio.get_running_loop()
 
     def recording_shown(self) -> None:
-        """Refuse to record from now on, because a recording is shown."""
+        """Disable recording permanently, because a recording is shown."""
         self._is_possible = False
         self._publish()
 
@@ -91,7 +91,7 @@ class RecordingFeature(PageFeature):
                     self._try_action(partial(self._save, self.viewer.live, start, end))
 
     def close(self) -> None:
-        """Complete the current recording, if there is one."""
+        """Complete the current recording, and stop saving the last minutes."""
         self._is_possible = False
         self._stop_recording()
         if self._save_task is not None:
@@ -125,7 +125,7 @@ class RecordingFeature(PageFeature):
         self._schedule_publish()
 
     def _guarded(self, callback: Callable[..., object]) -> Callable[..., object]:
-        """Return a callback of the recorder's node wrapped so that a failed write ends the recording."""
+        """Wrap a callback of the recorder's node, so that a failed write ends the recording."""
 
         def call(*arguments: Any) -> None:
             try:
@@ -237,7 +237,7 @@ class RecordingFeature(PageFeature):
     def _free_bytes(self) -> int:
         """Return the number of free bytes on the disk of the recordings.
 
-        The result is ``sys.maxsize`` if it is unknown, because writing then reports a full disk.
+        The result is ``sys.maxsize`` if the number is unknown. A full disk is then reported when writing.
         """
         try:
             return shutil.disk_usage(self.folder).free
@@ -297,7 +297,10 @@ class RecordingFeature(PageFeature):
 
 
 class _CurrentRecording:
-    """A recording in progress; `clock` is the simulated clock, or None if time is not simulated."""
+    """A recording in progress.
+
+    `clock` is the simulated clock, or None if time is not simulated.
+    """
 
     def __init__(
         self, node: Node, writer: BagWriter, recorder: Recorder, jump_handle: JumpHandle, clock: Clock | None
@@ -317,7 +320,10 @@ class _CurrentRecording:
 
     @property
     def simulated(self) -> float | None:
-        """The simulated seconds since the start; None if time is not simulated, or was reset."""
+        """The simulated seconds since the start.
+
+        None means that time is not simulated, or that it was reset.
+        """
         if self._clock is None:
             return None
         elapsed = (self._clock.now().nanoseconds - self._simulated_start_ns) / 1e9

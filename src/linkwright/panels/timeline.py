@@ -1,4 +1,4 @@
-"""The timeline of a recording or of the last minutes, playback, and the Time panel, for pages."""
+"""The timeline, playback and Time panel, for pages."""
 
 from __future__ import annotations
 
@@ -72,7 +72,10 @@ class TimeFeature(PageFeature):
         self._loop = asyncio.get_running_loop()
 
     def start(self) -> None:
-        """Begin to watch the clock; if simulated time jumps back, everything is reset, as in RViz."""
+        """Start watching the clock.
+
+        If simulated time jumps back, everything is reset, as in RViz.
+        """
         threshold = JumpThreshold(min_forward=None, min_backward=Duration(nanoseconds=-1), on_clock_change=True)
         self._jump_handle = self.context.node.get_clock().create_jump_callback(threshold, post_callback=self._on_jump)
 
@@ -144,7 +147,7 @@ class TimeFeature(PageFeature):
         self._tick()
 
     def _tick(self) -> None:
-        """Send clocks that have changed to the pages that watch them, and schedule the next check if necessary."""
+        """Send changed clocks to the pages that watch them, and schedule the next check if needed."""
         if self._timer is not None:
             self._timer.cancel()
             self._timer = None
@@ -193,9 +196,9 @@ _CAUGHT_UP_NS = 100_000_000
 
 
 class TimelineFeature(PageFeature):
-    """Sends the position in a recording or in the last minutes to pages, and controls playback for them.
+    """Sends the position in a recording or in the last minutes, and controls playback.
 
-    Without a recording or a live history, the feature does nothing. A recording starts to play when the first page
+    Without a recording or a live history, the feature has no effect. A recording starts to play when the first page
     opens.
 
     Attributes:
@@ -220,7 +223,7 @@ class TimelineFeature(PageFeature):
         self._loop = asyncio.get_running_loop()
 
     def attach(self, playback: Playback, bag: BagReader) -> None:
-        """Show a recording to pages; a read error must be reported with `failed`."""
+        """Show a recording to pages. A read error must be reported with `failed`."""
         from linkwright.bag.publishing import missing_type_findings
 
         counts = bag.counts(_COUNT_INTERVALS)
@@ -248,7 +251,7 @@ class TimelineFeature(PageFeature):
         self._on_change()
 
     def keep(self, most_bytes: int) -> LiveHistory:
-        """Begin to store the messages of the last minutes, and return their history.
+        """Start storing the messages of the last minutes, and return their history.
 
         Args:
             most_bytes: the maximum size of the stored messages.
@@ -388,7 +391,10 @@ class TimelineFeature(PageFeature):
             self._publish_timer = self._loop.call_later(_EXTENT_PERIOD, self._publish_extent)
 
     def _publish_extent(self) -> None:
-        """Send the extent of the history to pages, and schedule the next message, if any pages are open."""
+        """Send the extent of the history to pages.
+
+        While any pages are open, also schedule the next message.
+        """
         self._publish_timer = None
         if self._live is not None and len(self.context.pages):
             self.context.pages.publish(self._extent(self._live))

@@ -43,7 +43,7 @@ if TYPE_CHECKING:
 
 
 class ViewsFeature(PageFeature):
-    """The views of pages, which start with the view of the file.
+    """The views of pages. They start with the view of the file.
 
     The view that any page changed last is written to the file.
     """
@@ -63,7 +63,7 @@ class ViewsFeature(PageFeature):
         return [ViewState(manager.view, manager.opened, manager.shows_whole_robot), self._saved_views_message(manager)]
 
     def receive(self, page: Page, message: Any) -> None:
-        """Handle a changed view of a page, or an edit of the saved views; invalid views are refused."""
+        """Handle a changed view of a page, or an edit of the saved views. Invalid views are refused."""
         manager = self.managers.of(page)
         views = manager.config.views
         try:
@@ -137,7 +137,7 @@ class ToolsFeature(PageFeature):
             self._destroy_all(tool_set)
 
     def receive(self, page: Page, message: Any) -> None:
-        """Change or use a tool; messages for removed tools are ignored."""
+        """Change or use a tool. Messages for removed tools are ignored."""
         manager = self.managers.of(page)
         tool_set = self._tool_set(manager)
         if isinstance(message, SetToolProperty):
@@ -160,7 +160,10 @@ class ToolsFeature(PageFeature):
             self.manager_closed(manager)
 
     def _tool_set(self, manager: VisualizationManager) -> _ToolSet:
-        """Return the tools of a manager; if its configuration was replaced, they are created again."""
+        """Return the tools of a manager.
+
+        If its configuration was replaced, they are created again.
+        """
         tool_set = self._tool_sets.get(manager)
         if tool_set is None or tool_set.config is not manager.config.tools:
             if tool_set is not None:
@@ -220,7 +223,10 @@ class ToolsFeature(PageFeature):
     # --- publishers and messages ---------------------------------------------------------------------------------
 
     def _create_outputs(self, tool_set: _ToolSet, entry: ToolEntry) -> None:
-        """Create the publisher or goal sender of a tool for its current topic, and destroy the previous one."""
+        """Create the publisher or goal sender of a tool for its current topic.
+
+        The previous publisher is destroyed.
+        """
         tool_kind = TOOL_KINDS.get(entry.cls)
         if tool_kind is not None and tool_kind.action is not None:
             from linkwright.panels.goals import GoalSender  # imported here, because few configurations use it

@@ -1,1 +1,1 @@
-"""Filter and convert sensor data: scans, images and inertial measurements."""
+"""Filters and conversions of sensor data: scans, images and inertial measurements."""

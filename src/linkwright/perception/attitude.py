@@ -1,4 +1,4 @@
-"""Estimate a body's orientation from its gyroscope, accelerometer and magnetometer.
+"""The estimation of a body's orientation from its gyroscope, accelerometer and magnetometer.
 
 Orientations are unit quaternions x y z w that rotate vectors from the body to the world. Sources: S. Madgwick, "An
 efficient orientation filter for inertial and inertial/magnetic sensor arrays", 2010; R. Valenti, I. Dryanovski and
@@ -29,7 +29,7 @@ from linkwright.geometry.single import (
 
 GRAVITY = 9.80665
 _MIN_LENGTH = 1e-3
-"""The minimum length in m/s2, or share of a field, of a vector with a usable direction."""
+"""The minimum length of a vector with a usable direction, in m/s2 or as a fraction of a field."""
 _IDENTITY: Quaternion = (0.0, 0.0, 0.0, 1.0)
 
 
@@ -79,7 +79,7 @@ def attitude_at_rest(acceleration: Vector3, magnetic: Vector3 | None, world: Wor
 
 @dataclass(slots=True)
 class MadgwickFilter:
-    """Integrates the gyroscope, and corrects by gradient descent on the error of the other sensors (Madgwick).
+    """A filter that integrates the gyroscope, and corrects by gradient descent on the other sensors' error (Madgwick).
 
     Attributes:
         gain: the size of the correction, in rad/s.
@@ -132,10 +132,11 @@ class MadgwickFilter:
         return _scale_quaternion(gradient, 1.0 / norm) if norm > 1e-12 else None
 
     def _gradient_of(self, direction: Vector3, reading: Vector3) -> Quaternion:
-        """Return the gradient of half the squared difference of a world direction, in the body frame, from its reading.
+        """Return the gradient of half the squared error of a predicted reading.
 
-        A small change of the orientation q by dq changes the predicted reading, q* d q, by dq* d q + q* d dq; its
-        product with the difference e is that of dq with -2 d q e.
+        The prediction is a world direction d, rotated to the body frame. A small change of the orientation q by dq
+        changes the prediction, q* d q, by dq* d q + q* d dq. The product of this change with the error e is the product
+        of dq with -2 d q e.
         """
         x, y, z = rotate(quaternion_inverse(self.orientation), direction)
         difference = (x - reading[0], y - reading[1], z - reading[2], 0.0)
@@ -146,7 +147,7 @@ class MadgwickFilter:
 
 @dataclass(slots=True)
 class ComplementaryFilter:
-    """Integrates the gyroscope, and corrects a fraction of the error that the other sensors show.
+    """A filter that integrates the gyroscope, and corrects a fraction of the error that the other sensors show.
 
     The world axes are north, west, up.
 

@@ -1,4 +1,4 @@
-"""Command-line arguments in the form ``name:=value``, which the commands of ROS 2 use."""
+"""Command-line arguments of the form ``name:=value``, as in the commands of ROS 2."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
 """Runs a coroutine as ``asyncio.run`` does since Python 3.11, with a callback before it starts.
 
-The callback is called when the loop exists, because a loop that is interrupted while it is created prints an error.
-Ctrl-C cancels the coroutine. Elsewhere, a KeyboardInterrupt could abort an import. On Python 3.10, the import lock
-would then remain locked for other threads that import the same module.
+The callback is called when the loop exists, because interrupting the creation of a loop prints an error. Ctrl-C cancels
+the coroutine. Elsewhere, a KeyboardInterrupt could abort an import. On Python 3.10, the import lock would then remain
+locked for other threads that import the same module.
 """
 
 from __future__ import annotations
@@ -63,7 +63,9 @@ def _run(create: Callable[[], Coroutine[Any, Any, T]], on_ready: Callable[[], ob
 
 
 class _Interruptions:
-    """A context in which the first Ctrl-C cancels a task, and each later one raises KeyboardInterrupt.
+    """A context in which Ctrl-C cancels a task.
+
+    Each later Ctrl-C raises KeyboardInterrupt.
 
     The context has no effect if SIGINT has another handler, or outside of the main thread.
     """

@@ -34,7 +34,7 @@ _DELAY_SECONDS = 0.01
 
 
 def end_on_interrupt() -> None:
-    """Make SIGINT (Ctrl-C) end the process silently, as long as there is nothing to clean up.
+    """Make SIGINT (Ctrl-C) end the process silently while there is nothing to clean up.
 
     This also applies if the process was started with SIGINT ignored. Scripts do this for every program that they start
     with ``&``, and later end it with ``kill -INT``. The programs of ROS also end on this signal, because rclpy and
@@ -80,7 +80,7 @@ def on_lost_interrupt(deliver: Callable[[], None]) -> Callable[[Any], Any]:
 
 
 def signal_again(signal_number: int) -> None:
-    """Send a signal to this process, so that the main thread handles it like a signal from outside."""
+    """Send a signal to this process. The main thread handles it like a signal from outside."""
     if sys.platform == "win32":
         _thread.interrupt_main(signal_number)  # on this system, ``os.kill`` would end the process
     else:
@@ -88,7 +88,7 @@ def signal_again(signal_number: int) -> None:
 
 
 def interrupt(process: Interruptible) -> None:
-    """Ask another process to end, as Ctrl-C does; on Windows, terminate the process."""
+    """Request the end of another process, as Ctrl-C does. On Windows, terminate the process."""
     if sys.platform == "win32":
         process.terminate()
     else:

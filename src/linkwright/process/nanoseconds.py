@@ -1,3 +1,3 @@
-"""Constants for times in nanoseconds, which are the unit of clocks in ROS 2 and Python."""
+"""Constants for times in nanoseconds, the unit of clocks in ROS 2 and Python."""
 
 NANOSECONDS_PER_SECOND = 1_000_000_000

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class _CompleteWriter(io.RawIOBase):
-    """A raw stream that writes all of the data, or raises OSError."""
+    """A raw stream that writes all data, or raises OSError."""
 
     def __init__(self, raw: io.RawIOBase) -> None:
         self._raw = raw

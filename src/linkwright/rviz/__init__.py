@@ -1,4 +1,4 @@
-"""RViz configuration files, displays and views, and the conversion of messages to what pages draw."""
+"""RViz configuration files, displays and views, and the conversion of messages for the page."""
 
 from typing import TYPE_CHECKING
 

@@ -23,8 +23,8 @@ from linkwright.rviz.frames.history import FrameHistory
 class PublishedTopics:
     """The topics that the nodes of a graph publish, except those of the viewer's own node.
 
-    The lookup is cached: each display without messages checks every second why there are none, and a configuration can
-    have hundreds of displays.
+    The lookup is cached, because each display without messages looks for publishers every second, and a configuration
+    can have hundreds of displays.
 
     Args:
         node: the viewer's node.
@@ -83,11 +83,13 @@ class PublishedTopics:
 
 
 _QUIET = 0.1
-"""Seconds for which changes are collected before callbacks are called; a starting node creates dozens of endpoints."""
+"""Seconds for which changes are collected before callbacks are called. A starting node creates dozens of endpoints."""
 
 
 class GraphChanges:
-    """Calls callbacks when the graph changes; does not watch the graph while there are no callbacks.
+    """Calls callbacks when the graph changes.
+
+    The graph is watched only while there are callbacks.
 
     Args:
         graph: the graph to watch; it may report changes from any thread.
@@ -100,7 +102,7 @@ class GraphChanges:
         self._due: asyncio.TimerHandle | None = None
 
     def watch(self, callback: Callable[[], None]) -> None:
-        """Register a callback for changes, which is called on the event loop."""
+        """Register a callback for graph changes, to be called on the event loop."""
         if not self._listeners:
             self._graph.watch(self._on_graph_change)
         self._listeners[callback] = None
@@ -180,7 +182,7 @@ class ViewerContext:
         published: the topics that other nodes publish.
         meshes: the folders that pages may read from.
         downloads: files created for a page, each of which can be fetched once.
-        held_time: holds the viewer's clock while the past is shown.
+        held_time: holds the viewer's clock while an earlier time is shown.
         display_ids: an iterator of IDs that no display of the viewer has used.
         folder: the working directory of the program, for files that pages create.
     """

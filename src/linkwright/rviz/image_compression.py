@@ -11,7 +11,7 @@ from msgspec.structs import replace
 from linkwright.page.protocol.images import ImageFrame
 
 _STEPS = ((1, 85), (1, 70), (1, 50), (2, 70), (2, 50), (3, 50), (4, 50), (6, 45), (8, 40), (12, 35), (16, 30))
-"""Scale divisors and WebP qualities; each step gives about two thirds of the bytes of the previous step."""
+"""Scale divisors and WebP qualities. Each step gives about two thirds of the bytes of the previous step."""
 
 _MAX_ATTEMPTS = 3
 _MAX_PIXELS = 1 << 26
@@ -31,7 +31,7 @@ class ImageCompressor:
         self._steps: dict[int, int] = {}
 
     def compressed(self, frame: ImageFrame, max_size: int) -> ImageFrame:
-        """Return the image as a WebP file of at most `max_size` bytes, or as small as a few attempts allow.
+        """Return the image as a WebP file of at most `max_size` bytes, if possible.
 
         An image that cannot be read is returned unchanged, because the page reports the error. A file that is already
         smaller than the result is also returned unchanged.

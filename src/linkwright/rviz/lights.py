@@ -47,7 +47,7 @@ def _light(light: Light, link: str | None, pose: Transform) -> LightScene:
     x, y, z = rotate(pose[3:], light.direction)
     length = (x * x + y * y + z * z) ** 0.5
     scene = LightScene(
-        kind=light.type,  # type: ignore[arg-type]  # the reader accepts no other words
+        kind=light.type,  # type: ignore[arg-type]  # the reader accepts only these types
         link=link,
         position=list(pose[:3]),
         direction=[x / length, y / length, z / length] if length > 0.0 else list(_DOWN),

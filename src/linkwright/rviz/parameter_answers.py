@@ -15,7 +15,10 @@ _POLL_INTERVAL = 0.05
 
 
 class NoAnswerError(Exception):
-    """Raised when a node does not respond in time; the message names the node."""
+    """Raised when a node does not respond in time.
+
+    The message names the node.
+    """
 
 
 async def wait_for_services(client: AsyncParameterClient) -> None:

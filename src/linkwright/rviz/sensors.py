@@ -25,7 +25,7 @@ _DEFAULT_RAY_LENGTH = 30.0
 
 @dataclass(frozen=True, slots=True)
 class ShownLidar:
-    """A lidar in the page's form, and how its measurements are reduced for drawing.
+    """A lidar in the page's form, and the reduction of its measurements for drawing.
 
     Attributes:
         scene: the description of the lidar for pages.

@@ -11,7 +11,7 @@ from linkwright.sdf.worlds import World
 from linkwright.xmltree import Element
 
 _MIN_MOVING_JOINTS = 2
-"""A model with at least this many moving joints is a robot; a model with fewer joints can be a door."""
+"""A model with at least this many moving joints is a robot. A model with fewer joints can be a door."""
 _POSE_LENGTH = 6
 
 

@@ -1,4 +1,4 @@
-"""Conversion of a world to the page's form: the shapes of all links, and their initial poses."""
+"""Conversion of a world to the page's form: shapes and initial poses of all links."""
 
 from __future__ import annotations
 
@@ -174,7 +174,7 @@ class _Builder:
             shape.texture = self._url_of(link, texture.diffuse, IMAGE_TYPES)
 
     def _heights(self, link: str, uri: str) -> NDArray[np.float32] | None:
-        """Return the heights of a heightmap, read as in the simulation, or None if it cannot be read.
+        """Return the heights of a heightmap as in the simulation, or None if it cannot be read.
 
         The image is decoded here, because browsers decode neither TIFF nor 16-bit grey.
         """
@@ -223,13 +223,13 @@ def _maps(workflow: Workflow) -> tuple[str, ...]:
 
 
 def _has_surface(workflow: Workflow) -> bool:
-    """Return whether a material sets more than a colour image: other images, roughness or metalness."""
+    """Return whether a material has images other than the colour image, roughness or metalness."""
     default = Workflow()
     return any(_maps(workflow)) or (workflow.roughness, workflow.metalness) != (default.roughness, default.metalness)
 
 
 def _look(material: Material) -> tuple[Sequence[float] | None, str]:
-    """Return the colour of a material, or None, and the address of its colour image, or an empty string.
+    """Return the colour of a material or None, and the address of its colour image or ``""``.
 
     Material scripts were read with the world. For a model from text, only Gazebo's own material names are known here.
     """

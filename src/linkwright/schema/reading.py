@@ -180,7 +180,7 @@ UNREADABLE: Final = type("Unreadable", (), {"__repr__": lambda _: "UNREADABLE"})
 
 
 class Report(Protocol):
-    """The receiver of a reader's findings, which formulates messages for one XML language.
+    """The receiver of a reader's findings. It formulates the messages for one XML language.
 
     `owner` is the link or joint that contains an element; messages use it to describe the element's location.
 
@@ -338,7 +338,7 @@ def _scope(rule: ElementRule, version: Version) -> dict[str, Any]:
 
 
 def _compile_reader(source: str, rule: ElementRule, scope: dict[str, Any]) -> Read:
-    exec(compile(source, f"<reader of {rule.tag}>", "exec"), scope)  # noqa: S102 - made of rules, of no text from files
+    exec(compile(source, f"<reader of {rule.tag}>", "exec"), scope)  # noqa: S102 - only from rules, not from files
     read: Read = scope["read"]
     return read
 

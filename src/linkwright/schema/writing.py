@@ -13,7 +13,7 @@ Completion = Callable[[Element, ElementRule, Any], None]
 
 
 def write_element(rule: ElementRule, instance: Any, complete: Completion | None = None) -> Element:
-    """Return an object as an element, which reads back as an equal object.
+    """Return an object as an element. The reader returns an equal object from it.
 
     Default values are omitted, except values that are usually written.
 

@@ -1,1 +1,1 @@
-"""Reads SDF worlds and models, resolves includes, and computes poses."""
+"""Reading of SDF worlds and models, with their includes resolved and poses computed."""

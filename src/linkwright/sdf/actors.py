@@ -47,7 +47,9 @@ class Waypoint:
 
 @dataclass(frozen=True, slots=True)
 class Trajectory:
-    """A path through waypoints; `type` is the name of the animation that is played on it.
+    """A path through waypoints.
+
+    `type` is the name of the animation that is played along the path.
 
     A tension of 0 gives a round path, and a tension of 1 gives straight lines.
     """
@@ -86,8 +88,8 @@ class Actor:
     element: Element | None = field(default=None, compare=False, repr=False)
 
 
-_FILE = value("filename", TEXT, "the file, as a URI or path", default="__default__")
-_SCALE = value("scale", NUMBER, "a factor on its size", default="1")
+_FILE = value("filename", TEXT, "the path or URI of the file", default="__default__")
+_SCALE = value("scale", NUMBER, "the scale factor", default="1")
 
 ACTOR = ElementRule(
     "actor",
@@ -98,12 +100,12 @@ ACTOR = ElementRule(
         object_rule(Skin, "skin", "the mesh of the figure", _FILE, _SCALE),
         ElementRule(
             "animation",
-            "a movement of its limbs",
-            (name_of("the name that paths refer to it by"),),
+            "an animation of the body",
+            (name_of("the name, to which paths refer"),),
             (
                 _FILE,
                 _SCALE,
-                value("interpolate_x", TRUTH, "whether the animation keeps pace with the walk", default="false"),
+                value("interpolate_x", TRUTH, "whether the animation follows the walking speed", default="false"),
             ),
             many=True,
             make=Animation,
@@ -113,24 +115,24 @@ ACTOR = ElementRule(
         object_rule(
             Script,
             "script",
-            "when and where it walks",
-            value("loop", TRUTH, "whether it begins again at the end", default="true"),
-            value("delay_start", NUMBER, "when it begins", "s", default="0"),
-            value("auto_start", TRUTH, "whether it begins by itself", default="true"),
+            "the timing and the paths of the walk",
+            value("loop", TRUTH, "whether the walk is repeated", default="true"),
+            value("delay_start", NUMBER, "the delay before the walk", "s", default="0"),
+            value("auto_start", TRUTH, "whether the walk starts automatically", default="true"),
             ElementRule(
                 "trajectory",
                 "a path",
                 (
-                    AttributeRule("id", INTEGER, "its number", default="0"),
-                    AttributeRule("type", TEXT, "the animation to walk it in", default=""),
-                    AttributeRule("tension", NUMBER, "from 0, round, to 1, straight", default="0"),
+                    AttributeRule("id", INTEGER, "the number of the path", default="0"),
+                    AttributeRule("type", TEXT, "the name of the animation", default=""),
+                    AttributeRule("tension", NUMBER, "the tension, from 0 for round to 1 for straight", default="0"),
                 ),
                 (
                     object_rule(
                         Waypoint,
                         "waypoint",
-                        "a point of the path",
-                        value("time", TIME, "the time of the waypoint", "s", default="0"),
+                        "a waypoint of the path",
+                        value("time", TIME, "the time at the waypoint", "s", default="0"),
                         POSE,
                         many=True,
                         field="waypoints",

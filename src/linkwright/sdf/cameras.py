@@ -33,7 +33,10 @@ class Clip:
 
 @dataclass(frozen=True, slots=True)
 class Distortion:
-    """The coefficients of Brown's lens distortion; `center` is a fraction of the image size in x and y."""
+    """The coefficients of Brown's lens distortion.
+
+    `center` is a fraction of the image size in x and y.
+    """
 
     k1: float = 0.0
     k2: float = 0.0
@@ -56,7 +59,7 @@ class Intrinsics:
 
 @dataclass(frozen=True, slots=True)
 class Camera:
-    """A camera, which looks along the x axis of its frame; the z axis points up.
+    """A camera that looks along the x axis of its frame, with the z axis up.
 
     Attributes:
         name: the name, which distinguishes several cameras of a sensor.
@@ -96,8 +99,8 @@ class Camera:
 
 
 _CLIP_VALUES = (
-    value("near", NUMBER, "the nearest", "m", default="0.1"),
-    value("far", NUMBER, "the farthest", "m", default="100"),
+    value("near", NUMBER, "the near clipping distance", "m", default="0.1"),
+    value("far", NUMBER, "the far clipping distance", "m", default="100"),
 )
 
 
@@ -120,31 +123,31 @@ def _create_camera(lens: _Lens | None, depth_camera: _DepthCamera | None, **valu
 CAMERA = ElementRule(
     "camera",
     "the optics and images of a camera",
-    (AttributeRule("name", TEXT, "the name of one camera among several", default=""),),
+    (AttributeRule("name", TEXT, "the name, which distinguishes several cameras", default=""),),
     (
         POSE,
         value("horizontal_fov", NUMBER, "the horizontal field of view", "rad", default="1.047"),
         object_rule(
             ImageFormat,
             "image",
-            "its images",
-            value("width", INTEGER, "pixels in a row", default="320"),
-            value("height", INTEGER, "rows", default="240"),
-            value("format", TEXT, "the format of a pixel, such as R8G8B8 or L8", default="R8G8B8"),
+            "the size and format of the image",
+            value("width", INTEGER, "the width", default="320"),
+            value("height", INTEGER, "the height", default="240"),
+            value("format", TEXT, "the pixel format, such as R8G8B8 or L8", default="R8G8B8"),
             default=ImageFormat(),
         ),
-        object_rule(Clip, "clip", "the distances that it sees", *_CLIP_VALUES, default=Clip()),
+        object_rule(Clip, "clip", "the near and far clipping distances", *_CLIP_VALUES, default=Clip()),
         noise_rule(),
         object_rule(
             Distortion,
             "distortion",
-            "how the lens distorts",
+            "the distortion of the lens",
             value("k1", NUMBER, "the first radial coefficient", default="0"),
             value("k2", NUMBER, "the second radial coefficient", default="0"),
             value("k3", NUMBER, "the third radial coefficient", default="0"),
             value("p1", NUMBER, "the first tangential coefficient", default="0"),
             value("p2", NUMBER, "the second tangential coefficient", default="0"),
-            value("center", VECTOR2, "its centre, in fractions of the image size", default="0.5 0.5"),
+            value("center", VECTOR2, "the centre of distortion, as fractions of the image size", default="0.5 0.5"),
         ),
         object_rule(
             _Lens,
@@ -153,11 +156,11 @@ CAMERA = ElementRule(
             object_rule(
                 Intrinsics,
                 "intrinsics",
-                "the focal lengths and the centre in pixels",
-                value("fx", NUMBER, "the focal length across", "pixels", default="277"),
-                value("fy", NUMBER, "the focal length down", "pixels", default="277"),
-                value("cx", NUMBER, "the centre across", "pixels", default="160"),
-                value("cy", NUMBER, "the centre down", "pixels", default="120"),
+                "the focal lengths and the principal point, in pixels",
+                value("fx", NUMBER, "the horizontal focal length", "pixels", default="277"),
+                value("fy", NUMBER, "the vertical focal length", "pixels", default="277"),
+                value("cx", NUMBER, "the principal point in x", "pixels", default="160"),
+                value("cy", NUMBER, "the principal point in y", "pixels", default="120"),
                 value("s", NUMBER, "the skew", default="0"),
             ),
             get=lambda camera: _Lens(camera.intrinsics) if camera.intrinsics else None,
@@ -166,16 +169,16 @@ CAMERA = ElementRule(
             _DepthCamera,
             "depth_camera",
             "the range of a depth camera",
-            object_rule(Clip, "clip", "the distances that it measures", *_CLIP_VALUES),
+            object_rule(Clip, "clip", "the minimum and maximum distance", *_CLIP_VALUES),
             get=lambda camera: _DepthCamera(camera.depth_clip) if camera.depth_clip else None,
         ),
-        value("segmentation_type", TEXT, "semantic, instance or panoptic", default="semantic"),
-        value("box_type", TEXT, "2d, visible_2d, full_2d or 3d", default="2d"),
-        value("camera_info_topic", TEXT, "the topic of its intrinsics", default=""),
-        value("optical_frame_id", TEXT, "the frame of its images", default=""),
-        value("triggered", TRUTH, "whether it takes images only on request", default="false"),
-        value("trigger_topic", TEXT, "the topic that requests an image", default=""),
-        value("visibility_mask", INTEGER, "which visuals it sees: those with a bit in common", default="4294967295"),
+        value("segmentation_type", TEXT, "the segmentation: semantic, instance or panoptic", default="semantic"),
+        value("box_type", TEXT, "the kind of bounding box: 2d, visible_2d, full_2d or 3d", default="2d"),
+        value("camera_info_topic", TEXT, "the topic of the camera info", default=""),
+        value("optical_frame_id", TEXT, "the frame of the images", default=""),
+        value("triggered", TRUTH, "whether the camera renders images only on request", default="false"),
+        value("trigger_topic", TEXT, "the topic on which images are requested", default=""),
+        value("visibility_mask", INTEGER, "a bit mask of the visuals that are visible", default="4294967295"),
     ),
     many=True,
     make=_create_camera,

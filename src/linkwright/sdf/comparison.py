@@ -1,4 +1,4 @@
-"""Comparison of models and their elements by content, regardless of how and where they were written."""
+"""Comparison of models and their elements by content, regardless of form and place."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def _content(element: Element) -> tuple[object, ...]:
 
 
 def _folder(shape_element: Visual | Collision) -> Path | None:
-    """Return the folder to which the path of an element's mesh is relative; None if the path is not relative."""
+    """Return the folder to which the path of an element's mesh is relative, or None."""
     shape, element = shape_element.geometry, shape_element.element
     if not isinstance(shape, Mesh | Heightmap) or "://" in shape.uri or element is None or element.source is None:
         return None

@@ -1,4 +1,4 @@
-"""Builds display models of actors and roads, which have no collisions."""
+"""Models without collisions that display actors and roads."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def actor_model(actor: Actor, hips: Vector3 | None = (0.0, 0.0, 0.0)) -> Model:
 
 
 def road_model(road: Road) -> Model:
-    """Return the model of a road: a strip through its points, with its top surface at their height."""
+    """Return the model of a road: a strip with its top surface at the height of the points."""
     visuals: list[Visual] = []
     for start, end in zip(road.points, road.points[1:], strict=False):
         (x, y, z), (dx, dy, dz) = start, (end[0] - start[0], end[1] - start[1], end[2] - start[2])

@@ -1,4 +1,4 @@
-"""Computes poses of frames in models and worlds, according to SDF's "pose frame semantics".
+"""Poses of frames in models and worlds, according to SDF's "pose frame semantics".
 
 Source: the proposal "Pose Frame Semantics" of SDFormat, for SDF 1.7 and later. Poses in older files, which do not name
 frames, have the same result. A frame is named within its model or world; ``arm::tip`` is the frame ``tip`` of the
@@ -52,7 +52,7 @@ class FrameError(Exception):
 
 
 class Frames:
-    """Finds frames of a model or world by name, and computes their poses.
+    """The frames of a model or world, by name, with their poses.
 
     Args:
         owner: the model or world, with its includes resolved.
@@ -174,7 +174,7 @@ class Frames:
             name = element.attached_to if isinstance(element, Frame) else element.child
 
     def _canonical_link(self) -> str:
-        """Return the name of the canonical link: the link that the model declares, or else its first link.
+        """Return the name of the canonical link: the declared link, or else the first link.
 
         Raises:
             FrameError: the model has no link.

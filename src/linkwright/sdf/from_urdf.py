@@ -1,4 +1,4 @@
-"""Converts a robot from URDF to a model in SDF, as gz does.
+"""Conversion of a robot from URDF to a model in SDF, as in gz.
 
 Source: libsdformat's parser of URDF and its page "URDF extensions in SDFormat".
 """
@@ -104,7 +104,10 @@ class _Converter:
         )
 
     def _remove_massless(self, bodies: list[Body]) -> list[Body]:
-        """Return the bodies that have mass; as in gz, descendants of massless bodies are also left out."""
+        """Return the bodies that have mass.
+
+        As in gz, descendants of massless bodies are also left out.
+        """
         left_out: set[str] = set()
         bodies_with_mass = []
         for body in bodies:
@@ -184,7 +187,10 @@ class _Converter:
         )
 
     def _pose(self, body: Body) -> RawPose:
-        """Return the pose of a body's link: zero in the frame of its joint, or its pose in the parent link."""
+        """Return the pose of a body's link, in the frame of its joint or in its parent link.
+
+        In the frame of its joint, the pose is zero.
+        """
         if body.joint is None:
             return RawPose()
         if body.joint.type in _SDF_JOINT_TYPES and body.joint.name not in self._robot.links:
@@ -253,7 +259,7 @@ def _pose_in_parent(body: Body) -> RawPose:
 
 
 def _in_body_frame(posed: _Posed, pose: Transform) -> _Posed:
-    """Return a sensor or light with its pose converted from its link to the body that contains the link.
+    """Return a sensor or light with its pose converted from its link to the link's body.
 
     A pose relative to a named frame is not changed.
     """

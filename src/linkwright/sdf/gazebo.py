@@ -1,4 +1,4 @@
-"""Reads the ``<gazebo>`` elements of a URDF, which are meant for simulators.
+"""Reading of the ``<gazebo>`` elements of a URDF, which are for simulators.
 
 Most of their content is SDF for the link, joint or model that the attribute ``reference`` names. Some tags, such as
 ``mu1`` and ``turnGravityOff``, are older than SDF and represent SDF elements. Both are combined into one SDF element
@@ -85,7 +85,7 @@ class LinkExtension:
 
 
 class Extensions:
-    """Finds and parses the ``<gazebo>`` elements of a robot by their ``reference``.
+    """The ``<gazebo>`` elements of a robot, parsed and by ``reference``.
 
     Args:
         robot: the robot with the ``<gazebo>`` elements.
@@ -149,7 +149,9 @@ class Extensions:
         return self._is_true(joint, _KEEP_FIXED_TAG)
 
     def becomes_revolute(self, joint: urdf.Joint) -> bool:
-        """Return whether ``disableFixedJointLumping`` makes a fixed joint a revolute joint that cannot move.
+        """Return whether ``disableFixedJointLumping`` turns a fixed joint into a revolute joint.
+
+        The revolute joint cannot move.
 
         ``preserveFixedJoint`` takes precedence.
         """
@@ -198,7 +200,10 @@ def _sdf_children(gazebo: Element) -> Iterator[Element]:
 
 
 def _merge_shape_settings(shape: Element, settings: Element) -> None:
-    """Add settings to the element for all shapes of a link; a surface or material replaces an earlier one."""
+    """Add settings to the element for all shapes of a link.
+
+    A surface or material replaces an earlier one.
+    """
     for element in settings.elements():
         if element.tag in ("surface", "material"):
             shape.children = [other for other in shape.elements() if other.tag != element.tag]
@@ -212,7 +217,7 @@ def _copied_element(element: Element) -> Element:
 
 
 def _put(ancestor: Element, path: str, text: str, place: Element) -> None:
-    """Set the text of the descendant at a path of tags, and create missing elements on this path.
+    """Set the text of the descendant at a path of tags, and create missing elements.
 
     New elements have the source position of `place`.
     """
@@ -237,7 +242,7 @@ def _tag_value(old_element: Element) -> str:
 
 
 def _boolean_text(tag: str, text: str) -> str:
-    """Return the value of an old boolean tag as ``true`` or ``false``, as the SDF element requires.
+    """Return the value of an old boolean tag as ``true`` or ``false``, as in SDF.
 
     Any other text becomes ``false``.
     """

@@ -1,4 +1,4 @@
-"""Resolves ``<include>`` in worlds and models."""
+"""Resolution of ``<include>`` in worlds and models."""
 
 from __future__ import annotations
 
@@ -186,7 +186,7 @@ class _Resolver:
         names.add(entity.name)
 
     def _read(self, path: Path, include: Include) -> Reading | None:
-        """Read an included file, or return the cached result; None if the file cannot be read.
+        """Return an included file, read or from the cache, or None if it cannot be read.
 
         Findings in the file are reported once, with a note at the position of the include.
         """

@@ -62,9 +62,9 @@ class AxisDynamics:
 
 @dataclass(frozen=True, slots=True)
 class AxisMimic:
-    """A relation that makes an axis follow another joint (SDF 1.11); positions are in rad or m.
+    """A relation that makes an axis follow another joint (SDF 1.11).
 
-    The position is multiplier * (position of `joint` - reference) + offset.
+    The position, in rad or m, is multiplier * (position of `joint` - reference) + offset.
     """
 
     joint: str
@@ -94,7 +94,7 @@ class Axis:
 
 @dataclass(frozen=True, slots=True)
 class Joint:
-    """A joint, which connects two links.
+    """A joint that connects two links.
 
     Attributes:
         type: one of `JOINT_TYPES`.
@@ -158,7 +158,7 @@ def _joint(
     screw_thread_pitch: float | None, thread_pitch: float | None, physics: _Physics | None, **parts: Any
 ) -> Joint:
     if screw_thread_pitch is None and thread_pitch is not None:
-        # The older tag <thread_pitch> is in revolutions per metre, with the opposite sign.
+        # The older tag <thread_pitch> is in radians per metre, with the opposite sign.
         screw_thread_pitch = -6.283185307179586 / thread_pitch if thread_pitch else None
     is_force_measured = physics is not None and (
         physics.provide_feedback or bool(physics.ode and physics.ode.provide_feedback)
@@ -173,16 +173,16 @@ def _axis_rule(tag: str, meaning: str) -> ElementRule:
         meaning,
         ElementRule(
             "xyz",
-            "its direction",
+            "the direction of the axis",
             (
                 AttributeRule(
-                    "expressed_in", TEXT, "the frame of the direction; that of the joint when absent", default=""
+                    "expressed_in", TEXT, "the frame of the direction; by default that of the joint", default=""
                 ),
             ),
             text=AttributeRule(
                 "text",
                 VECTOR3,
-                "the direction, a vector of length 1",
+                "the direction, a unit vector",
                 default="0 0 1",
                 usual=True,
                 field="axis",
@@ -198,40 +198,40 @@ def _axis_rule(tag: str, meaning: str) -> ElementRule:
             default="false",
             get=never_written,
         ),
-        value("initial_position", NUMBER, "where the joint begins", "rad or m", default="0"),
+        value("initial_position", NUMBER, "the initial position", "rad or m", default="0"),
         object_rule(
             _limit,
             "limit",
-            "the bounds of motion",
-            value("lower", NUMBER, "minimum position", "rad or m", default="-inf"),
-            value("upper", NUMBER, "maximum position", "rad or m", default="inf"),
-            value("effort", NUMBER, "maximum torque or force; unlimited when negative", "N m or N", default="inf"),
-            value("velocity", NUMBER, "maximum speed; unlimited when negative", "rad/s or m/s", default="inf"),
-            value("stiffness", NUMBER, "stiffness of the stop", default="1e8"),
-            value("dissipation", NUMBER, "damping of the stop", default="1"),
+            "the limits of motion",
+            value("lower", NUMBER, "the minimum position", "rad or m", default="-inf"),
+            value("upper", NUMBER, "the maximum position", "rad or m", default="inf"),
+            value("effort", NUMBER, "the maximum torque or force; negative for no limit", "N m or N", default="inf"),
+            value("velocity", NUMBER, "the maximum speed; negative for no limit", "rad/s or m/s", default="inf"),
+            value("stiffness", NUMBER, "the stiffness of the stop", default="1e8"),
+            value("dissipation", NUMBER, "the damping of the stop", default="1"),
             default=AxisLimit(),
         ),
         object_rule(
             AxisDynamics,
             "dynamics",
-            "damping, friction and a spring",
-            value("damping", NUMBER, "viscous damping", "N m s/rad or N s/m", default="0"),
-            value("friction", NUMBER, "static friction", "N m or N", default="0"),
-            value("spring_reference", NUMBER, "where the spring is at rest", "rad or m", default="0"),
-            value("spring_stiffness", NUMBER, "stiffness of the spring", "N m/rad or N/m", default="0"),
+            "the damping, friction and spring of the axis",
+            value("damping", NUMBER, "the viscous damping", "N m s/rad or N s/m", default="0"),
+            value("friction", NUMBER, "the static friction", "N m or N", default="0"),
+            value("spring_reference", NUMBER, "the rest position of the spring", "rad or m", default="0"),
+            value("spring_stiffness", NUMBER, "the stiffness of the spring", "N m/rad or N/m", default="0"),
             default=AxisDynamics(),
         ),
         ElementRule(
             "mimic",
-            "follow another joint",
+            "a relation that makes the axis follow another joint",
             (
                 AttributeRule("joint", TEXT, "the joint to follow", required=True),
-                AttributeRule("axis", TEXT, "which axis of that joint", default="axis"),
+                AttributeRule("axis", TEXT, "the axis of that joint", default="axis"),
             ),
             (
-                value("multiplier", NUMBER, "a factor on the position of that joint", default="1"),
-                value("offset", NUMBER, "a value added to the result", "rad or m", default="0"),
-                value("reference", NUMBER, "a value subtracted from the position first", "rad or m", default="0"),
+                value("multiplier", NUMBER, "the factor for the position of that joint", default="1"),
+                value("offset", NUMBER, "the value that is added to the result", "rad or m", default="0"),
+                value("reference", NUMBER, "the value that is subtracted first", "rad or m", default="0"),
             ),
             make=AxisMimic,
         ),
@@ -240,48 +240,48 @@ def _axis_rule(tag: str, meaning: str) -> ElementRule:
 
 JOINT = ElementRule(
     "joint",
-    "a connection of two links",
+    "a joint that connects two links",
     (
         name_of(),
-        AttributeRule("type", choice(*JOINT_TYPES), "how it moves", required=True, default="fixed"),
+        AttributeRule("type", choice(*JOINT_TYPES), "the type of motion", required=True, default="fixed"),
     ),
     (
         POSE,
         value("parent", TEXT, "the parent link or frame, or world", default="", required=True),
         value("child", TEXT, "the child link or frame", default="", required=True),
-        _axis_rule("axis", "its axis"),
-        _axis_rule("axis2", "its second axis"),
+        _axis_rule("axis", "the axis of motion"),
+        _axis_rule("axis2", "the second axis of motion"),
         value(
             "screw_thread_pitch",
             NUMBER,
-            "metres for each revolution of a screw",
+            "the pitch of a screw, in metres per revolution",
             "m",
             get=lambda joint: joint.thread_pitch,
         ),
         value(
             "thread_pitch",
             NUMBER,
-            "the older word for the pitch of a screw, with the other sign",
+            "the older, inverse pitch of a screw, with the opposite sign",
             "rad/m",
             get=never_written,
         ),
         value(
             "gearbox_ratio",
             NUMBER,
-            "the number of turns of a gearbox's child, in the opposite direction, for one turn of its parent",
+            "the revolutions of a gearbox's child, in the opposite direction, per revolution of its parent",
             default="1",
         ),
-        value("gearbox_reference_body", TEXT, "the link relative to which both sides of a gearbox turn", default=""),
+        value("gearbox_reference_body", TEXT, "the link relative to which both sides of a gearbox rotate", default=""),
         object_rule(
             _Physics,
             "physics",
             "parameters of physics engines",
-            value("provide_feedback", TRUTH, "whether the forces in the joint are measured", default="false"),
+            value("provide_feedback", TRUTH, "whether forces in the joint are measured", default="false"),
             object_rule(
                 _Physics,
                 "ode",
-                "the same for ODE",
-                value("provide_feedback", TRUTH, "whether the forces in the joint are measured", default="false"),
+                "parameters of the physics engine ODE",
+                value("provide_feedback", TRUTH, "whether forces in the joint are measured", default="false"),
             ),
             get=lambda joint: _Physics(joint.provide_feedback) if joint.provide_feedback else None,
         ),

@@ -16,9 +16,9 @@ from linkwright.xmltree import Element
 
 @dataclass(frozen=True, slots=True)
 class Attenuation:
-    """The decrease of light with distance: the factor 1 / (constant + linear d + quadratic d^2) at d metres.
+    """The decrease of light with distance.
 
-    Beyond `range`, in metres, there is no light.
+    At d metres, the factor is 1 / (constant + linear d + quadratic d^2). Beyond `range`, in metres, there is no light.
     """
 
     range: float = 10.0
@@ -79,17 +79,17 @@ LIGHT = ElementRule(
     ),
     (
         POSE,
-        value("diffuse", COLOR, "its colour", default="1 1 1 1"),
-        value("specular", COLOR, "the colour of its highlights", default="0.1 0.1 0.1 1"),
-        value("direction", VECTOR3, "the direction of its rays, in its own frame", default="0 0 -1"),
+        value("diffuse", COLOR, "the colour", default="1 1 1 1"),
+        value("specular", COLOR, "the colour of highlights", default="0.1 0.1 0.1 1"),
+        value("direction", VECTOR3, "the direction of the rays in the frame of the light", default="0 0 -1"),
         object_rule(
             Attenuation,
             "attenuation",
-            "how it fades with distance",
-            value("range", NUMBER, "how far it reaches", "m", default="10"),
-            value("constant", NUMBER, "the part that does not depend on the distance", default="1"),
-            value("linear", NUMBER, "the part that grows with the distance", default="1"),
-            value("quadratic", NUMBER, "the part that grows with its square", default="0"),
+            "the decrease of light with distance",
+            value("range", NUMBER, "the range of the light", "m", default="10"),
+            value("constant", NUMBER, "the constant coefficient", default="1"),
+            value("linear", NUMBER, "the coefficient of the distance", default="1"),
+            value("quadratic", NUMBER, "the coefficient of the squared distance", default="0"),
             default=Attenuation(),
         ),
         object_rule(
@@ -98,11 +98,11 @@ LIGHT = ElementRule(
             "the cone of a spot light",
             value("inner_angle", NUMBER, "the angle up to which the light has full intensity", "rad", default="0"),
             value("outer_angle", NUMBER, "the angle beyond which there is no light", "rad", default="0"),
-            value("falloff", NUMBER, "how the light fades between the two angles", default="0"),
+            value("falloff", NUMBER, "the decrease of light between the two angles", default="0"),
         ),
-        value("cast_shadows", TRUTH, "whether the objects that it lights cast shadows", default="false"),
-        value("intensity", NUMBER, "a factor on its colour", default="1"),
-        value("light_on", TRUTH, "whether it is lit", default="true"),
+        value("cast_shadows", TRUTH, "whether lit objects cast shadows", default="false"),
+        value("intensity", NUMBER, "the factor for the colour", default="1"),
+        value("light_on", TRUTH, "whether the light is switched on", default="true"),
     ),
     many=True,
     make=Light,

@@ -1,4 +1,4 @@
-"""Counts links without parsing a world completely.
+"""Counting of links without complete parsing of a world.
 
 For a huge world, parsing would take minutes and gigabytes.
 """

@@ -21,7 +21,10 @@ from linkwright.xmltree import Element
 
 @dataclass(frozen=True, slots=True)
 class Inertia:
-    """The inertia tensor about the centre of mass, along the axes of the inertial frame, in kg m2."""
+    """The inertia tensor about the centre of mass, in kg m2.
+
+    Its axes are those of the inertial frame.
+    """
 
     ixx: float = 1.0
     iyy: float = 1.0
@@ -140,8 +143,8 @@ _TENSOR = (
 
 INERTIAL = ElementRule(
     "inertial",
-    "mass properties",
-    (AttributeRule("auto", TRUTH, "whether they are computed from the collisions", default="false"),),
+    "the mass properties",
+    (AttributeRule("auto", TRUTH, "whether to compute the mass properties from the collisions", default="false"),),
     (
         value("mass", NUMBER, "the mass", "kg", default="1", usual=True),
         POSE,
@@ -152,7 +155,7 @@ INERTIAL = ElementRule(
             *_TENSOR,
             default=Inertia(),
         ),
-        value("density", NUMBER, "the density from which they are computed", "kg/m3"),
+        value("density", NUMBER, "the density for computed mass properties", "kg/m3"),
     ),
     make=Inertial,
     keeps=True,
@@ -161,16 +164,16 @@ INERTIAL = ElementRule(
 
 VISUAL = ElementRule(
     "visual",
-    "a shape to draw",
+    "a shape that is rendered",
     (name_of(),),
     (
         POSE,
         GEOMETRY,
         MATERIAL,
-        value("transparency", NUMBER, "from 0, opaque, to 1, invisible", default="0"),
-        value("cast_shadows", TRUTH, "whether it casts a shadow", default="true"),
-        value("laser_retro", NUMBER, "the fraction of a laser's light that it reflects"),
-        value("visibility_flags", INTEGER, "the bits that cameras see of it", default="4294967295"),
+        value("transparency", NUMBER, "the transparency, from 0 for opaque to 1 for invisible", default="0"),
+        value("cast_shadows", TRUTH, "whether the visual casts a shadow", default="true"),
+        value("laser_retro", NUMBER, "the intensity with which a laser is reflected"),
+        value("visibility_flags", INTEGER, "the bits that visibility masks of cameras select", default="4294967295"),
         PLUGIN,
     ),
     many=True,
@@ -183,14 +186,14 @@ VISUAL = ElementRule(
 
 COLLISION = ElementRule(
     "collision",
-    "a shape for contacts",
+    "a shape that collides",
     (name_of(),),
     (
         POSE,
         GEOMETRY,
         SURFACE,
-        value("density", NUMBER, "the density, if the mass of the link is computed", "kg/m3"),
-        value("laser_retro", NUMBER, "the fraction of a laser's light that it reflects"),
+        value("density", NUMBER, "the density for computed mass properties", "kg/m3"),
+        value("laser_retro", NUMBER, "the intensity with which a laser is reflected"),
         value("max_contacts", INTEGER, "the maximum number of contact points with another shape", default="10"),
     ),
     many=True,
@@ -212,16 +215,16 @@ LINK = ElementRule(
         COLLISION,
         SENSOR,
         LIGHT,
-        value("gravity", TRUTH, "whether it falls", default="true"),
-        value("enable_wind", TRUTH, "whether wind moves it", default="false"),
-        value("self_collide", TRUTH, "whether it touches the other links of its model"),
-        value("kinematic", TRUTH, "whether it moves but is not affected by forces", default="false"),
+        value("gravity", TRUTH, "whether gravity acts on the link", default="true"),
+        value("enable_wind", TRUTH, "whether wind acts on the link", default="false"),
+        value("self_collide", TRUTH, "whether the link collides with other links of its model"),
+        value("kinematic", TRUTH, "whether the link moves without reacting to forces", default="false"),
         object_rule(
             Decay,
             "velocity_decay",
-            "the velocity that is lost in a step",
-            value("linear", NUMBER, "the share of the linear velocity", default="0"),
-            value("angular", NUMBER, "the share of the angular velocity", default="0"),
+            "the fractions of velocity that are lost in each step",
+            value("linear", NUMBER, "the fraction of linear velocity", default="0"),
+            value("angular", NUMBER, "the fraction of angular velocity", default="0"),
             default=Decay(),
         ),
     ),

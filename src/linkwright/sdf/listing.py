@@ -1,4 +1,4 @@
-"""Lists the contents of an SDF file as text."""
+"""The contents of an SDF file, listed as text."""
 
 from __future__ import annotations
 
@@ -11,7 +11,10 @@ from linkwright.sdf.worlds import Sdf, World
 
 
 def list_contents(sdf: Sdf) -> str:
-    """Return the worlds, models, lights and actors of a file, one per line, indented by two spaces per level."""
+    """Return the worlds, models, lights and actors of a file, one per line.
+
+    Each level is indented by two spaces.
+    """
     lines: list[str] = []
     for world in sdf.worlds:
         lines += [_line(0, phrase("world {name}", name=world.name)), *_world_lines(world)]

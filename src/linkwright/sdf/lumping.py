@@ -1,4 +1,4 @@
-"""Combines the mass properties of several links."""
+"""Combination of the mass properties of several links."""
 
 from __future__ import annotations
 

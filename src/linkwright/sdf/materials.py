@@ -13,7 +13,10 @@ from linkwright.sdf.values import COLOR, NUMBER, TEXT, TRUTH, Color, object_rule
 
 @dataclass(frozen=True, slots=True)
 class MaterialScript:
-    """A material that a script defines, such as ``Gazebo/Grey``, and the URIs of scripts and their folders."""
+    """A material that a script defines, such as ``Gazebo/Grey``.
+
+    `uris` are the addresses of scripts and their folders.
+    """
 
     uris: tuple[str, ...] = ()
     name: str = ""
@@ -21,7 +24,9 @@ class MaterialScript:
 
 @dataclass(frozen=True, slots=True)
 class Workflow:
-    """The images and factors of a physically based material; images that are not used are empty.
+    """The images and factors of a physically based material.
+
+    Images that are not used are empty.
 
     Attributes:
         roughness: the roughness, from 0 for a mirror to 1 for a dull surface.
@@ -46,7 +51,10 @@ class Workflow:
 
 @dataclass(frozen=True, slots=True)
 class Pbr:
-    """A physically based material, described for one or two workflows; the renderer chooses between them."""
+    """A physically based material, described for one or two workflows.
+
+    The renderer chooses between them.
+    """
 
     metal: Workflow | None = None
     specular: Workflow | None = None
@@ -54,7 +62,10 @@ class Pbr:
 
 @dataclass(frozen=True, slots=True)
 class Shader:
-    """The shader of a material in Gazebo classic: ``vertex``, ``pixel`` or a type with a normal map."""
+    """The shader of a material in Gazebo classic.
+
+    Its type is ``vertex``, ``pixel`` or a type with a normal map.
+    """
 
     type: str = "pixel"
     normal_map: str = ""
@@ -62,7 +73,9 @@ class Shader:
 
 @dataclass(frozen=True, slots=True)
 class Material:
-    """The material of a visual; missing colours and images are None.
+    """The material of a visual.
+
+    Missing colours and images are None.
 
     Attributes:
         ambient: the colour under ambient light.
@@ -95,63 +108,63 @@ def _image_rule(tag: str, meaning: str) -> ElementRule:
 
 
 _COMMON_IMAGE_RULES = (
-    _image_rule("albedo_map", "the image of the colour"),
-    _image_rule("normal_map", "the image of the normals"),
-    _image_rule("emissive_map", "the image of the emitted colour"),
-    _image_rule("ambient_occlusion_map", "the image of the ambient occlusion"),
-    _image_rule("environment_map", "the image of its reflections"),
-    _image_rule("light_map", "the image of the light on it"),
+    _image_rule("albedo_map", "the albedo map"),
+    _image_rule("normal_map", "the normal map"),
+    _image_rule("emissive_map", "the emissive map"),
+    _image_rule("ambient_occlusion_map", "the ambient occlusion map"),
+    _image_rule("environment_map", "the environment map"),
+    _image_rule("light_map", "the light map"),
 )
 
 MATERIAL = object_rule(
     Material,
     "material",
-    "how it looks",
-    value("ambient", COLOR, "the colour in the shade"),
-    value("diffuse", COLOR, "the colour in the light"),
+    "the material of a visual",
+    value("ambient", COLOR, "the colour under ambient light"),
+    value("diffuse", COLOR, "the colour under direct light"),
     value("specular", COLOR, "the colour of highlights"),
     value("emissive", COLOR, "the emitted colour"),
-    value("shininess", NUMBER, "the sharpness of highlights", default="0"),
-    value("lighting", TRUTH, "whether lights change it", default="true"),
-    value("double_sided", TRUTH, "whether its inside is also visible", default="false"),
-    value("render_order", NUMBER, "the order in which coinciding surfaces are drawn", default="0"),
+    value("shininess", NUMBER, "the specular exponent", default="0"),
+    value("lighting", TRUTH, "whether lights affect the material", default="true"),
+    value("double_sided", TRUTH, "whether the surface is also visible from inside", default="false"),
+    value("render_order", NUMBER, "the drawing order of overlapping surfaces", default="0"),
     object_rule(
         without_unreadable(MaterialScript),
         "script",
-        "a material of Gazebo classic by its name",
-        values("uri", TEXT, "a folder or file of material scripts, or one of its textures"),
+        "a material that a script of Gazebo classic defines",
+        values("uri", TEXT, "the address of a material script, or of a folder of scripts or textures"),
         value("name", TEXT, "the name of the material, such as Gazebo/Grey", default=""),
     ),
     ElementRule(
         "shader",
-        "how it is shaded in Gazebo classic",
-        (AttributeRule("type", TEXT, "vertex, pixel or a map of normals", default="pixel"),),
-        (value("normal_map", TEXT, "the image of the normals", default=""),),
+        "the shader in Gazebo classic",
+        (AttributeRule("type", TEXT, "the type: vertex, pixel or a type with a normal map", default="pixel"),),
+        (value("normal_map", TEXT, "the normal map", default=""),),
         make=Shader,
         keeps=True,
     ),
     object_rule(
         Pbr,
         "pbr",
-        "a physically based surface",
+        "a physically based material",
         object_rule(
             Workflow,
             "metal",
-            "a surface by roughness and metalness",
+            "a material with roughness and metalness",
             *_COMMON_IMAGE_RULES,
-            _image_rule("roughness_map", "the image of the roughness"),
-            _image_rule("metalness_map", "the image of the metalness"),
-            value("roughness", NUMBER, "from 0, a mirror, to 1, dull", default="0.5"),
-            value("metalness", NUMBER, "from 0, none, to 1, metal", default="0.5"),
+            _image_rule("roughness_map", "the roughness map"),
+            _image_rule("metalness_map", "the metalness map"),
+            value("roughness", NUMBER, "the roughness, from 0 for a mirror to 1 for dull", default="0.5"),
+            value("metalness", NUMBER, "the metalness, from 0 to 1", default="0.5"),
         ),
         object_rule(
             Workflow,
             "specular",
-            "a surface by shine and glossiness",
+            "a material with specular colour and glossiness",
             *_COMMON_IMAGE_RULES,
-            _image_rule("specular_map", "the image of the specular colour"),
-            _image_rule("glossiness_map", "the image of the glossiness"),
-            value("glossiness", NUMBER, "from 0, dull, to 1, a mirror", default="0"),
+            _image_rule("specular_map", "the specular map"),
+            _image_rule("glossiness_map", "the glossiness map"),
+            value("glossiness", NUMBER, "the glossiness, from 0 for dull to 1 for a mirror", default="0"),
         ),
     ),
 )

@@ -1,4 +1,4 @@
-"""Merges models from ``<include merge="true">`` into the models that include them (SDF 1.9).
+"""Merging of ``<include merge="true">`` into the including model (SDF 1.9).
 
 Source: the proposal "Merge include" of SDFormat and libsdformat's frame ``_merged__NAME__model__``.
 """
@@ -19,7 +19,7 @@ _Posed = TypeVar("_Posed", Link, Frame, Model)
 
 
 def merged(enclosing_model: Model, included_model: Model) -> Model:
-    """Return the model `enclosing_model` with the links, joints and other contents of the model `included_model`.
+    """Return a model with the links, joints and other contents of an included model.
 
     A new frame with the pose of `included_model` replaces its model frame.
 
@@ -55,7 +55,7 @@ def merged(enclosing_model: Model, included_model: Model) -> Model:
 
 
 def _with_pose_in_frame(posed: _Posed, frame: str) -> _Posed:
-    """Return an element with its pose relative to `frame` if it was relative to its model's frame.
+    """Return an element with a pose relative to `frame` instead of its model's frame.
 
     A pose that is relative to another frame is not changed.
     """

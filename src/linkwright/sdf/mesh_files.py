@@ -1,4 +1,4 @@
-"""Finds the mesh and heightmap files that models use."""
+"""Lookup of the mesh and heightmap files that models use."""
 
 from __future__ import annotations
 

@@ -59,7 +59,7 @@ class Include:
 
 @dataclass(frozen=True, slots=True)
 class Model:
-    """A model, which consists of links, joints and nested models.
+    """A model of links, joints and nested models.
 
     Attributes:
         pose: the pose of the model, relative to the enclosing model or world unless it names another frame.
@@ -94,10 +94,10 @@ class Model:
 
 FRAME = ElementRule(
     "frame",
-    "a frame of its own",
+    "a frame with a name",
     (
         name_of(),
-        AttributeRule("attached_to", TEXT, "the link, joint, frame or model that it moves with", default=""),
+        AttributeRule("attached_to", TEXT, "the link, joint, frame or model with which the frame moves", default=""),
     ),
     (POSE,),
     many=True,
@@ -110,14 +110,14 @@ FRAME = ElementRule(
 
 INCLUDE = ElementRule(
     "include",
-    "a model of another file",
-    (AttributeRule("merge", TRUTH, "whether its parts become parts of the model around it", default="false"),),
+    "a model from another file",
+    (AttributeRule("merge", TRUTH, "whether its parts become parts of the enclosing model", default="false"),),
     (
-        value("uri", TEXT, "model://NAME, a path or the address of a model", default="", required=True),
-        value("name", TEXT, "its name here", default=""),
+        value("uri", TEXT, "the address of the model: model://NAME, a path or a URL", default="", required=True),
+        value("name", TEXT, "the name of the included model", default=""),
         replace(POSE, default=None),
-        value("static", TRUTH, "whether it never moves"),
-        value("placement_frame", TEXT, "the frame in it that the pose places", default=""),
+        value("static", TRUTH, "whether the model never moves"),
+        value("placement_frame", TEXT, "the frame of the model that is placed at the pose", default=""),
         PLUGIN,
     ),
     many=True,
@@ -129,19 +129,19 @@ INCLUDE = ElementRule(
 
 MODEL = ElementRule(
     "model",
-    "links, joints and models that belong together",
+    "a model of links, joints and nested models",
     (
         name_of(),
-        AttributeRule("canonical_link", TEXT, "the link that its frame is attached to", default=""),
-        AttributeRule("placement_frame", TEXT, "the frame in it that its pose places", default=""),
+        AttributeRule("canonical_link", TEXT, "the link to which the model's frame is attached", default=""),
+        AttributeRule("placement_frame", TEXT, "the frame of the model that is placed at its pose", default=""),
     ),
     (
         POSE,
-        value("static", TRUTH, "whether it never moves", default="false"),
-        value("self_collide", TRUTH, "whether its links touch each other", default="false"),
-        value("allow_auto_disable", TRUTH, "whether it may rest when nothing moves it", default="true"),
-        value("enable_wind", TRUTH, "whether wind moves its links", default="false"),
-        value("scale", VECTOR3, "factors of a world that Gazebo classic saved", default="1 1 1"),
+        value("static", TRUTH, "whether the model never moves", default="false"),
+        value("self_collide", TRUTH, "whether the links collide with each other", default="false"),
+        value("allow_auto_disable", TRUTH, "whether the model may sleep when it does not move", default="true"),
+        value("enable_wind", TRUTH, "whether wind acts on the links", default="false"),
+        value("scale", VECTOR3, "the scale in worlds that Gazebo classic saved", default="1 1 1"),
         LINK,
         JOINT,
         FRAME,

@@ -51,12 +51,12 @@ class NoiseXyz:
 NO_NOISE_XYZ = NoiseXyz()
 
 _NOISE_RULES = (
-    value("mean", NUMBER, "its mean", default="0"),
-    value("stddev", NUMBER, "its standard deviation", default="0"),
-    value("bias_mean", NUMBER, "the mean of a bias that is drawn once", default="0"),
-    value("bias_stddev", NUMBER, "the standard deviation of that bias", default="0"),
-    value("dynamic_bias_stddev", NUMBER, "the standard deviation of a bias that wanders", default="0"),
-    value("dynamic_bias_correlation_time", NUMBER, "how slowly that bias wanders", "s", default="0"),
+    value("mean", NUMBER, "the mean", default="0"),
+    value("stddev", NUMBER, "the standard deviation", default="0"),
+    value("bias_mean", NUMBER, "the mean of a constant bias", default="0"),
+    value("bias_stddev", NUMBER, "the standard deviation of the constant bias", default="0"),
+    value("dynamic_bias_stddev", NUMBER, "the standard deviation of a drifting bias", default="0"),
+    value("dynamic_bias_correlation_time", NUMBER, "the correlation time of the drift", "s", default="0"),
     value("precision", NUMBER, "the step to which values are rounded", default="0"),
 )
 
@@ -74,9 +74,9 @@ def noise_rule() -> ElementRule:
     return ElementRule(
         "noise",
         "noise on the value",
-        (AttributeRule("type", TEXT, "none, gaussian or gaussian_quantized", default=""),),
+        (AttributeRule("type", TEXT, "the type: none, gaussian or gaussian_quantized", default=""),),
         (
-            value("type", TEXT, "the kind of noise, up to SDF 1.4", default="", field="old_type", get=never_written),
+            value("type", TEXT, "the type of noise, up to SDF 1.4", default="", field="old_type", get=never_written),
             *_NOISE_RULES,
         ),
         make=_noise_of,
@@ -97,7 +97,10 @@ def _same_noise(noise: Noise) -> Noise:
 
 
 def noise_xyz_rule(tag: str, meaning: str, default_noise: NoiseXyz | None = NO_NOISE_XYZ) -> ElementRule:
-    """Return the rule of an element with noise for x, y and z; `default_noise` is the value of a missing element."""
+    """Return the rule of an element with noise for x, y and z.
+
+    `default_noise` is the value of a missing element.
+    """
     axis_rules = (
         wrapped_noise_rule("x", "along x"),
         wrapped_noise_rule("y", "along y"),

@@ -1,4 +1,4 @@
-"""Translates SDF 1.0 to 1.2 to the elements of SDF 1.3 and later.
+"""Translation of SDF 1.0 to 1.2 to the elements of SDF 1.3 and later.
 
 SDF 1.0 wrote values in attributes, ``<origin pose="1 2 0 0 0 0"/>`` and ``<box size="1 1 1"/>``, where later versions
 have elements, ``<pose>1 2 0 0 0 0</pose>`` and ``<box><size>1 1 1</size></box>``. The rules of the current SDF
@@ -34,7 +34,9 @@ def is_old(root: Element) -> bool:
 
 
 def upgraded(element: Element, rule: ElementRule) -> Element:
-    """Return a copy of an element translated to SDF 1.3; all elements keep their positions in the source.
+    """Return a copy of an element translated to SDF 1.3.
+
+    All elements keep their positions in the source.
 
     Args:
         element: an element of SDF 1.0 to 1.2, which is not changed.

@@ -1,4 +1,4 @@
-"""Computes the projection of cameras: pinhole cameras, and lenses with distortion.
+"""The projection of cameras: pinhole cameras, and lenses with distortion.
 
 Source: the model ``plumb_bob`` of camera calibration (Brown, "Decentering distortion of lenses", 1966); image axes of
 REP 103: x to the right, y down, z into the image.

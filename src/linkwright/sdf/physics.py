@@ -42,18 +42,18 @@ PHYSICS = ElementRule(
     "physics",
     "the time step, and the speed relative to real time",
     (
-        AttributeRule("name", TEXT, "its name", default="default_physics"),
+        AttributeRule("name", TEXT, "the name of the settings", default="default_physics"),
         AttributeRule("type", TEXT, "the physics engine for which the world was written", default="ode"),
-        AttributeRule("default", TRUTH, "whether this one is used if there are several", default="false"),
+        AttributeRule("default", TRUTH, "whether to use these settings if there are several", default="false"),
     ),
     (
-        value("max_step_size", NUMBER, "the step", "s", default="0.001"),
-        value("real_time_factor", NUMBER, "the maximum speed, as a multiple of real time", default="1"),
+        value("max_step_size", NUMBER, "the maximum time step", "s", default="0.001"),
+        value("real_time_factor", NUMBER, "the maximum number of simulated seconds per real second", default="1"),
         value(
             "real_time_update_rate", NUMBER, "steps per real second; 0 for as many as possible", "Hz", default="1000"
         ),
         value("max_contacts", INTEGER, "the maximum number of contact points between two shapes", default="20"),
-        value("gravity", VECTOR3, "gravity, up to SDF 1.5", "m/s2"),
+        value("gravity", VECTOR3, "the gravity, up to SDF 1.5", "m/s2"),
     ),
     many=True,
     make=Physics,

@@ -30,10 +30,10 @@ class Plugin:
 
 PLUGIN = ElementRule(
     "plugin",
-    "code that the simulator runs",
+    "a library that the simulator loads",
     (
-        AttributeRule("filename", TEXT, "the library, with or without lib and .so", required=True, default=""),
-        AttributeRule("name", TEXT, "its name; in gz-sim the class", default=""),
+        AttributeRule("filename", TEXT, "the library file, with or without lib and .so", required=True, default=""),
+        AttributeRule("name", TEXT, "the name; in gz-sim, the name of the class", default=""),
     ),
     many=True,
     make=Plugin,
@@ -44,7 +44,7 @@ PLUGIN = ElementRule(
 
 
 def library_name(filename: str) -> str:
-    """Return the name of a library without its folder, the prefix ``lib``, the suffix ``.so`` and the version.
+    """Return the name of a library without folder, ``lib``, ``.so`` and version.
 
     The prefix ``ignition-gazebo-`` becomes ``gz-sim-``.
     """

@@ -31,7 +31,10 @@ _GOLDEN_ANGLE = pi * (3 - sqrt(5))
 
 @dataclass(frozen=True, slots=True)
 class Distribution:
-    """How models are distributed; `rows`, `columns` and `step` (in metres) only apply to a grid."""
+    """The distribution of models.
+
+    `rows`, `columns` and `step` (in metres) apply only to a grid.
+    """
 
     type: str = "random"
     rows: int = 1
@@ -62,7 +65,7 @@ class Population:
 
 
 def models_of(population: Population) -> Iterator[Model]:
-    """Yield the models of a population, with the names ``NAME_clone_0``, ``NAME_clone_1`` and so on.
+    """Yield the models of a population, named ``NAME_clone_0``, ``NAME_clone_1`` and so on.
 
     As in Gazebo, a population without a box or cylinder has no models unless it is a grid.
     """
@@ -83,7 +86,10 @@ def models_of(population: Population) -> Iterator[Model]:
 
 
 def _offset_from_corner(population: Population) -> Vector3:
-    """Return the offset in metres from the first corner of a volume to its pose; Gazebo does not rotate it."""
+    """Return the offset in metres from the first corner of a volume to its pose.
+
+    Gazebo does not rotate this offset.
+    """
     distribution = population.distribution
     if distribution.type == "grid":
         x, y, _ = distribution.step
@@ -96,7 +102,7 @@ def _offset_from_corner(population: Population) -> Vector3:
 
 def _positions(population: Population) -> Iterator[Vector3]:
     distribution, count = population.distribution, min(population.count, _MAX_MODELS)
-    generator = Random(population.name)  # noqa: S311 - the same with each start, on purpose
+    generator = Random(population.name)  # noqa: S311 - the same numbers at each start, on purpose
     if distribution.type == "grid":
         x, y, _ = distribution.step
         for index in range(min(distribution.rows * distribution.columns, _MAX_MODELS)):
@@ -136,7 +142,7 @@ def _positions_in_cylinder(kind: str, count: int, cylinder: Cylinder, generator:
 
 POPULATION = ElementRule(
     "population",
-    "models of one kind, spread over a place",
+    "copies of a model, distributed over a volume",
     (name_of(),),
     (
         POSE,
@@ -145,25 +151,25 @@ POPULATION = ElementRule(
         object_rule(
             Distribution,
             "distribution",
-            "how they are spread",
+            "the distribution of the copies",
             value("type", choice(*KINDS), "the kind of distribution", default="random"),
-            value("rows", INTEGER, "rows of a grid", default="1"),
-            value("cols", INTEGER, "columns of a grid", default="1", field="columns"),
+            value("rows", INTEGER, "the rows of a grid", default="1"),
+            value("cols", INTEGER, "the columns of a grid", default="1", field="columns"),
             value("step", VECTOR3, "the spacing of a grid", "m", default="0.5 0.5 0"),
             default=Distribution(),
         ),
         object_rule(
             Box,
             "box",
-            "the box around the copies",
-            value("size", VECTOR3, "edge lengths along x, y, z", "m", default="1 1 1"),
+            "the box that contains the copies",
+            value("size", VECTOR3, "the edge lengths along x, y, z", "m", default="1 1 1"),
         ),
         object_rule(
             Cylinder,
             "cylinder",
-            "the cylinder around the copies, from its base upwards",
-            value("radius", NUMBER, "radius", "m", default="1"),
-            value("length", NUMBER, "length along z", "m", default="1"),
+            "the cylinder that contains the copies, from its base upwards",
+            value("radius", NUMBER, "the radius", "m", default="1"),
+            value("length", NUMBER, "the length along z", "m", default="1"),
         ),
     ),
     many=True,

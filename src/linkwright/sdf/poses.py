@@ -21,7 +21,9 @@ SEPARATOR = "::"
 
 @dataclass(frozen=True, slots=True)
 class RawPose:
-    """A pose as the file states it; `linkwright.sdf.frames` computes the pose in the model or world.
+    """A pose as written in the file.
+
+    `linkwright.sdf.frames` computes the pose in the model or world.
 
     Attributes:
         pose: the pose in the frame named by `relative_to`.
@@ -60,7 +62,7 @@ POSE = ElementRule(
             "the frame, link, joint or model in which the pose is given",
             default="",
         ),
-        AttributeRule("frame", TEXT, "the name of relative_to before SDF 1.7", default="", get=never_written),
+        AttributeRule("frame", TEXT, "the older name of relative_to, before SDF 1.7", default="", get=never_written),
         AttributeRule("degrees", TRUTH, "whether the angles are in degrees", default="false", get=never_written),
         AttributeRule(
             "rotation_format",

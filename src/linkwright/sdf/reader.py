@@ -1,4 +1,4 @@
-"""Reads the worlds and models of an SDF document, and reports its errors as findings.
+"""Reading of the worlds and models of an SDF document, with its errors as findings.
 
 Like libsdformat, the reader continues after an error if it can: it uses the default for a missing or invalid
 value. If libsdformat rejects the file at that point, the finding is an error.
@@ -122,7 +122,10 @@ class Reading:
 
 
 def read(document: Document) -> Reading:
-    """Return the content of an SDF document, with all errors as findings; no error is raised."""
+    """Return the content of an SDF document, with all errors as findings.
+
+    No error is raised.
+    """
     report = SdfReport()
     root = document.root
     if root.tag != "sdf" and not (root.tag == _OLD_ROOT and "version" in root.attributes):
@@ -167,7 +170,7 @@ def is_too_deep(root: Element, report: SdfReport) -> bool:
     """Return whether elements in `root` are nested too deeply to be read, and report it if so."""
     deep_element = _find_too_deep(root)
     if deep_element is not None:
-        message = phrase("elements are nested more than {count} deep", count=_MAX_DEPTH)
+        message = phrase("elements are nested more than {count} levels deep", count=_MAX_DEPTH)
         report.reject("SDF133", message, deep_element, hint=phrase("is a closing tag missing?"))
     return deep_element is not None
 
@@ -239,7 +242,7 @@ def _allows_separators(root: Element) -> bool:
 
 
 def _minor(root: Element) -> int:
-    """Return the minor number of a file's SDF version, or the newest one if the version is invalid."""
+    """Return the minor number of a file's SDF version, or else the newest one."""
     version_match = _VERSION(root.attributes.get("version", "").strip())
     return NEWEST[1] if version_match is None else int(version_match[1])
 

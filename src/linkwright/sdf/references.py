@@ -1,4 +1,4 @@
-"""Checks references by name in models, frames, joints and poses."""
+"""Checks of references by name in models, frames, joints and poses."""
 
 from __future__ import annotations
 

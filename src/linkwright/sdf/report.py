@@ -1,4 +1,4 @@
-"""Creates messages about errors in SDF elements from the rules of the elements."""
+"""Messages about errors in SDF elements, derived from the rules of the elements."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def described(element: Element) -> Phrase:
 
 
 class SdfReport(Findings):
-    """Collects the findings on one document, and formulates messages about mistakes in elements."""
+    """A report that collects the findings on one document, and formulates their messages."""
 
     __slots__ = ("_misspelt", "is_of_classic")
 
@@ -68,7 +68,7 @@ class SdfReport(Findings):
         self.error("SDF120", message, element, hint=hint)
 
     def malformed(self, element: Element, rule: ElementRule, attribute: AttributeRule, owner: Element) -> Any:
-        """Report an invalid value, and return the value to use instead, or ``UNREADABLE`` for the default.
+        """Report an invalid value, and return the value to use, or ``UNREADABLE`` for the default.
 
         For a number or a vector, libsdformat reads the start of the text and ignores the rest. If this gives a value,
         return it and report a warning.
@@ -95,7 +95,10 @@ class SdfReport(Findings):
         return UNREADABLE
 
     def too_new(self, element: Element, rule: ElementRule, attribute: AttributeRule, owner: Element) -> None:
-        """Raise an AssertionError: all files are read with the newest rules, so no element is too new."""
+        """Raise an AssertionError, because no element is too new for the newest rules.
+
+        All files are read with the newest rules.
+        """
         raise AssertionError(f"{rule.tag} {attribute.name} is for some versions only")
 
     def missing_child(self, element: Element, rule: ElementRule, child: ElementRule, owner: Element) -> None:
@@ -196,7 +199,10 @@ class SdfReport(Findings):
 
 
 def _with_missing_zeros(text: str, count: int) -> str:
-    """Return a text with zeros appended for missing numbers; empty if no number is missing or a number is invalid."""
+    """Return a text with zeros appended for missing numbers.
+
+    The result is empty if no number is missing or a number is invalid.
+    """
     try:
         values = numbers(text)
     except ValueError:
@@ -220,7 +226,7 @@ def _place(element: Element, rule: ElementRule, attribute: AttributeRule, owner:
 def _explain_value(
     place: Phrase, text: str, attribute: AttributeRule, element: Element
 ) -> tuple[Phrase, Phrase | None]:
-    """Return the message and the hint (or None) for a text that is not a valid value of an attribute."""
+    """Return the message and the hint, or None, for an invalid value of an attribute."""
     values = {"place": place, "value": text}
     if attribute.type in COUNTS:
         return _explain_numbers(values, text, COUNTS[attribute.type], element)

@@ -1,4 +1,4 @@
-"""Resolves URIs of models and their files.
+"""Resolution of the URIs of models and their files.
 
 These are ``model://``, ``package://`` and ``file://`` URIs, paths, and addresses on Fuel.
 """
@@ -57,7 +57,7 @@ _SUN_AND_GROUND = {"sun": "sun", "ground plane": "ground_plane"}
 
 
 class Missing(NamedTuple):
-    """Why a URI cannot be resolved.
+    """The reason why a URI cannot be resolved.
 
     Attributes:
         reason: the reason, as a message for users.
@@ -72,7 +72,7 @@ class Missing(NamedTuple):
 
 
 class ResourceFinder:
-    """Resolves the URIs of worlds.
+    """A finder of the files to which the URIs in worlds refer.
 
     ``model://NAME/PATH`` is searched for as ``NAME/PATH`` in these folders, in this order:
 
@@ -384,7 +384,10 @@ def _version_in(place: Path, version_and_file: list[str]) -> Path | None:
 
 
 def _normalized_suffix(path: Path) -> str:
-    """Return the suffix of a file in lower case, with ``.sdf`` for ``.world``, to suggest similar files."""
+    """Return the suffix of a file in lower case, with ``.sdf`` for ``.world``.
+
+    The suffix serves to suggest similar files.
+    """
     suffix = path.suffix.lower()
     return ".sdf" if suffix == ".world" else suffix
 
@@ -401,7 +404,7 @@ def _is_ours(folder: Path) -> bool:
 
 
 def _find_in_other_case(path: Path) -> Path | None:
-    """Return a file whose name differs from a missing file's name only in case, or None if there is none."""
+    """Return a file whose name differs from a missing file's name only in case, or None."""
     with suppress(OSError):
         return next((entry for entry in path.parent.iterdir() if entry.name.casefold() == path.name.casefold()), None)
     return None

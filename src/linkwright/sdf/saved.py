@@ -1,4 +1,4 @@
-"""The saved state of a world: ``<state>``, which Gazebo classic writes.
+"""The saved state of a world: the element ``<state>`` of Gazebo classic.
 
 A saved world contains each pose twice: the original pose in the model, and the saved pose in ``<state>``, which the
 simulator uses. Poses in a state are in the frame of the world.
@@ -17,7 +17,7 @@ from linkwright.sdf.worlds import World
 
 
 def with_saved_state(world: World) -> World:
-    """Return a world with its last saved state applied; a world without a saved state is returned unchanged.
+    """Return a world with its last saved state applied, if it has one.
 
     Includes must be resolved first.
     """

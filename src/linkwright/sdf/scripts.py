@@ -1,4 +1,4 @@
-"""Reads material scripts: Gazebo's built-in materials by name, and ``.material`` files of models.
+"""Reading of material scripts: Gazebo's built-in materials, and models' ``.material`` files.
 
 The renderer of Gazebo classic, Ogre, defines materials in a script language. Only the colours and the first image of a
 material are read here. Colours in the SDF file take precedence over the colours of the script.
@@ -97,7 +97,7 @@ _COLORS = ("ambient", "diffuse", "specular", "emissive")
 
 
 def gazebo_look(name: str) -> Look | None:
-    """Return the look of a built-in material of Gazebo, such as ``Gazebo/Grey``; None for other names."""
+    """Return the look of a built-in material of Gazebo, such as ``Gazebo/Grey``, or None."""
     return _BUILT_IN_LOOKS.get(name.removeprefix(_PREFIX)) if name.startswith(_PREFIX) else None
 
 
@@ -169,7 +169,7 @@ class _ScriptLibrary:
 
 
 def _image(name: str, script: Path, paths: Mapping[str, Path]) -> str:
-    """Return the URI of a texture that a script names, or an empty string if the file does not exist.
+    """Return the URI of a texture that a script names, or an empty string if it is missing.
 
     The file is searched for in the folders of the material, beside the script, and in the folder ``textures`` next to
     the script's folder.
@@ -228,7 +228,10 @@ def _with_property(look: Look, keyword: str, values: list[str]) -> Look:
 
 
 def _lines(text: str) -> Iterator[list[str]]:
-    """Yield the symbols of each line that has any, without comments; each brace counts as a line."""
+    """Yield the symbols of each nonempty line, without comments.
+
+    Each brace counts as a line.
+    """
     symbols: list[str] = []
     for match in _TOKENS.finditer(text):
         symbol = match[0]

@@ -35,7 +35,7 @@ class Sweep:
 
     @property
     def step(self) -> float:
-        """The angle in radians from one ray to the next; 0 for a single ray."""
+        """The angle in radians from one ray to the next, or 0 for a single ray."""
         return (self.max_angle - self.min_angle) / (self.count - 1) if self.count > 1 else 0.0
 
 
@@ -136,7 +136,10 @@ class AirPressure:
 
 @dataclass(frozen=True, slots=True)
 class Sonar:
-    """A sonar; `geometry` is the shape of its beam, such as ``cone`` or ``sphere``, and lengths are in metres."""
+    """A sonar, with lengths in metres.
+
+    `geometry` is the shape of its beam, such as ``cone`` or ``sphere``.
+    """
 
     geometry: str = "cone"
     min: float = 0.0
@@ -202,10 +205,10 @@ def _sweep_rule(tag: str, meaning: str, samples: int) -> ElementRule:
         Sweep,
         tag,
         meaning,
-        value("samples", INTEGER, "how many rays", default=str(samples)),
-        value("resolution", NUMBER, "the number of measured distances per reported one", default="1"),
-        value("min_angle", NUMBER, "where it begins", "rad", default="0"),
-        value("max_angle", NUMBER, "where it ends", "rad", default="0"),
+        value("samples", INTEGER, "the number of rays", default=str(samples)),
+        value("resolution", NUMBER, "the number of measured distances per reported distance", default="1"),
+        value("min_angle", NUMBER, "the first angle", "rad", default="0"),
+        value("max_angle", NUMBER, "the last angle", "rad", default="0"),
         default=Sweep(samples),
     )
 
@@ -213,9 +216,9 @@ def _sweep_rule(tag: str, meaning: str, samples: int) -> ElementRule:
 _RANGE = object_rule(
     Reach,
     "range",
-    "the distances that it measures",
-    value("min", NUMBER, "the shortest", "m", default="0"),
-    value("max", NUMBER, "the longest", "m", default="0"),
+    "the range of measurable distances",
+    value("min", NUMBER, "the minimum distance", "m", default="0"),
+    value("max", NUMBER, "the maximum distance", "m", default="0"),
     value("resolution", NUMBER, "the step to which distances are rounded", "m", default="0"),
     default=Reach(),
 )
@@ -239,15 +242,15 @@ def _lidar_rule(tag: str) -> ElementRule:
         object_rule(
             _ScanValues,
             "scan",
-            "its rays",
-            _sweep_rule("horizontal", "the rays about z", 640),
-            _sweep_rule("vertical", "the rays upwards", 1),
+            "the rays",
+            _sweep_rule("horizontal", "the horizontal rays", 640),
+            _sweep_rule("vertical", "the vertical rays", 1),
             default=_ScanValues(),
             get=lambda lidar: _ScanValues(lidar.horizontal, lidar.vertical),
         ),
         _RANGE,
         noise_rule(),
-        value("visibility_mask", INTEGER, "which visuals it sees: those with a bit in common", default="4294967295"),
+        value("visibility_mask", INTEGER, "a bit mask of the visuals that are visible", default="4294967295"),
     )
 
 
@@ -271,19 +274,19 @@ def _custom_orientation(angles: Vector3, parent_frame: str) -> tuple[Vector3, st
 _IMU = object_rule(
     _make_imu,
     "imu",
-    "the noise and the reference of an IMU",
-    noise_xyz_rule("angular_velocity", "noise on the angular velocity"),
-    noise_xyz_rule("linear_acceleration", "noise on the acceleration"),
-    value("enable_orientation", TRUTH, "whether it measures its orientation too", default="true"),
+    "the noise and the reference frame of an IMU",
+    noise_xyz_rule("angular_velocity", "the noise on the angular velocity"),
+    noise_xyz_rule("linear_acceleration", "the noise on the acceleration"),
+    value("enable_orientation", TRUTH, "whether the IMU also measures its orientation", default="true"),
     object_rule(
         _OrientationReference,
         "orientation_reference_frame",
         "the reference frame of the orientation",
-        value("localization", TEXT, "CUSTOM, NED, ENU, NWU, GRAV_UP or GRAV_DOWN", default="CUSTOM"),
+        value("localization", TEXT, "the frame: CUSTOM, NED, ENU, NWU, GRAV_UP or GRAV_DOWN", default="CUSTOM"),
         ElementRule(
             "custom_rpy",
-            "roll, pitch, yaw of the custom frame",
-            (AttributeRule("parent_frame", TEXT, "the frame that it is relative to", default="", get=itemgetter(1)),),
+            "the orientation of the custom frame",
+            (AttributeRule("parent_frame", TEXT, "the frame of the orientation", default="", get=itemgetter(1)),),
             text=AttributeRule(
                 "text", VECTOR3, "roll, pitch, yaw", "rad", default="0 0 0", field="angles", get=itemgetter(0)
             ),
@@ -313,7 +316,7 @@ def _make_navsat(position_sensing: _SensingNoise, velocity_sensing: _SensingNois
 
 def _navsat_rule(tag: str) -> ElementRule:
     def sensing(kind: str, meaning: str) -> ElementRule:
-        noise_rules = (wrapped_noise_rule("horizontal", "across the ground"), wrapped_noise_rule("vertical", "upwards"))
+        noise_rules = (wrapped_noise_rule("horizontal", "horizontally"), wrapped_noise_rule("vertical", "vertically"))
         get_both = attrgetter(f"horizontal_{kind}", f"vertical_{kind}")
         return object_rule(
             _SensingNoise,
@@ -327,9 +330,9 @@ def _navsat_rule(tag: str) -> ElementRule:
     return object_rule(
         _make_navsat,
         tag,
-        "noise of a satellite receiver",
-        sensing("position", "noise on the position"),
-        sensing("velocity", "noise on the velocity"),
+        "the noise of a satellite receiver",
+        sensing("position", "the noise on the position"),
+        sensing("velocity", "the noise on the velocity"),
     )
 
 
@@ -338,19 +341,19 @@ _FORCE_TORQUE = object_rule(
     "force_torque",
     "the frame and the noise of a force-torque sensor",
     value("frame", TEXT, "the frame of the measurement: child, parent or sensor", default="child"),
-    value("measure_direction", TEXT, "child_to_parent or parent_to_child", default="child_to_parent"),
-    noise_xyz_rule("force", "noise on the force"),
-    noise_xyz_rule("torque", "noise on the torque"),
+    value("measure_direction", TEXT, "the direction: child_to_parent or parent_to_child", default="child_to_parent"),
+    noise_xyz_rule("force", "the noise on the force"),
+    noise_xyz_rule("torque", "the noise on the torque"),
 )
 
 _SONAR = object_rule(
     Sonar,
     "sonar",
-    "the field of a sonar",
-    value("geometry", TEXT, "cone or sphere", default="cone"),
-    value("min", NUMBER, "the shortest distance", "m", default="0"),
-    value("max", NUMBER, "the longest distance", "m", default="1"),
-    value("radius", NUMBER, "radius of the cone at its end", "m", default="0.5"),
+    "the beam of a sonar",
+    value("geometry", TEXT, "the shape: cone or sphere", default="cone"),
+    value("min", NUMBER, "the minimum distance", "m", default="0"),
+    value("max", NUMBER, "the maximum distance", "m", default="1"),
+    value("radius", NUMBER, "the radius of the cone at its end", "m", default="0.5"),
 )
 
 
@@ -372,24 +375,24 @@ def _make_sensor(
 
 SENSOR = ElementRule(
     "sensor",
-    "something that measures",
-    (name_of(), AttributeRule("type", TEXT, "its type, such as camera or gpu_lidar", required=True, default="")),
+    "a sensor on a link or joint",
+    (name_of(), AttributeRule("type", TEXT, "the type, such as camera or gpu_lidar", required=True, default="")),
     (
         POSE,
-        value("update_rate", NUMBER, "measurements per second; 0 for one per step", "Hz", default="0"),
-        value("always_on", TRUTH, "whether it measures without a subscriber", default="false"),
-        value("visualize", TRUTH, "whether its measurements are drawn", default="false"),
-        value("enable_metrics", TRUTH, "whether it publishes its rate", default="false"),
-        value("topic", TEXT, "where it publishes", default=""),
-        value("frame_id", TEXT, "the frame of its messages", default="", get=never_written),
+        value("update_rate", NUMBER, "the measurements per second; 0 for one per step", "Hz", default="0"),
+        value("always_on", TRUTH, "whether the sensor measures without a subscriber", default="false"),
+        value("visualize", TRUTH, "whether measurements are displayed", default="false"),
+        value("enable_metrics", TRUTH, "whether the sensor publishes its rate", default="false"),
+        value("topic", TEXT, "the topic of the measurements", default=""),
+        value("frame_id", TEXT, "the frame of the messages", default="", get=never_written),
         value(
             "gz_frame_id",
             TEXT,
-            "the frame of its messages, before SDF 1.12",
+            "the frame of the messages, before SDF 1.12",
             default="",
             get=lambda sensor: sensor.frame_id,
         ),
-        value("ignition_frame_id", TEXT, "the frame of its messages, in older files", default="", get=never_written),
+        value("ignition_frame_id", TEXT, "the frame of the messages, in older files", default="", get=never_written),
         CAMERA,
         _lidar_rule("lidar"),
         replace(_lidar_rule("ray"), get=never_written),
@@ -398,35 +401,35 @@ SENSOR = ElementRule(
             ContactSensor,
             "contact",
             "the collision and the topic of a contact sensor",
-            value("collision", TEXT, "the collision", default="__default__"),
-            value("topic", TEXT, "the topic of its messages", default="__default_topic__"),
+            value("collision", TEXT, "the collision to observe", default="__default__"),
+            value("topic", TEXT, "the topic of the messages", default="__default_topic__"),
         ),
         _navsat_rule("navsat"),
         replace(_navsat_rule("gps"), get=never_written),
-        noise_xyz_rule("magnetometer", "noise of a magnetometer", None),
+        noise_xyz_rule("magnetometer", "the noise of a magnetometer", None),
         object_rule(
             Altimeter,
             "altimeter",
-            "noise of an altimeter",
-            wrapped_noise_rule("vertical_position", "noise on the height"),
-            wrapped_noise_rule("vertical_velocity", "noise on the vertical velocity"),
+            "the noise of an altimeter",
+            wrapped_noise_rule("vertical_position", "the noise on the height"),
+            wrapped_noise_rule("vertical_velocity", "the noise on the vertical velocity"),
         ),
         object_rule(
             AirPressure,
             "air_pressure",
-            "the reference and the noise of a barometer",
-            value("reference_altitude", NUMBER, "the altitude of its zero", "m", default="0"),
-            wrapped_noise_rule("pressure", "noise on the pressure", "noise"),
+            "the reference altitude and the noise of a barometer",
+            value("reference_altitude", NUMBER, "the altitude of the world's origin", "m", default="0"),
+            wrapped_noise_rule("pressure", "the noise on the pressure", "noise"),
         ),
         _FORCE_TORQUE,
         _SONAR,
         object_rule(
             LogicalCamera,
             "logical_camera",
-            "the view of a logical camera, which names models",
-            value("near", NUMBER, "the nearest", "m", default="0"),
-            value("far", NUMBER, "the farthest", "m", default="1"),
-            value("aspect_ratio", NUMBER, "the width of its view divided by the height", default="1"),
+            "the view of a logical camera, which reports models",
+            value("near", NUMBER, "the near clipping distance", "m", default="0"),
+            value("far", NUMBER, "the far clipping distance", "m", default="1"),
+            value("aspect_ratio", NUMBER, "the width of the view divided by its height", default="1"),
             value("horizontal_fov", NUMBER, "the horizontal field of view", "rad", default="1"),
         ),
         PLUGIN,

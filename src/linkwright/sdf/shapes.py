@@ -26,7 +26,10 @@ from linkwright.sdf.values import (
 
 @dataclass(frozen=True, slots=True)
 class Plane:
-    """An infinite plane through the origin; `size` is the extent of its visible part."""
+    """An infinite plane through the origin.
+
+    `size` is the extent of its visible part.
+    """
 
     normal: Vector3 = (0.0, 0.0, 1.0)
     size: tuple[float, float] = (1.0, 1.0)
@@ -41,7 +44,10 @@ class Ellipsoid:
 
 @dataclass(frozen=True, slots=True)
 class Cone:
-    """A cone along z with its tip at the top, centred at half its height; lengths in metres."""
+    """A cone along z with its tip at the top, centred at half its height.
+
+    Lengths are in metres.
+    """
 
     radius: float = 0.5
     length: float = 1.0
@@ -49,7 +55,7 @@ class Cone:
 
 @dataclass(frozen=True, slots=True)
 class Submesh:
-    """A named part of a mesh file, which is centred at the origin if `center` is set."""
+    """A named part of a mesh file, centred at the origin if `center` is set."""
 
     name: str
     center: bool = False
@@ -66,7 +72,10 @@ class Mesh:
 
 @dataclass(frozen=True, slots=True)
 class TerrainTexture:
-    """A texture of a heightmap: the URIs of its colour and normal images, and its edge length in metres."""
+    """A texture of a heightmap: its colour image, normal image and edge length in metres.
+
+    The images are URIs.
+    """
 
     diffuse: str = ""
     normal: str = ""
@@ -75,7 +84,10 @@ class TerrainTexture:
 
 @dataclass(frozen=True, slots=True)
 class Blend:
-    """The height at which one texture of a heightmap starts to fade into the next, and over which distance."""
+    """The transition from one texture of a heightmap to the next.
+
+    The transition begins at `min_height`, and extends over `fade_dist`.
+    """
 
     min_height: float = 0.0
     fade_dist: float = 0.0
@@ -104,7 +116,10 @@ class Heightmap:
 
 @dataclass(frozen=True, slots=True)
 class Image:
-    """A relief with a box wherever an image is brighter than a threshold; all boxes have the same height."""
+    """A relief with a box wherever an image is brighter than a threshold.
+
+    All boxes have the same height.
+    """
 
     uri: str
     scale: float = 1.0
@@ -151,17 +166,20 @@ def _first_shape(**shapes: Shape | tuple[Polyline, ...] | None) -> Shape:
 
 
 def _shape_if(kind: type) -> Callable[[Shape], Shape | None]:
-    """Return a function that returns its argument if it is a `kind`, and None otherwise; for writing."""
+    """Return a function that returns its argument if it is a `kind`, and None otherwise.
+
+    The function is used for writing.
+    """
     return lambda shape: shape if isinstance(shape, kind) else None
 
 
-_RADIUS = value("radius", NUMBER, "radius", "m", default="1", usual=True)
-_LENGTH = value("length", NUMBER, "length along z", "m", default="1", usual=True)
-_HALF = value("radius", NUMBER, "radius", "m", default="0.5", usual=True)
+_RADIUS = value("radius", NUMBER, "the radius", "m", default="1", usual=True)
+_LENGTH = value("length", NUMBER, "the length along z", "m", default="1", usual=True)
+_HALF = value("radius", NUMBER, "the radius", "m", default="0.5", usual=True)
 _URI = value(
     "uri",
     TEXT,
-    "model://MODEL/PATH, package://PACKAGE/PATH, file://PATH or a path from the file",
+    "the address: model://MODEL/PATH, package://PACKAGE/PATH, file://PATH or a relative path",
     default="",
     required=True,
 )
@@ -174,13 +192,13 @@ GEOMETRY = object_rule(
         Box,
         "box",
         "a box centred at the origin",
-        value("size", VECTOR3, "edge lengths along x, y, z", "m", default="1 1 1", usual=True),
+        value("size", VECTOR3, "the edge lengths along x, y, z", "m", default="1 1 1", usual=True),
         get=_shape_if(Box),
     ),
     object_rule(
         Capsule, "capsule", "a cylinder along z with a half sphere at each end", _HALF, _LENGTH, get=_shape_if(Capsule)
     ),
-    object_rule(Cone, "cone", "a cone along z, its tip above", _HALF, _LENGTH, get=_shape_if(Cone)),
+    object_rule(Cone, "cone", "a cone along z with its tip at the top", _HALF, _LENGTH, get=_shape_if(Cone)),
     object_rule(
         Cylinder, "cylinder", "a cylinder along z, centred at the origin", _RADIUS, _LENGTH, get=_shape_if(Cylinder)
     ),
@@ -188,16 +206,16 @@ GEOMETRY = object_rule(
         Ellipsoid,
         "ellipsoid",
         "an ellipsoid centred at the origin",
-        value("radii", VECTOR3, "semi-axes along x, y, z", "m", default="1 1 1", usual=True),
+        value("radii", VECTOR3, "the semi-axes along x, y, z", "m", default="1 1 1", usual=True),
         get=_shape_if(Ellipsoid),
     ),
     object_rule(Sphere, "sphere", "a sphere centred at the origin", _RADIUS, get=_shape_if(Sphere)),
     object_rule(
         Plane,
         "plane",
-        "a plane without end",
-        value("normal", VECTOR3, "the direction that it faces", default="0 0 1", usual=True),
-        value("size", VECTOR2, "how much of it is drawn", "m", default="1 1", usual=True),
+        "an infinite plane",
+        value("normal", VECTOR3, "the normal of the plane", default="0 0 1", usual=True),
+        value("size", VECTOR2, "the size of the visible part", "m", default="1 1", usual=True),
         get=_shape_if(Plane),
     ),
     object_rule(
@@ -205,39 +223,39 @@ GEOMETRY = object_rule(
         "mesh",
         "a mesh file",
         _URI,
-        value("scale", VECTOR3, "factors along x, y, z", default="1 1 1"),
+        value("scale", VECTOR3, "the scale factors along x, y, z", default="1 1 1"),
         object_rule(
             Submesh,
             "submesh",
-            "one part of the mesh file",
+            "a named part of the mesh file",
             value("name", TEXT, "the name of the part in the file", default=""),
-            value("center", TRUTH, "whether the part is moved to the origin", default="false"),
+            value("center", TRUTH, "whether the part is centred at the origin", default="false"),
         ),
         get=_shape_if(Mesh),
     ),
     object_rule(
         Heightmap,
         "heightmap",
-        "a ground whose heights are in an image",
+        "terrain with heights from an image",
         _URI,
-        value("size", VECTOR3, "its extent along x, y and z", "m", default="1 1 1", usual=True),
-        value("pos", VECTOR3, "the offset of its middle", "m", default="0 0 0", field="position"),
+        value("size", VECTOR3, "the extent along x, y and z", "m", default="1 1 1", usual=True),
+        value("pos", VECTOR3, "the offset of the centre", "m", default="0 0 0", field="position"),
         object_rule(
             TerrainTexture,
             "texture",
-            "a texture of the terrain, from the lowest up",
-            value("diffuse", TEXT, "the colours, as the URI of an image", default=""),
-            value("normal", TEXT, "the normals, as the URI of an image", default=""),
-            value("size", NUMBER, "the edge length that one image covers", "m", default="10"),
+            "a texture of the terrain; the first is the lowest",
+            value("diffuse", TEXT, "the address of the colour image", default=""),
+            value("normal", TEXT, "the address of the normal image", default=""),
+            value("size", NUMBER, "the edge length of the texture", "m", default="10"),
             many=True,
             field="textures",
         ),
         object_rule(
             Blend,
             "blend",
-            "the height at which one texture blends into the next",
-            value("min_height", NUMBER, "where it begins", "m", default="0"),
-            value("fade_dist", NUMBER, "the height over which it blends", "m", default="0"),
+            "the transition from one texture to the next",
+            value("min_height", NUMBER, "the height at which the transition begins", "m", default="0"),
+            value("fade_dist", NUMBER, "the height over which the transition extends", "m", default="0"),
             many=True,
             field="blends",
         ),
@@ -247,20 +265,20 @@ GEOMETRY = object_rule(
     object_rule(
         Image,
         "image",
-        "boxes where an image is bright",
+        "boxes wherever an image is bright",
         _URI,
-        value("scale", NUMBER, "metres a pixel", "m", default="1"),
-        value("threshold", INTEGER, "the brightness from 0 to 255 from which there is a box", default="200"),
-        value("height", NUMBER, "height of the boxes", "m", default="1"),
-        value("granularity", INTEGER, "how many pixels make one box along each side", default="1"),
+        value("scale", NUMBER, "the metres per pixel", "m", default="1"),
+        value("threshold", INTEGER, "the minimum brightness of a box, from 0 to 255", default="200"),
+        value("height", NUMBER, "the height of the boxes", "m", default="1"),
+        value("granularity", INTEGER, "the pixels per box along each side", default="1"),
         get=_shape_if(Image),
     ),
     object_rule(
         without_unreadable(Polyline),
         "polyline",
-        "a polygon raised to a height; several of them cut holes into each other",
-        values("point", VECTOR2, "a corner: x and y in metres"),
-        value("height", NUMBER, "its height along z", "m", default="1", usual=True),
+        "a polygon extruded along z; further polygons cut holes",
+        values("point", VECTOR2, "x and y of a corner in metres"),
+        value("height", NUMBER, "the height along z", "m", default="1", usual=True),
         many=True,
         get=lambda shape: shape if isinstance(shape, tuple) else (),
     ),

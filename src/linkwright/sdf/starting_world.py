@@ -25,7 +25,7 @@ _TEXT = """\
       <direction>-0.5 0.1 -0.9</direction>
     </light>
 
-    <!-- What is static never moves, and needs no mass. -->
+    <!-- A static model never moves, and needs no mass. -->
     <model name="ground_plane">
       <static>true</static>
       <link name="link">
@@ -57,7 +57,7 @@ _TEXT = """\
       </link>
     </model>
 
-    <!-- Models of other files, by the names of their folders; `linkwright world list` tells which there are.
+    <!-- Models from other files, named by their folders; `linkwright world list` lists them.
     <include>
       <uri>model://traffic_cone</uri>
       <name>cone_1</name>

@@ -18,7 +18,10 @@ from linkwright.xmltree import Element
 
 @dataclass(frozen=True, slots=True)
 class LinkState:
-    """The state of a link in a saved world; its pose is in the frame of the world."""
+    """The state of a link in a saved world.
+
+    Its pose is in the frame of the world.
+    """
 
     name: str
     pose: RawPose | None = None
@@ -41,7 +44,10 @@ class ModelState:
 
 @dataclass(frozen=True, slots=True)
 class LightState:
-    """The state of a light in a saved world; its pose is in the frame of the world."""
+    """The state of a light in a saved world.
+
+    Its pose is in the frame of the world.
+    """
 
     name: str
     pose: RawPose | None = None
@@ -64,7 +70,7 @@ class Deletions:
 
 @dataclass(frozen=True, slots=True)
 class State:
-    """A state of a world that Gazebo classic saved, which overrides the rest of the file.
+    """A world's state that Gazebo classic saved, and that overrides the rest of the file.
 
     Attributes:
         world_name: the name of the world.
@@ -86,8 +92,8 @@ _STATE_POSE = replace(POSE, default=None)
 
 _LINK_STATE = ElementRule(
     "link",
-    "where a link was",
-    (name_of("its name"),),
+    "the state of a link",
+    (name_of("the name"),),
     (_STATE_POSE,),
     many=True,
     make=LinkState,
@@ -97,9 +103,9 @@ _LINK_STATE = ElementRule(
 
 _MODEL_STATE = ElementRule(
     "model",
-    "where a model was",
-    (name_of("its name"),),
-    (_STATE_POSE, value("scale", VECTOR3, "its scale", default="1 1 1"), _LINK_STATE),
+    "the state of a model",
+    (name_of("the name"),),
+    (_STATE_POSE, value("scale", VECTOR3, "the scale", default="1 1 1"), _LINK_STATE),
     many=True,
     make=ModelState,
     keeps=True,
@@ -110,16 +116,16 @@ _MODEL_STATE = ElementRule(
 
 STATE = ElementRule(
     "state",
-    "how the world was when it was saved",
-    (AttributeRule("world_name", TEXT, "the world", default=""),),
+    "the state of the world when it was saved",
+    (AttributeRule("world_name", TEXT, "the name of the world", default=""),),
     (
-        value("sim_time", TIME, "simulated time", "s", default="0"),
-        value("iterations", INTEGER, "how many steps were made", default="0"),
+        value("sim_time", TIME, "the simulated time", "s", default="0"),
+        value("iterations", INTEGER, "the number of steps", default="0"),
         _MODEL_STATE,
         ElementRule(
             "light",
-            "where a light was",
-            (name_of("its name"),),
+            "the state of a light",
+            (name_of("the name"),),
             (_STATE_POSE,),
             many=True,
             make=LightState,
@@ -127,13 +133,13 @@ STATE = ElementRule(
             field="lights",
         ),
         object_rule(
-            Insertions, "insertions", "models and lights added after the start", MODEL, LIGHT, default=Insertions()
+            Insertions, "insertions", "the models and lights that were added later", MODEL, LIGHT, default=Insertions()
         ),
         object_rule(
             without_unreadable(Deletions),
             "deletions",
-            "models and lights deleted after the start",
-            values("name", TEXT, "its name"),
+            "the models and lights that were deleted later",
+            values("name", TEXT, "the name of a model or light"),
             default=Deletions(),
         ),
     ),

@@ -46,7 +46,7 @@ class BulletFriction:
 
 @dataclass(frozen=True, slots=True)
 class TorsionalFriction:
-    """Friction against rotation about the contact normal; radii in metres."""
+    """Friction against rotation about the contact normal, with radii in metres."""
 
     coefficient: float = 1.0
     use_patch_radius: bool = True
@@ -176,12 +176,12 @@ def _contact_group(surface: Surface) -> _ContactGroup | None:
 _ODE_FRICTION = object_rule(
     _make_friction,
     "ode",
-    "friction as ODE has it",
-    value("mu", NUMBER, "Coulomb's coefficient", default="1"),
-    value("mu2", NUMBER, "the coefficient across the first direction", default="1"),
+    "the friction in ODE",
+    value("mu", NUMBER, "the coefficient of Coulomb friction", default="1"),
+    value("mu2", NUMBER, "the coefficient perpendicular to the first direction", default="1"),
     ElementRule(
         "fdir1",
-        "the first direction of friction",
+        "the first friction direction",
         (
             AttributeRule(
                 "gz:expressed_in",
@@ -206,72 +206,70 @@ _ODE_FRICTION = object_rule(
         make=_direction_with_frame,
         get=lambda friction: friction if any(friction.direction) or friction.expressed_in else None,
     ),
-    value("slip1", NUMBER, "sliding for each newton along the first direction", "m/s/N", default="0"),
-    value("slip2", NUMBER, "sliding for each newton across it", "m/s/N", default="0"),
+    value("slip1", NUMBER, "the slip velocity per force along the first direction", "m/s/N", default="0"),
+    value("slip2", NUMBER, "the slip velocity per force perpendicular to it", "m/s/N", default="0"),
 )
 
 SURFACE = object_rule(
     _make_surface,
     "surface",
-    "friction, bounce and stiffness",
+    "the contact properties of a collision",
     object_rule(
         _FrictionGroup,
         "friction",
-        "friction",
+        "the friction",
         _ODE_FRICTION,
         object_rule(
             BulletFriction,
             "bullet",
-            "friction as Bullet has it",
-            value("friction", NUMBER, "Coulomb's coefficient", default="1"),
-            value("friction2", NUMBER, "the coefficient across the first direction", default="1"),
-            value("rolling_friction", NUMBER, "the coefficient against rolling", default="1"),
+            "the friction in Bullet",
+            value("friction", NUMBER, "the coefficient of Coulomb friction", default="1"),
+            value("friction2", NUMBER, "the coefficient perpendicular to the first direction", default="1"),
+            value("rolling_friction", NUMBER, "the coefficient of rolling friction", default="1"),
         ),
         object_rule(
             TorsionalFriction,
             "torsional",
-            "friction against turning on the spot",
-            value("coefficient", NUMBER, "its coefficient", default="1"),
-            value("use_patch_radius", TRUTH, "whether patch_radius counts, not surface_radius", default="true"),
-            value("patch_radius", NUMBER, "radius of the patch that touches", "m", default="0"),
-            value("surface_radius", NUMBER, "radius of the surface where it touches", "m", default="0"),
+            "the friction against rotation about the contact normal",
+            value("coefficient", NUMBER, "the coefficient of torsional friction", default="1"),
+            value("use_patch_radius", TRUTH, "whether to use patch_radius instead of surface_radius", default="true"),
+            value("patch_radius", NUMBER, "the radius of the contact patch", "m", default="0"),
+            value("surface_radius", NUMBER, "the radius of the surface at the contact", "m", default="0"),
         ),
         get=_friction_group,
     ),
     object_rule(
         _ContactGroup,
         "contact",
-        "stiffness, and the shapes it touches",
+        "the stiffness, and the shapes that may touch",
         object_rule(
             Contact,
             "ode",
-            "stiffness as ODE has it",
+            "the stiffness and damping in ODE",
             value("soft_cfm", NUMBER, "the constraint force mixing", default="0"),
             value("soft_erp", NUMBER, "the fraction of the error that is corrected in a step", default="0.2"),
-            value("kp", NUMBER, "stiffness", "N/m", default="1e12"),
-            value("kd", NUMBER, "damping", "N s/m", default="1"),
-            value("max_vel", NUMBER, "the maximum speed of correcting an overlap", "m/s", default="0.01"),
-            value("min_depth", NUMBER, "the overlap that is not corrected", "m", default="0"),
+            value("kp", NUMBER, "the stiffness", "N/m", default="1e12"),
+            value("kd", NUMBER, "the damping", "N s/m", default="1"),
+            value("max_vel", NUMBER, "the maximum speed at which an overlap is corrected", "m/s", default="0.01"),
+            value("min_depth", NUMBER, "the overlap below which nothing is corrected", "m", default="0"),
         ),
         value("collide_without_contact", TRUTH, "whether contacts are reported without an effect", default="false"),
-        value("collide_bitmask", INTEGER, "selects the shapes it touches: those with a common bit", default="65535"),
-        value("category_bitmask", INTEGER, "the bits that others see", default="65535"),
+        value("collide_bitmask", INTEGER, "the category bits of the shapes that collide", default="65535"),
+        value("category_bitmask", INTEGER, "the bits that other shapes' collide_bitmask selects", default="65535"),
         get=_contact_group,
     ),
     object_rule(
         _Bounce,
         "bounce",
-        "how it bounces",
+        "the bounce of the collision",
         value(
             "restitution_coefficient",
             NUMBER,
-            "the share of the speed that it bounces back with",
+            "the fraction of the speed that remains after a bounce",
             default="0",
             field="restitution",
         ),
-        value(
-            "threshold", NUMBER, "the speed above which it bounces", "m/s", default="100000", field="bounce_threshold"
-        ),
+        value("threshold", NUMBER, "the minimum speed of a bounce", "m/s", default="100000", field="bounce_threshold"),
         get=lambda surface: _unless_default(_Bounce(surface.restitution, surface.bounce_threshold), _Bounce()),
     ),
     default=USUAL_SURFACE,

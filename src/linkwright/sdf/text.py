@@ -1,4 +1,6 @@
-"""Parses XML as the simulators do; their parser, TinyXML2, accepts more than XML allows.
+"""Parsing of XML as in the simulators.
+
+Their parser, TinyXML2, accepts more than XML allows.
 
 For example, they accept whitespace and comments before the XML declaration, and bytes that are not UTF-8.
 """

@@ -1,4 +1,4 @@
-"""Converts a model in SDF to a robot in URDF, as ROS does if a robot description is SDF.
+"""Conversion of a model in SDF to a robot in URDF, as in ROS.
 
 Source: the package sdformat_urdf, which is urdfdom's reader of SDF.
 """
@@ -38,7 +38,10 @@ _AMBIENT_INTENSITY, _DIFFUSE_INTENSITY = 0.4, 0.8
 
 
 class _ConversionError(Exception):
-    """Raised when a model cannot be converted to a robot, with the reason, the element to report and a hint."""
+    """Raised when a model cannot be converted to a robot.
+
+    It carries the reason, the element to report and a hint.
+    """
 
     def __init__(self, reason: Phrase, element: Element | None, hint: Phrase | None = None) -> None:
         super().__init__(reason)

@@ -1,4 +1,4 @@
-"""Explains elements in places where SDF does not define them."""
+"""Explanations of elements in places where SDF does not define them."""
 
 from __future__ import annotations
 

@@ -56,7 +56,7 @@ def _joined(values: Iterable[float]) -> str:
 
 
 def leading_number(text: str) -> float | None:
-    """Return the number at the start of a text, or None if the text does not start with a number.
+    """Return the number at the start of a text, or None if there is none.
 
     This is what ``std::stod`` reads in libsdformat.
     """
@@ -186,7 +186,7 @@ def never_written(_: Any) -> None:
     """Return None, so that an older synonym of an element is read but never written."""
 
 
-def name_of(meaning: str = "its name, unique among its kind in the model or world") -> AttributeRule:
+def name_of(meaning: str = "the name, unique among elements of this kind in the model or world") -> AttributeRule:
     """Return the rule of the attribute ``name``."""
     return AttributeRule("name", TEXT, meaning, required=True, default="")
 

@@ -1,4 +1,4 @@
-"""Varies the masses, friction and sensor noise of models."""
+"""Variation of the masses, friction and sensor noise of models."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _SCALED_NOISE = ("mean", "stddev", "bias_mean", "bias_stddev", "dynamic_bias_std
 
 
 def with_mass(model: Model, factor: float) -> Model:
-    """Return a model with the masses, inertias and densities of its links multiplied by a factor."""
+    """Return a model with its links' masses, inertias and densities multiplied by a factor."""
 
     def scaled(link: Link) -> Link:
         inertial = link.inertial or Inertial()

@@ -1,4 +1,4 @@
-"""Computes the poses of an actor along its path.
+"""The poses of an actor along its path.
 
 Source: Gazebo's ``common::PoseAnimation``, ``Spline`` and ``RotationSpline``. A Catmull-Rom spline, with
 tangents shortened by the tension, interpolates the positions of a trajectory. A quaternion spline (squad) interpolates
@@ -23,7 +23,7 @@ class Walk:
     """An actor's walk along the trajectories of a script, one after the other.
 
     Args:
-        script: when the walk starts, whether it is repeated, and its trajectories.
+        script: the start of the walk, its repetition and its trajectories.
     """
 
     def __init__(self, script: Script) -> None:
@@ -120,7 +120,10 @@ def _keyframe_at(poses: list[Transform], index: int, tangent_scale: float) -> _K
 
 
 def _interpolated_point(start: _Key, end: _Key, fraction: float) -> Vector3:
-    """Return the position between two waypoints on a cubic Hermite curve; `fraction` is from 0 to 1."""
+    """Return the position between two waypoints on a cubic Hermite curve.
+
+    `fraction` is from 0 to 1.
+    """
     square, cube = fraction**2, fraction**3
     start_weight, end_weight = 2 * cube - 3 * square + 1, 3 * square - 2 * cube
     start_tangent_weight, end_tangent_weight = cube - 2 * square + fraction, cube - square

@@ -1,4 +1,4 @@
-"""The elements ``<world>`` and ``<sdf>``, with scene, position on earth, atmosphere and roads.
+"""The elements ``<world>`` and ``<sdf>``: scene, position on earth, atmosphere and roads.
 
 Other modules define the remaining elements of a world.
 
@@ -94,7 +94,9 @@ class Road:
 
 @dataclass(frozen=True, slots=True)
 class World:
-    """A world, with lengths in metres, gravity in m/s2, the magnetic field in tesla and wind in m/s.
+    """A world.
+
+    Lengths are in metres, gravity in m/s2, the magnetic field in tesla and wind in m/s.
 
     Attributes:
         gravity: the gravity; None if the world does not set it (`gravity_of` then returns the effective gravity).
@@ -135,7 +137,10 @@ class Sdf:
 
 
 def gravity_of(world: World) -> Vector3:
-    """Return a world's gravity in m/s2: its own, that of its physics settings (up to SDF 1.5), or the default."""
+    """Return the effective gravity of a world in m/s2.
+
+    This is the world's own gravity, or that of its physics settings (up to SDF 1.5), or the default.
+    """
     if world.gravity is not None:
         return world.gravity
     physics = physics_of(world)
@@ -149,7 +154,7 @@ def with_populations(world: World) -> World:
 
 
 def physics_of(world: World) -> Physics:
-    """Return the physics settings to use: the ones marked as default, or else the first ones.
+    """Return the physics settings to use: those marked as default, or else the first.
 
     For a world without physics settings, return SDF's defaults.
     """
@@ -170,24 +175,24 @@ def _make_world(wind: _Wind | None, **properties: Any) -> World:
 WORLD = ElementRule(
     "world",
     "a world",
-    (AttributeRule("name", TEXT, "its name", required=True, default="default"),),
+    (AttributeRule("name", TEXT, "the name of the world", required=True, default="default"),),
     (
-        value("gravity", VECTOR3, "gravity", "m/s2"),
+        value("gravity", VECTOR3, "the gravity", "m/s2"),
         value("magnetic_field", VECTOR3, "the magnetic field", "T", default="5.5645e-6 22.8758e-6 -42.3884e-6"),
         object_rule(
             _Wind,
             "wind",
             "the wind",
-            value("linear_velocity", VECTOR3, "its velocity", "m/s", default="0 0 0"),
+            value("linear_velocity", VECTOR3, "the velocity of the wind", "m/s", default="0 0 0"),
             get=lambda world: _Wind(world.wind) if any(world.wind) else None,
         ),
         PHYSICS,
         object_rule(
             Scene,
             "scene",
-            "how the world looks",
-            value("ambient", COLOR, "the colour of the shade", default="0.4 0.4 0.4 1"),
-            value("background", COLOR, "the colour behind everything", default="0.7 0.7 0.7 1"),
+            "the appearance of the world",
+            value("ambient", COLOR, "the ambient light", default="0.4 0.4 0.4 1"),
+            value("background", COLOR, "the background colour", default="0.7 0.7 0.7 1"),
             value("shadows", TRUTH, "whether there are shadows", default="true"),
             value("grid", TRUTH, "whether a grid is drawn", default="true"),
             value("origin_visual", TRUTH, "whether the origin is drawn", default="true"),
@@ -199,22 +204,22 @@ WORLD = ElementRule(
         object_rule(
             SphericalCoordinates,
             "spherical_coordinates",
-            "where on earth the origin is",
+            "the position and heading of the origin on earth",
             value("surface_model", TEXT, "the ellipsoid", default="EARTH_WGS84"),
             value("world_frame_orientation", TEXT, "the axes: ENU, NED or NWU", default="ENU"),
-            value("latitude_deg", NUMBER, "degrees north", "deg", default="0"),
-            value("longitude_deg", NUMBER, "degrees east", "deg", default="0"),
-            value("elevation", NUMBER, "height above the ellipsoid", "m", default="0"),
+            value("latitude_deg", NUMBER, "the latitude, positive to the north", "deg", default="0"),
+            value("longitude_deg", NUMBER, "the longitude, positive to the east", "deg", default="0"),
+            value("elevation", NUMBER, "the height above the ellipsoid", "m", default="0"),
             value("heading_deg", NUMBER, "the rotation of the x axis from east", "deg", default="0"),
         ),
         ElementRule(
             "atmosphere",
-            "the air",
+            "the atmosphere",
             (AttributeRule("type", TEXT, "the model of the atmosphere", default="adiabatic"),),
             (
-                value("temperature", NUMBER, "its temperature at the origin", "K", default="288.15"),
-                value("temperature_gradient", NUMBER, "how it changes with the height", "K/m", default="-0.0065"),
-                value("pressure", NUMBER, "its pressure at the origin", "Pa", default="101325"),
+                value("temperature", NUMBER, "the temperature at the origin", "K", default="288.15"),
+                value("temperature_gradient", NUMBER, "the temperature change with height", "K/m", default="-0.0065"),
+                value("pressure", NUMBER, "the pressure at the origin", "Pa", default="101325"),
             ),
             make=Atmosphere,
             keeps=True,
@@ -230,10 +235,10 @@ WORLD = ElementRule(
         ElementRule(
             "road",
             "a road",
-            (AttributeRule("name", TEXT, "its name", default=""),),
+            (AttributeRule("name", TEXT, "the name of the road", default=""),),
             (
-                value("width", NUMBER, "its width", "m", default="1"),
-                values("point", VECTOR3, "a point that it goes through"),
+                value("width", NUMBER, "the width of the road", "m", default="1"),
+                values("point", VECTOR3, "a point on the road"),
             ),
             many=True,
             make=without_unreadable(Road),
@@ -254,7 +259,7 @@ WORLD = ElementRule(
 
 SDF = ElementRule(
     "sdf",
-    "worlds, or a model, light or actor by itself",
+    "the content of the file: worlds, or a single model, light or actor",
     (AttributeRule("version", TEXT, "the version of SDF, 1.0 to 1.12", required=True, default="1.6"),),
     (WORLD, MODEL, LIGHT, ACTOR),
     make=Sdf,

@@ -1,4 +1,7 @@
-"""Writes worlds and models as SDF; reading the output gives equal worlds and models."""
+"""Writing of worlds and models as SDF.
+
+Reading the output gives equal worlds and models.
+"""
 
 from __future__ import annotations
 
@@ -36,7 +39,10 @@ class WrittenModel:
 
 
 def save_model_of_world(model: Model) -> WrittenModel:
-    """Return the text of a model for `save_world`; the includes of the model must not be resolved."""
+    """Return the text of a model for `save_world`.
+
+    The includes of the model must not be resolved.
+    """
     element = write_element(MODEL, model, _restore_ignored_content)
     return WrittenModel(xmltree.write_element(element, depth=2), frozenset(_prefixes(element)))
 
@@ -80,7 +86,7 @@ def save(document: Sdf | World | Model) -> str:
 
 
 def _root_element(sdf: Sdf) -> Element:
-    """Return the root element of a file, with the XML namespaces that the original file declares."""
+    """Return the root element of a file, with the namespaces that the original declares."""
     root = write_element(SDF, replace(sdf, version=VERSION), _restore_ignored_content)
     source_attributes = {} if sdf.element is None else sdf.element.attributes
     root.attributes |= {name: value for name, value in source_attributes.items() if name.startswith("xmlns")}
@@ -88,7 +94,7 @@ def _root_element(sdf: Sdf) -> Element:
 
 
 def _declare_prefixes(root: Element, extra_prefixes: Iterable[str] = ()) -> None:
-    """Declare the XML prefixes in `extra_prefixes`, and those that `root` and its descendants use."""
+    """Declare the XML prefixes in `extra_prefixes` and in `root` and its descendants."""
     for prefix in sorted({*_prefixes(root), *extra_prefixes}):
         root.attributes.setdefault(f"xmlns:{prefix}", _DEFAULT_NAMESPACE)
 

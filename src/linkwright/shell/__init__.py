@@ -1,4 +1,4 @@
-"""A shell in which the commands of ROS 2 are available."""
+"""A shell with the commands of ROS 2."""
 
 from linkwright.shell.programs import PROGRAMS, write_programs
 from linkwright.shell.session import run_shell, shell_environment

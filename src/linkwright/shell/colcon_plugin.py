@@ -1,4 +1,4 @@
-"""A colcon plugin that installs ``ament_cmake`` packages without ament, by copying their files.
+"""A colcon plugin that installs ``ament_cmake`` packages without ament, by copying files.
 
 colcon finds the classes through the entry points of Linkwright. The plugin gives such a package a separate type, for
 which the task is registered. If ament_cmake is available, the plugin has no effect.
@@ -30,7 +30,7 @@ _RESOURCE_INDEX = "share/ament_index/resource_index"
 
 
 class CopiedPackageIdentification(RosPackageIdentification):  # type: ignore[misc]  # its base has no types
-    """Identifies ``ament_cmake`` packages that must be copied because ament_cmake is not available."""
+    """Identifies ``ament_cmake`` packages that must be copied because ament_cmake is missing."""
 
     PRIORITY = RosPackageIdentification.PRIORITY + 10
 
@@ -42,7 +42,7 @@ class CopiedPackageIdentification(RosPackageIdentification):  # type: ignore[mis
 
 
 class CopyingAmentCmakeTask(TaskExtensionPoint):  # type: ignore[misc]  # its base has no types
-    """Installs the files that an ``ament_cmake`` package copies, and logs which parts are skipped."""
+    """Installs the files that an ``ament_cmake`` package copies, and logs the skipped parts."""
 
     async def build(self) -> int:
         """Install the files of the package, and return the exit status.

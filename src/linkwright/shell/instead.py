@@ -1,4 +1,4 @@
-"""Hints on how to replace ROS programs that are not available.
+"""Hints on replacements for ROS programs that are not available.
 
 For an unknown command, shells run ``python -m linkwright.shell.instead NAME``, which prints such a hint.
 """
@@ -51,7 +51,7 @@ HINTS: dict[str, Phrase] = {
     "rosservice": _ROS2_HINT,
     "rosbag": _ROS2_HINT,
 }
-"""Maps the names of programs to hints on what to use instead."""
+"""The hints on what to use instead, by the name of the program."""
 
 
 def unknown_command_error(
@@ -69,7 +69,10 @@ def unknown_command_error(
 
 
 def main(name: str) -> int:
-    """Print the hint for an unknown command, and return the exit status with which shells report it."""
+    """Print the hint for an unknown command.
+
+    Return the exit status with which shells report such a command.
+    """
     print_diagnostics(unknown_command_error(name, ()).diagnostics, sys.stderr)
     return 127
 

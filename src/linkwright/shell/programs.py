@@ -26,7 +26,7 @@ PROGRAMS = {
     "colcon": ("linkwright.cli.tools", "colcon"),
     "linkwright": ("linkwright", None),
 }
-"""Maps the name of a command to its Python module, and the first argument of the module or None.
+"""The Python module of each command, with the first argument of the module or None.
 
 For years, urdfdom spelt a command ``urdf_to_graphiz``. It still installs this name next to the correct one.
 """

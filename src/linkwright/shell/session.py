@@ -92,7 +92,7 @@ _SHELLS_WITH_START_FILE = ("bash", "zsh", "fish")
 
 
 def _interactive_command(scratch: Path, variables: dict[str, str], additions: Callable[[str], str]) -> list[str]:
-    """Return the command that starts the user's shell, and then sets the search path again.
+    """Return the command that starts the user's shell and then sets the search path again.
 
     The search path is set after the user's start-up files, because they often change it.
     """
@@ -184,7 +184,10 @@ def _run(words: Sequence[str], variables: Mapping[str, str]) -> int:
 
 
 def _has_terminal() -> bool:
-    """Return whether a terminal controls this process, so that Ctrl-C also reaches the command."""
+    """Return whether a terminal controls this process.
+
+    In that case, Ctrl-C also reaches the command.
+    """
     try:
         os.close(os.open("/dev/tty", os.O_RDWR | os.O_NOCTTY))
     except OSError:

@@ -29,7 +29,10 @@ class ActuatedSimulation(Protocol):
 
     @property
     def revision(self) -> int:
-        """The number of times that the model and the data were rebuilt; a cached index is valid for one revision."""
+        """The number of times that the model and the data were rebuilt.
+
+        A cached index is valid for one revision.
+        """
 
     def renew(self) -> None:
         """Recompile the MuJoCo model if the scene has changed."""
@@ -38,7 +41,10 @@ class ActuatedSimulation(Protocol):
         """Call `renew`, and update the MuJoCo data that is derived from positions."""
 
     def joint_state(self, name: str) -> tuple[float, float]:
-        """Return the position, in rad (or m), and the velocity, in rad/s (or m/s), of a joint with one axis."""
+        """Return the position and velocity of a joint with one axis.
+
+        Units are rad and rad/s, or m and m/s.
+        """
 
 
 class Motor:
@@ -91,7 +97,7 @@ class Motor:
 
 
 class Servo:
-    """A servo that holds a joint with one axis at a position, and moves the joint to new positions.
+    """A servo that holds a joint with one axis at a position, and moves it to new positions.
 
     `Simulation.renew` runs on first use, so adding many servos compiles the model only once.
 

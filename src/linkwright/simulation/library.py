@@ -1,4 +1,4 @@
-"""Access to the MuJoCo library, which the extra ``sim`` installs.
+"""Access to the MuJoCo library, a dependency of the extra ``sim``.
 
 The extra installs version 4, or on Python 3.10 the newest version that has wheels for it.
 """

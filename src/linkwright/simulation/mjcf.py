@@ -41,7 +41,10 @@ def write_mjcf(sdf: Sdf, finder: PackageFinder) -> tuple[str, Sequence[Diagnosti
 
 
 def _replace_textures(spec: Any, model: Any) -> None:
-    """Remove all textures and multiply the materials' colours by their mean colours: MJCF stores only file names."""
+    """Remove all textures, and multiply the materials' colours by the textures' mean colours.
+
+    MJCF stores only the file names of textures.
+    """
     mean_colours: dict[str, Any] = {}
     for material in spec.materials:
         (texture_index,) = {

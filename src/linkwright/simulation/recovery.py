@@ -28,7 +28,9 @@ _MAX_STEPS_WITHOUT_OVERLAP = 100
 
 
 class Recovery:
-    """Limits the speed at which bodies separate that overlap at the start or after they were moved.
+    """A limiter of the speed at which overlapping bodies separate.
+
+    Bodies may overlap at the start or after they were moved.
 
     Args:
         model: MuJoCo's model.
@@ -45,7 +47,7 @@ class Recovery:
 
     @property
     def is_expected(self) -> bool:
-        """Whether overlaps are still possible; if so, the caller must simulate with `step`."""
+        """Whether overlaps are still possible, so that the caller must simulate with `step`."""
         return self._remaining_steps > 0
 
     def expect(self) -> None:
@@ -62,7 +64,7 @@ class Recovery:
         mujoco.mj_step2(model, data)
 
     def _limit_depths(self) -> bool:
-        """Reduce penetration depths that are too large; return whether any depth was reduced."""
+        """Reduce excessive penetration depths, and return whether any depth was reduced."""
         model, data, constraint_types = self._model, self._data, self._mujoco.mjtConstraint
         types, ids, contacts = data.efc_type, data.efc_id, data.contact
         is_active = contacts.efc_address >= 0

@@ -1,4 +1,4 @@
-"""Time steps of MuJoCo with restitution: colliding bodies bounce off each other within a step.
+"""Time steps of MuJoCo with restitution: colliding bodies bounce within a step.
 
 MuJoCo's contacts are soft and absorb the speed of a hard impact: at usual time steps, no setting lets a ball rise as
 high as its coefficient of restitution requires. Therefore bodies that collide receive impulses after the step of the
@@ -31,7 +31,7 @@ _ITERATIONS = 50
 
 
 class Stepper:
-    """Simulates the time steps of a model, with restitution.
+    """A simulator of a model's time steps, with restitution.
 
     The restitution of a contact is the product of the coefficients of both shapes, as in gz, so both need one. As in
     Gazebo Classic, a pair bounces only above the lower of its two velocity thresholds, if one is set; gz has no
@@ -70,7 +70,10 @@ class Stepper:
             self._mujoco.mj_step(self._model, self._data, count)
 
     def _apply_restitution(self) -> None:
-        """Change velocities and poses so that bodies that collided in the last step bounce off each other."""
+        """Let the bodies that collided in the last step bounce off each other.
+
+        Their velocities and poses are changed.
+        """
         contacts, speeds = self._data.contact, self._data.efc_vel
         geoms, rows = contacts.geom, contacts.efc_address
         coefficients = self._coefficients[geoms].prod(axis=1)
@@ -110,7 +113,10 @@ class Stepper:
         )  # as if they had separated on contact
 
     def _contact_jacobian(self, contact: Any) -> Array:
-        """Return the Jacobian of a contact along its normal and tangents, shape (3, degrees of freedom)."""
+        """Return the Jacobian of a contact along its normal and its two tangents.
+
+        The shape is (3, degrees of freedom).
+        """
         model = self._model
         first_jacobian, second_jacobian = (np.zeros((3, model.nv)) for _ in range(2))
         for geom, jacobian in zip(contact.geom, (first_jacobian, second_jacobian), strict=True):
@@ -120,7 +126,9 @@ class Stepper:
 
 
 def _solve_impulses(response: Array, speeds: Array, targets: list[tuple[float, float]]) -> Array:
-    """Return the impulses along the normal and the two tangents of each contact, shape (3 contacts,).
+    """Return the impulses along the normal and the two tangents of each contact.
+
+    The shape is (3 contacts,).
 
     Args:
         response: the speed in each direction for a unit impulse in each direction, shape (3 contacts, 3 contacts).

@@ -34,20 +34,20 @@ class Schedule:
 
     @property
     def next_time(self) -> int | None:
-        """The time of the next call, in nanoseconds; None if there are no tasks."""
+        """The time of the next call, in nanoseconds, or None if there are no tasks."""
         while self._heap and self._heap[0][2].cancelled:
             heappop(self._heap)
         return self._heap[0][0] if self._heap else None
 
     def add(self, period: int, function: Callable[[], None], now: int) -> Task:
-        """Add a task, which runs for the first time one period after `now`, in nanoseconds."""
+        """Add and return a task that first runs one period after `now`, in nanoseconds."""
         task = Task(period, function)
         heappush(self._heap, (now + period, self._count, task))
         self._count += 1
         return task
 
     def run(self, now: int) -> None:
-        """Call each task whose time has been reached once, even if several of its periods have passed."""
+        """Call each due task once, even if several of its periods have passed."""
         while self._heap and self._heap[0][0] <= now:
             time, number, task = self._heap[0]
             if task.cancelled:

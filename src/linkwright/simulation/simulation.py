@@ -98,7 +98,7 @@ class Simulation:
         return self.time / NANOSECONDS_PER_SECOND
 
     def spawn(self, model: Model, name: str, pose: Transform = IDENTITY) -> None:
-        """Add a model to the world; the other models keep their state.
+        """Add a model to the world, and keep the state of the other models.
 
         Args:
             model: the model, with its includes resolved.
@@ -145,7 +145,9 @@ class Simulation:
         return Simulation(world, finder, step=self._given_step)
 
     def place(self, poses: Mapping[str, Transform]) -> None:
-        """Set the initial poses of models, and move free models there; joint positions are kept.
+        """Set the initial poses of models, and move free models there.
+
+        The velocities of free models become 0. Joint positions are kept.
 
         Args:
             poses: the pose of the frame of each model in the world, by the names of the models.
@@ -170,7 +172,10 @@ class Simulation:
         self._is_current = False
 
     def set_moved(self) -> None:
-        """Record that positions or velocities in `data` were set, so that dependent values are updated."""
+        """Record that positions or velocities in `data` were set.
+
+        Dependent values are then updated before their next use.
+        """
         self._is_current = False
 
     def _on_jump(self, body: Any) -> None:
@@ -180,7 +185,7 @@ class Simulation:
         self._is_current = False
 
     def set_altered(self) -> None:
-        """Record that the specification of `scene` was changed, so that it is compiled before its next use."""
+        """Record that the specification of `scene` was changed, so that it is compiled again."""
         self._is_changed = self._is_reshaped = True
 
     def free_links(self, name: str) -> list[str]:
@@ -198,7 +203,10 @@ class Simulation:
         return body.jntnum[0] == 1 and bool(self.model.jnt_type[body.jntadr[0]] == self._mujoco.mjtJoint.mjJNT_FREE)
 
     def add_velocity_motor(self, joint: str, gain: float, limit: float) -> Motor:
-        """Add a motor that holds the velocity of a joint; the arguments are those of `Scene.add_velocity_motor`."""
+        """Add and return a motor that holds the velocity of a joint.
+
+        The arguments are those of `Scene.add_velocity_motor`.
+        """
         name = self.scene.add_velocity_motor(joint, gain, limit)
         self._is_changed = True
         return Motor(self, name)
@@ -209,12 +217,15 @@ class Simulation:
         self._is_changed = True
 
     def let_slide(self, joint: str) -> None:
-        """Let a wheel slide in all directions, as if it had rollers; its motor then has no grip."""
+        """Let a wheel slide in all directions, as if it had rollers.
+
+        The motor of the wheel then has no grip.
+        """
         self.scene.let_slide(joint)
         self._is_changed = True
 
     def add_servo(self, joint: str, speed: float = inf) -> Servo:
-        """Add a servo, which holds the position of a joint with one axis.
+        """Add and return a servo that holds the position of a joint with one axis.
 
         Args:
             joint: the name of the joint.
@@ -227,7 +238,9 @@ class Simulation:
         return servo
 
     def keep_awake(self, link: str) -> None:
-        """Keep the bodies that move with a link awake, because sleeping bodies have no forces to measure.
+        """Keep the bodies that move with a link awake.
+
+        Sleeping bodies have no forces to measure.
 
         Raises:
             KeyError: there is no such link.
@@ -300,7 +313,10 @@ class Simulation:
             self.schedule.run(self.time)
 
     def call_every(self, period: int, function: Callable[[], None]) -> Task:
-        """Call a function each `period`, in simulated nanoseconds; 0 means after every step."""
+        """Schedule periodic calls of a function, and return the task.
+
+        `period` is in simulated nanoseconds; 0 means after every step.
+        """
         return self.schedule.add(max(period, self.step), function, self.time)
 
     def _make_steps(self, count: int) -> None:
@@ -373,9 +389,9 @@ class Simulation:
         return x, y, z, qx, qy, qz, qw
 
     def link_velocity(self, name: str) -> tuple[Array, Array]:
-        """Return the linear velocity of a link's origin in m/s and the link's angular velocity in rad/s.
+        """Return the linear velocity of a link's origin, and the link's angular velocity.
 
-        Both are in the axes of the world.
+        Both are in the axes of the world, in m/s and rad/s.
         """
         body, result = self.body(name), np.zeros(6)
         self._mujoco.mj_objectVelocity(self.model, self.data, self._mujoco.mjtObj.mjOBJ_XBODY, body, result, 0)
@@ -391,7 +407,7 @@ class Simulation:
         return float(self.model.body_subtreemass[self.model.body(self._root(name)[0]).id])
 
     def wheel_radius(self, link: str) -> float | None:
-        """Return the largest radius in m of a wheel's round collisions; None if no collision is round.
+        """Return the largest radius in m of a wheel's round collisions, or None.
 
         Raises:
             KeyError: there is no such link.
@@ -410,7 +426,10 @@ class Simulation:
         return max(radii, default=None)
 
     def model_pose(self, name: str) -> Transform:
-        """Return the pose in the world of a model's frame, which moves with the model's first link."""
+        """Return the pose in the world of a model's frame.
+
+        The frame moves with the model's first link.
+        """
         root, offset = self._root(name)
         return compose(self.link_pose(root), invert(offset))
 
@@ -455,7 +474,9 @@ class Simulation:
         self._on_jump(self.body(root))
 
     def set_model_velocity(self, name: str, linear: Vector3, angular: Vector3) -> None:
-        """Set the velocity of the first link of a free model, in m/s and rad/s, in the axes of the world.
+        """Set the velocity of the first link of a free model.
+
+        The velocity is in the axes of the world, in m/s and rad/s.
 
         Raises:
             KeyError: there is no such model, or it does not move freely.
@@ -496,7 +517,7 @@ class Simulation:
         self._on_jump(self.model.jnt_bodyid[joint.id])
 
     def push_joint(self, name: str, force: float) -> None:
-        """Set the torque in N m (force in N) on a joint with one axis, which acts until it is set again.
+        """Set the torque in N m (force in N) on a joint with one axis, until it is set again.
 
         The torque is limited by the joint's ``<effort>``, and to the torque that reaches the joint's ``<velocity>``
         within a step.

@@ -1,4 +1,4 @@
-"""Decides when bodies may fall asleep: MuJoCo skips sleeping bodies, and their velocity is zero.
+"""Sleep of bodies at rest: MuJoCo skips sleeping bodies, and their velocity is zero.
 
 MuJoCo lets bodies sleep as soon as they are slow for ten steps. However, a pendulum is slow at its turning point, and
 so is any body that starts to move under a small force. Here a body may only sleep if its pose has not changed for a
@@ -27,7 +27,7 @@ _WAKING_SPEED = 1e-30
 
 
 class Sleep:
-    """Controls which trees of bodies in a simulation may fall asleep.
+    """A monitor that lets trees of bodies fall asleep when they are at rest.
 
     Args:
         schedule: the schedule of the simulation.
@@ -65,7 +65,10 @@ class Sleep:
         self.wake()
 
     def rouse(self) -> None:
-        """Wake all bodies; a body at rest can fall asleep again after MuJoCo's ten steps."""
+        """Wake all bodies.
+
+        A body at rest can fall asleep again after MuJoCo's ten steps.
+        """
         data = self._data
         if self._model.nv:
             is_resting = (data.tree_asleep >= 0)[self._model.dof_treeid] & (data.qvel == 0.0)
@@ -78,7 +81,10 @@ class Sleep:
         self._set_policies()
 
     def stir(self, tree: int) -> None:
-        """Wake a tree that was moved or set in motion; -1, for a static body without a tree, has no effect."""
+        """Wake a tree that was moved or set in motion.
+
+        A tree of -1, for a static body without a tree, has no effect.
+        """
         if tree >= 0:
             self._calm_checks[tree] = 0
             self._set_policies()

@@ -1,4 +1,4 @@
-"""Selects how MuJoCo solves for forces: by islands of bodies in contact, or for all bodies together.
+"""Selection of MuJoCo's solver of forces: by islands in contact, or all bodies together.
 
 Separate groups, called "islands", may fall asleep, so bodies at rest cost nothing. With the discrete integrator,
 however, MuJoCo processes all motors for each island, which doubles the time of a step with a hundred robots. The forces
@@ -27,7 +27,7 @@ _CHECKS_TOGETHER = 50
 
 
 class Solving:
-    """Selects the solver of a simulation.
+    """A selector of the solver of a simulation.
 
     The selection depends only on the state of the simulation, so that the same calls give the same bits.
 
@@ -45,7 +45,7 @@ class Solving:
         self._data: Any = None
 
     def take(self, model: Any, data: Any, now: int, step: int) -> None:
-        """Use another model and its data, which is initially solved by islands.
+        """Use another model and its data, initially solved by islands.
 
         Args:
             model: MuJoCo's model, whose options are set here.

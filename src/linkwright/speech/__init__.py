@@ -1,1 +1,1 @@
-"""Turn speech into words, and words into a robot's actions, without ROS."""
+"""Speech recognition, and the execution of spoken commands, without ROS."""

@@ -1,4 +1,4 @@
-"""Stand-ins: modules with the names and interfaces of ROS 2 modules, for use where ROS 2 is not installed."""
+"""Stand-ins: modules with the names and interfaces of ROS 2 modules, for use without ROS 2."""
 
 from linkwright.standins.activation import activate
 

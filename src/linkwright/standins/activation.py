@@ -20,7 +20,9 @@ ROS need the launcher of ROS.
 
 
 def activate() -> None:
-    """Make the modules for launch files importable; may be called repeatedly.
+    """Make the modules for launch files importable.
+
+    Repeated calls have no further effect.
 
     The folder of the tables is last on ``sys.path``. An installed module therefore precedes a stand-in, unless its
     package is in `LAUNCH_MODULES`. The stand-ins are also importable in the processes that launch files start.
@@ -102,7 +104,10 @@ def _importing_file() -> Path | None:
 
 
 def _may_contain_interfaces(name: str) -> bool:
-    """Return whether a module may contain interfaces and the interface finder must search for it."""
+    """Return whether a module may contain interfaces.
+
+    If so, the interface finder must search it.
+    """
     package, _, kind = name.partition(".")
     if kind:
         return kind in ("msg", "srv", "action")

@@ -1,4 +1,4 @@
-"""Converts between image messages and numpy arrays, without OpenCV (the API of ``cv_bridge``)."""
+"""Conversion between image messages and numpy arrays, without OpenCV (API of ``cv_bridge``)."""
 
 from __future__ import annotations
 
@@ -27,7 +27,10 @@ _JPEG_QUALITY = 95  # OpenCV's default
 
 
 class CvBridgeError(TypeError):
-    """Raised when an image cannot be converted; the message states the reason."""
+    """Raised when an image cannot be converted.
+
+    The message states the reason.
+    """
 
 
 def getCvType(encoding_name: str) -> int:  # name as in cv_bridge

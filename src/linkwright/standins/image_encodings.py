@@ -1,4 +1,4 @@
-"""The encodings of ``sensor_msgs/image_encodings``, and conversions between them as in OpenCV."""
+"""The encodings of ``sensor_msgs/image_encodings``, and conversions as in OpenCV."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from linkwright.images.decoding import demosaic, packed_to_rgb
 
 DEPTHS = ("8U", "8S", "16U", "16S", "32S", "32F", "64F")
-"""OpenCV's names of depths; the index of a name is OpenCV's depth number."""
+"""OpenCV's names of depths. The index of a name is OpenCV's depth number."""
 NUMPY_NAMES = ("uint8", "int8", "uint16", "int16", "int32", "float32", "float64")
 _CHANNEL_SHIFT = 3
 
@@ -27,12 +27,15 @@ _RED_WEIGHT, _GREEN_WEIGHT, _BLUE_WEIGHT = 9798, 19235, 3735
 
 
 class ConversionError(RuntimeError):
-    """Raised when an encoding does not exist or a conversion is not possible; the message is the reason."""
+    """Raised when an encoding does not exist or a conversion is not possible.
+
+    The message states the reason.
+    """
 
 
 @dataclass(frozen=True, slots=True)
 class Encoding:
-    """How the pixels of an image message are encoded.
+    """The encoding of the pixels of an image message.
 
     Attributes:
         name: the name of the encoding in messages.
@@ -104,7 +107,7 @@ def convert_image(image: NDArray[Any], source: str, target: str) -> NDArray[Any]
 
 
 def _reorder_channels(image: NDArray[Any], source_encoding: Encoding, order: str) -> NDArray[Any]:
-    """Return an image with its channels in another order; add or drop channels as necessary."""
+    """Return an image with its channels in another order, adding or dropping channels if needed."""
     if source_encoding.order == order:
         return image
     if source_encoding.order == "mono":
@@ -126,7 +129,10 @@ def _reorder_channels(image: NDArray[Any], source_encoding: Encoding, order: str
 
 
 def _to_rgb(image: NDArray[Any], source_encoding: Encoding) -> NDArray[Any]:
-    """Convert an image in a Bayer or YUV encoding to RGB; return any other image unchanged."""
+    """Convert an image in a Bayer or YUV encoding to RGB.
+
+    Any other image is returned unchanged.
+    """
     if source_encoding.order.startswith("bayer_"):
         if source_encoding.depth != "8U":
             raise ConversionError(

@@ -30,7 +30,9 @@ _LICENSE = re.compile(
 
 
 def flake8(argv: Sequence[str] | None = None) -> int:
-    """Run flake8 on a package; return 0 if there are no findings, else 1.
+    """Run flake8 on a package.
+
+    Return 0 if there are no findings, otherwise 1.
 
     Args:
         argv: options and paths of the command ``ament_flake8``; None for the arguments of this process.
@@ -60,7 +62,9 @@ def flake8_with_errors(argv: Sequence[str] | None = None) -> tuple[int, list[str
 
 
 def pep257(argv: Sequence[str] | None = None) -> int:
-    """Run pydocstyle on a package; return 0 if there are no findings, else 1.
+    """Run pydocstyle on a package.
+
+    Return 0 if there are no findings, otherwise 1.
 
     Args:
         argv: options and paths of the command ``ament_pep257``; None for the arguments of this process.
@@ -81,7 +85,9 @@ def pep257(argv: Sequence[str] | None = None) -> int:
 
 
 def copyright_headers(argv: Sequence[str] | None = None) -> int:
-    """Check each source file for a copyright notice and a licence; return 0 if all have both, else 1.
+    """Check each source file for a copyright notice and a licence.
+
+    Return 0 if all files have both, otherwise 1.
 
     Args:
         argv: paths and options of the command ``ament_copyright``; None for the arguments of this process.
@@ -137,7 +143,7 @@ def _is_setup_of_package(path: Path) -> bool:
 
 
 def _run(module: str, settings: Sequence[str], files: Sequence[Path]) -> tuple[int, list[str]]:
-    """Run a linter on files, and return the exit status and the lines of its output.
+    """Run a linter on files, print its output, and return the exit status and the output lines.
 
     If the linter is not installed, skip the current test.
     """

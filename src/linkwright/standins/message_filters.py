@@ -48,7 +48,9 @@ class SimpleFilter:
 
 
 class Subscriber(SimpleFilter):
-    """The first filter of a chain, which subscribes to a topic and also has the attributes of the subscription.
+    """The first filter of a chain: a subscription to a topic.
+
+    It also has the attributes of the subscription.
 
     Args:
         node: the node that subscribes.
@@ -100,7 +102,7 @@ class Cache(SimpleFilter):
         self.incoming_connection = f.registerCallback(self.add)
 
     def add(self, msg: Any) -> None:
-        """Add a message, and drop the oldest one if the cache is full."""
+        """Add a message, drop the oldest one if the cache is full, and forward the message."""
         stamp = _message_time(msg, allow_headerless=self.allow_headerless, logger="message_filters_cache")
         if stamp is None:
             return
@@ -143,7 +145,7 @@ class Cache(SimpleFilter):
 
 
 class TimeSynchronizer(SimpleFilter):
-    """Outputs sets of messages, one from each filter, that have the same stamp.
+    """Outputs sets of messages with the same stamp, one message from each filter.
 
     Args:
         fs: the filters.

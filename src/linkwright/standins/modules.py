@@ -1,4 +1,4 @@
-"""Creates the modules that the tables describe, for imports such as ``from launch.actions import Shutdown``.
+"""Creation of the modules in the tables, such as ``launch.actions``, when they are imported.
 
 `FOLDER` is a virtual folder for Python's path finder. `FOLDER` contains every package that has a table, and
 ``FOLDER/launch`` contains the modules of ``launch``. Earlier entries of ``sys.path`` take precedence, package by
@@ -23,7 +23,10 @@ FOLDER = str(table.FOLDER)
 
 
 def install() -> None:
-    """Make Python find the modules of `FOLDER`; may be called repeatedly."""
+    """Make Python find the modules of `FOLDER`.
+
+    Repeated calls have no further effect.
+    """
     if _finder_for_path not in sys.path_hooks:
         sys.path_hooks.insert(0, _finder_for_path)
         for path in [path for path in sys.path_importer_cache if path.startswith(FOLDER)]:
@@ -37,7 +40,7 @@ def find_spec(name: str) -> ModuleSpec | None:
         return None
     spec = ModuleSpec(
         name,
-        _Loader(module_entries),  # type: ignore[arg-type]  # a loader by its methods: the class takes long to import
+        _Loader(module_entries),  # type: ignore[arg-type]  # a duck-typed loader: the base class is slow to import
         origin=str(table.FOLDER / f"{name.partition('.')[0]}.txt"),
         is_package=bool(module_entries.submodules) or "." not in name,
     )
@@ -59,7 +62,7 @@ def _finder_for_path(path: str) -> _Finder:
         ImportError: the entry is not in `FOLDER`.
     """
     if path != FOLDER and not path.startswith(FOLDER + os.sep):
-        raise ImportError(f"{path!r} holds no stand-ins", path=path)
+        raise ImportError(f"{path!r} contains no stand-ins", path=path)
     return _Finder(path[len(FOLDER) + 1 :].replace(os.sep, "."))
 
 
@@ -89,7 +92,7 @@ class _Loader:
         self._described = entries
 
     def homes(self, name: str) -> list[str]:
-        """Return the modules that provide a name, for the error message when it is imported from another module."""
+        """Return the modules that provide a name, for the message of a failed import of the name."""
         return table.modules_providing(name)
 
     def create_module(self, spec: ModuleSpec) -> ModuleType | None:

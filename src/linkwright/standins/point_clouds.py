@@ -1,4 +1,4 @@
-"""Converts between point clouds and numpy arrays (the API of ``sensor_msgs_py.point_cloud2``)."""
+"""Conversion between point clouds and numpy arrays (API of ``sensor_msgs_py.point_cloud2``)."""
 
 from __future__ import annotations
 
@@ -86,21 +86,21 @@ def read_points_numpy(
     uvs: Iterable[Any] | None = None,
     reshape_organized_cloud: bool = False,
 ) -> NDArray[Any]:
-    """Return the points of a cloud as an array with one column per field; see `read_points`.
+    """Return the points of a cloud as an array with one column per field. See `read_points`.
 
     Raises:
         AssertionError: the fields have different types, or a field is missing.
     """
     points = read_points(cloud, field_names, skip_nans, uvs, reshape_organized_cloud)
     if len({points.dtype[name] for name in _field_names(points.dtype)}) > 1:
-        raise AssertionError("the fields of the points are of several types: name those that are wanted")
+        raise AssertionError("the fields have different types: select fields of one type with field_names")
     return structured_to_unstructured(points)
 
 
 def read_points_list(
     cloud: Any, field_names: Sequence[str] | None = None, skip_nans: bool = False, uvs: Iterable[Any] | None = None
 ) -> list[Any]:
-    """Return the points of a cloud as named tuples; see `read_points`."""
+    """Return the points of a cloud as named tuples. See `read_points`."""
     points = read_points(cloud, field_names, skip_nans, uvs)
     point = namedtuple("Point", _field_names(points.dtype))  # type: ignore[misc]  # noqa: PYI024 - the cloud's names
     return [point._make(values) for values in points.tolist()]
@@ -124,7 +124,7 @@ def create_cloud(
     dtype = dtype_from_fields(fields, step)
     rows = _as_structured(points, dtype)
     if rows.ndim > 2:
-        raise AssertionError("points have a width and a height at most")
+        raise AssertionError("the array of points must have at most two dimensions: width and height")
     width, height = rows.shape[0], rows.shape[1] if rows.ndim == 2 else 1
     cloud = get_message("sensor_msgs/msg/PointCloud2")(
         header=header,
@@ -141,7 +141,7 @@ def create_cloud(
 
 
 def create_cloud_xyz32(header: Any, points: Iterable[Any] | NDArray[Any], step: int | None = None) -> Any:
-    """Create a point cloud with x, y and z as float32; see `create_cloud`."""
+    """Create a point cloud with x, y and z as float32. See `create_cloud`."""
     field = get_message("sensor_msgs/msg/PointField")
     fields = [field(name=name, offset=4 * index, datatype=_FLOAT32, count=1) for index, name in enumerate("xyz")]
     return create_cloud(header, fields, points, step)
@@ -152,7 +152,7 @@ def _field_names(dtype: np.dtype[Any]) -> tuple[str, ...]:
 
 
 def _flat_points(cloud: Any, dtype: np.dtype[Any]) -> NDArray[Any]:
-    """Return the points of a cloud as a one-dimensional array, without the padding at the ends of rows."""
+    """Return the points of a cloud as a one-dimensional array, without the padding of rows."""
     data = np.frombuffer(cloud.data, np.uint8)
     width, height = cloud.width, cloud.height
     if height > 1 and cloud.row_step > width * dtype.itemsize:
@@ -184,7 +184,7 @@ def _as_structured(points: Iterable[Any] | NDArray[Any], dtype: np.dtype[Any]) -
             )
         return _without_gaps(unstructured_to_structured(points, dtype), dtype)
     if points.dtype.names != dtype.names or any(points.dtype[name] != dtype[name] for name in _field_names(dtype)):
-        raise AssertionError(f"points are {points.dtype}, but the fields say {dtype}")
+        raise AssertionError(f"points have the type {points.dtype}, but the fields have the type {dtype}")
     return _without_gaps(points, dtype)
 
 

@@ -1,4 +1,4 @@
-"""Commands and environments for users' programs, in which ``import rclpy`` imports the stand-in.
+"""Commands and environments for users' programs that import the stand-ins, such as ``rclpy``.
 
 An installed rclpy takes precedence.
 """
@@ -23,8 +23,8 @@ _REQUIRED_PACKAGES = ("linkwright", "numpy", "PIL", "yaml", "rosbags", "cycloned
 def standin_path() -> str:
     """Return the folder to add to ``PYTHONPATH``.
 
-    The folder contains only ``linkwright_pytest``, which pytest loads, and a ``sitecustomize``, which also runs the
-    next ``sitecustomize`` on the path.
+    The folder contains only ``linkwright_pytest``, a plugin that pytest loads, and a ``sitecustomize`` that also runs
+    the next ``sitecustomize`` on the path.
     """
     return str(_STARTUP_FOLDER)
 
@@ -37,9 +37,9 @@ def environment(base: Mapping[str, str] | None = None) -> dict[str, str]:
 
     Returns:
         A copy with `standin_path` first on ``PYTHONPATH``. ``LINKWRIGHT_SITE`` names the folders of the packages that
-        the stand-ins need, for interpreters that do not have these packages. Applying this function to its
-        result changes nothing. Source folders of a package that has a stand-in, such as a clone of rclpy in the
-        workspace, are removed unless the user added them, because unbuilt sources would hide the stand-in.
+        the stand-ins need, for interpreters that do not have these packages. Source folders of a package that has a
+        stand-in, such as a clone of rclpy in the workspace, are removed unless the user added them, because unbuilt
+        sources would hide the stand-in. The function is idempotent.
     """
     result = dict(os.environ if base is None else base)
     _remove_hiding_sources(result)

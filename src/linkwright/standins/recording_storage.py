@@ -18,7 +18,7 @@ from linkwright.graph.time.values import ClockType, Duration, Time
 
 @dataclass(slots=True)
 class StorageOptions:
-    """Where and in which format a recording is stored, and when it is split into files."""
+    """The location and format of a recording, and the limits at which it is split into files."""
 
     uri: str
     storage_id: str = ""
@@ -35,7 +35,7 @@ class StorageOptions:
 
 @dataclass(slots=True)
 class ConverterOptions:
-    """The serialization formats of messages; only CDR is supported."""
+    """The serialization formats of messages. Only CDR is supported."""
 
     input_serialization_format: str = ""
     output_serialization_format: str = ""
@@ -43,7 +43,7 @@ class ConverterOptions:
 
 @dataclass(slots=True)
 class StorageFilter:
-    """Selects topics by name and by regular expression; by default, all topics."""
+    """Selects topics by name and by regular expression. By default, it selects all topics."""
 
     topics: list[str] = field(default_factory=list)
     topics_regex: str = ""
@@ -182,7 +182,10 @@ class BagMetadata:
 
 
 class MetadataIo:
-    """Reads and writes ``metadata.yaml`` in version 8, which Humble and later can read."""
+    """Reads and writes ``metadata.yaml``.
+
+    It is written in version 8, for Humble and later.
+    """
 
     def metadata_file_exists(self, uri: str) -> bool:
         """Return whether a folder contains a ``metadata.yaml``."""
@@ -248,7 +251,10 @@ def convert_rclcpp_qos_to_rclpy_qos(qos_input: QoSProfile) -> QoSProfile:
 
 
 def _metadata(content: Mapping[str, Any]) -> BagMetadata:
-    """Return the metadata from a parsed ``metadata.yaml``, with defaults for keys that older versions lack."""
+    """Return the metadata from a parsed ``metadata.yaml``.
+
+    Keys that older versions lack have default values.
+    """
     topics = []
     for entry in content["topics_with_message_count"]:
         arguments = dict(entry["topic_metadata"])

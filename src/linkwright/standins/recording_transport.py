@@ -1,4 +1,4 @@
-"""The classes of ``rosbag2_py`` that record, play and rewrite recordings, such as ``Recorder``."""
+"""The classes of ``rosbag2_py`` for recording, playback and rewriting, such as ``Recorder``."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ _POLL_SECONDS = 0.1
 
 
 class ServiceRequestsSource(enum.Enum):
-    """Whether playback takes service requests from the introspection events of services or of clients."""
+    """The source of service requests for playback: introspection events of services or clients."""
 
     SERVICE_INTROSPECTION = 0
     CLIENT_INTROSPECTION = 1
@@ -40,7 +40,10 @@ class ServiceRequestsSource(enum.Enum):
 
 @dataclass(slots=True)
 class PlayOptions:
-    """The options of playback; options that only affect rosbag2's performance are ignored."""
+    """The options of playback.
+
+    Options that only affect rosbag2's performance are ignored.
+    """
 
     read_ahead_queue_size: int = 1000
     node_prefix: str = ""
@@ -71,7 +74,10 @@ class PlayOptions:
 
 @dataclass(slots=True)
 class RecordOptions:
-    """The options of recording; options that only affect rosbag2's performance are ignored."""
+    """The options of recording.
+
+    Options that only affect rosbag2's performance are ignored.
+    """
 
     all_topics: bool = False
     all_services: bool = False
@@ -106,7 +112,7 @@ class RecordOptions:
 
     @property
     def selection(self) -> TopicSelection:
-        """The selection of topics; as in ``ros2bag``, a service is selected by its event topic."""
+        """The selection of topics. As in ``ros2bag``, a service is selected by its event topic."""
         return TopicSelection(
             everything=self.all_topics or self.all,
             names=_absolute_names(self.topics),
@@ -172,7 +178,7 @@ class _Transport:
             raise RuntimeError(str(error)) from error
         finally:
             context.try_shutdown()
-            self._cancelled.clear()  # not at the start, since another thread may cancel before the run begins
+            self._cancelled.clear()  # not at the start, because another thread may cancel before the run begins
 
 
 class Recorder(_Transport):

@@ -44,7 +44,10 @@ class CompressionMode(enum.Enum):
 
 @dataclass
 class CompressionOptions:
-    """The compression options; only zstd is supported, and performance options are ignored."""
+    """The compression options.
+
+    Only zstd is supported. Performance options are ignored.
+    """
 
     compression_format: str = ""
     compression_mode: CompressionMode = CompressionMode.NONE
@@ -165,7 +168,7 @@ class SequentialReader:
         self.set_filter(StorageFilter())
 
     def set_read_order(self, read_order: ReadOrder) -> bool:
-        """Set whether further reading goes forwards or backwards.
+        """Set the direction of further reading: forwards or backwards.
 
         Returns:
             Whether the order is supported.
@@ -194,7 +197,7 @@ class SequentialReader:
         return self._bag
 
     def _continue(self) -> None:
-        """Open the stream of messages behind the last message that was read."""
+        """Open the stream of messages after the last message that was read."""
         bag = self._opened()
         topics = [topic.name for topic in bag.topics if self._filter.admits(topic.name)]
         if not topics:
@@ -237,7 +240,10 @@ def _backwards(bag: BagReader, topics: Collection[str], last_ns: int | None) -> 
 
 
 def _files(bag: BagReader) -> list[FileInformation]:
-    """Return the files that the ``metadata.yaml`` of a recording lists, or an empty list without one."""
+    """Return the files that the ``metadata.yaml`` of a recording lists.
+
+    Without a ``metadata.yaml``, the list is empty.
+    """
     metadata = MetadataIo()
     where = str(bag.path)
     return metadata.read_metadata(where).files if metadata.metadata_file_exists(where) else []
@@ -248,7 +254,10 @@ def _time(stamp_ns: int) -> Time:
 
 
 class SequentialWriter:
-    """Writes messages; the recording is complete after the writer is closed or garbage collected."""
+    """Writes messages.
+
+    The recording is complete after the writer is closed or garbage collected.
+    """
 
     def __init__(self) -> None:
         self._bag: BagWriter | None = None
@@ -371,7 +380,7 @@ class LocalMessageDefinitionSource:
     """Provides the definitions of message types."""
 
     def get_full_text(self, root_topic_type: str) -> MessageDefinition:
-        """Return the definition of a type, which is empty for an unknown type."""
+        """Return the definition of a type. The definition of an unknown type is empty."""
         try:
             return MessageDefinition(root_topic_type, "ros2msg", schema_of(root_topic_type), type_hash(root_topic_type))
         except LinkwrightError:

@@ -1,4 +1,4 @@
-"""The functions of ros2cli's packages that programs use, from ``ros2pkg.api`` and ``ros2topic.api``."""
+"""The functions of ros2cli that programs use (``ros2pkg.api``, ``ros2topic.api``)."""
 
 from __future__ import annotations
 

@@ -18,7 +18,7 @@ _SAMPLE_COUNT = 3
 
 
 def samples(name: str) -> list[Message]:
-    """Return three sample messages of a type of ``test_msgs``: with default, small and extreme values.
+    """Return three sample messages of a type in ``test_msgs``: default, small and extreme.
 
     For a type without fields, return only the default message.
 
@@ -68,7 +68,7 @@ def get_test_msg(message_name: str) -> list[Message]:
         ValueError: there is no such type.
     """
     if message_name not in _SAMPLED_TYPES:
-        raise ValueError(f"test_msgs has no samples of '{message_name}'; it has them of {', '.join(_SAMPLED_TYPES)}")
+        raise ValueError(f"test_msgs has no samples of '{message_name}'; it has samples of {', '.join(_SAMPLED_TYPES)}")
     return samples(message_name)
 
 

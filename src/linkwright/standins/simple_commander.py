@@ -1,4 +1,4 @@
-"""A node that sends goals to nav2 without callbacks (the API of ``nav2_simple_commander.robot_navigator``)."""
+"""A node that sends goals to nav2, without callbacks (API of ``nav2_simple_commander``)."""
 
 from __future__ import annotations
 
@@ -49,7 +49,9 @@ _ACTION_TYPES = {
 
 
 class BasicNavigator(Node):
-    """Sends tasks to nav2; a task runs in the background until `isTaskComplete` returns True.
+    """Sends tasks to nav2.
+
+    A task runs in the background until `isTaskComplete` returns True.
 
     Attributes:
         initial_pose: the initial pose of the robot, as set by the user.
@@ -87,39 +89,42 @@ class BasicNavigator(Node):
         self._setInitialPose()
 
     def goToPose(self, pose: Any, behavior_tree: str = "") -> bool:
-        """Navigate to a pose; return whether the goal was accepted."""
+        """Navigate to a pose, and return whether the goal was accepted."""
         return self._begin("navigate_to_pose", pose=pose, behavior_tree=behavior_tree)
 
     def goThroughPoses(self, poses: Any, behavior_tree: str = "") -> bool:
-        """Navigate through all poses in order; return whether the goal was accepted."""
+        """Navigate through all poses in order, and return whether the goal was accepted."""
         return self._begin("navigate_through_poses", poses=list(poses), behavior_tree=behavior_tree)
 
     def followWaypoints(self, poses: Any) -> bool:
-        """Navigate to each pose and run the waypoint task there; return whether the goal was accepted."""
+        """Navigate to each pose and run the waypoint task there.
+
+        Return whether the goal was accepted.
+        """
         return self._begin("follow_waypoints", poses=list(poses))
 
     def followPath(self, path: Any, controller_id: str = "", goal_checker_id: str = "") -> bool:
-        """Follow a path; return whether the goal was accepted."""
+        """Follow a path, and return whether the goal was accepted."""
         return self._begin("follow_path", path=path, controller_id=controller_id, goal_checker_id=goal_checker_id)
 
     def spin(self, spin_dist: float = 1.57, time_allowance: float = 10) -> bool:
-        """Rotate in place by an angle in radians; return whether the goal was accepted."""
+        """Rotate in place by an angle in radians, and return whether the goal was accepted."""
         return self._begin("spin", target_yaw=float(spin_dist), time_allowance=_duration(time_allowance))
 
     def backup(self, backup_dist: float = 0.15, backup_speed: float = 0.025, time_allowance: float = 10) -> bool:
-        """Drive straight back, in m and m/s; return whether the goal was accepted."""
+        """Drive straight back, in m and m/s, and return whether the goal was accepted."""
         return self._drive_straight("backup", backup_dist, backup_speed, time_allowance)
 
     def driveOnHeading(self, dist: float = 0.15, speed: float = 0.025, time_allowance: float = 10) -> bool:
-        """Drive straight ahead, in m and m/s; return whether the goal was accepted."""
+        """Drive straight ahead, in m and m/s, and return whether the goal was accepted."""
         return self._drive_straight("drive_on_heading", dist, speed, time_allowance)
 
     def assistedTeleop(self, time_allowance: float = 30) -> bool:
-        """Allow teleoperation with collision avoidance; return whether the goal was accepted."""
+        """Allow teleoperation with collision avoidance, and return whether the goal was accepted."""
         return self._begin("assisted_teleop", time_allowance=_duration(time_allowance))
 
     def cancelTask(self) -> None:
-        """Cancel the current task, if any."""
+        """Cancel the current task, if there is one."""
         self.info("Canceling current task.")
         if self.result_future is not None:
             spin_until_future_complete(self, self.goal_handle.cancel_goal_async())
@@ -172,7 +177,7 @@ class BasicNavigator(Node):
         return getattr(self._run_to_result("compute_path_to_pose", **request), "path", None)
 
     def getPathThroughPoses(self, start: Any, goals: Any, planner_id: str = "", use_start: bool = False) -> Any:
-        """Plan a path through several poses; see `getPath`."""
+        """Plan a path through several poses. See `getPath`."""
         request = {"start": start, "goals": list(goals), "planner_id": planner_id, "use_start": use_start}
         return getattr(self._run_to_result("compute_path_through_poses", **request), "path", None)
 
@@ -188,7 +193,7 @@ class BasicNavigator(Node):
     # --- maps and costmaps --------------------------------------------------------------------------------------------
 
     def changeMap(self, map_filepath: str) -> bool:
-        """Load another map; return whether the map was loaded."""
+        """Load another map, and return whether it was loaded."""
         response = self._call("nav2_msgs/srv/LoadMap", "map_server/load_map", map_url=map_filepath)
         if response.result != response.RESULT_SUCCESS:
             self.error("Change map request failed!")
@@ -232,7 +237,10 @@ class BasicNavigator(Node):
         return self._begin(name, target=target, speed=float(speed), time_allowance=_duration(time_allowance))
 
     def _begin(self, name: str, **goal: Any) -> bool:
-        """Send the goal of a task without waiting for its result; return whether it was accepted."""
+        """Send the goal of a task without waiting for its result.
+
+        Return whether the goal was accepted.
+        """
         self.feedback, self.status, self.result_future = None, None, None
         self.goal_handle = self._send_goal(name, goal, self._feedbackCallback)
         if not self.goal_handle.accepted:
@@ -242,7 +250,7 @@ class BasicNavigator(Node):
         return True
 
     def _run_to_result(self, name: str, **goal: Any) -> Any:
-        """Send a goal and wait for its result; return None unless the goal succeeded."""
+        """Send a goal, wait for its result, and return it, or None unless the goal succeeded."""
         handle = self._send_goal(name, goal, None)
         if not handle.accepted:
             self.error(f"{name} was rejected!")

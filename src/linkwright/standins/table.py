@@ -11,8 +11,8 @@ A table is a text file ``tables/<package>.txt``, in the order of the package's m
     import: os
     linkwright.launch.model.conditions since jazzy: ...
     value DEFAULT: 'a literal'
-    absent LaunchThing: why it is not here | the same in Chinese
-    differs IfCondition: in what | the same in Chinese
+    absent LaunchThing: the reason | the same in Chinese
+    differs IfCondition: the difference | the same in Chinese
     setup: linkwright.some.module.function
     others: linkwright.some.module.function_of_a_name
 
@@ -38,7 +38,10 @@ VALUE = "value"
 
 @dataclass(frozen=True, slots=True)
 class Name:
-    """The origin of a name in a module: ``from origin import name``, ``import name``, or ``value`` and a literal."""
+    """The origin of a name in a module.
+
+    The forms are ``from origin import name``, ``import name``, and ``value`` with a literal.
+    """
 
     origin: str
     name: str
@@ -47,7 +50,7 @@ class Name:
 
 @dataclass(frozen=True, slots=True)
 class Remark:
-    """The reason why a name is missing, or how it differs from the name in ROS, in English and Chinese."""
+    """The reason why a name is missing, or its difference from ROS, in English and Chinese."""
 
     english: str
     chinese: str
@@ -90,7 +93,10 @@ def packages() -> list[str]:
 
 @cache
 def read(package: str) -> dict[str, Module]:
-    """Return the modules of a package by full name; empty for a package without a table."""
+    """Return the modules of a package by full name.
+
+    A package without a table has none.
+    """
     try:
         text = (FOLDER / f"{package}.txt").read_text(encoding="utf-8")
     except OSError:
@@ -104,7 +110,10 @@ def find(module: str) -> Module | None:
 
 
 def modules_providing(name: str) -> list[str]:
-    """Return the modules that provide a name, one per package, such as ``rclpy.node`` for ``Node``."""
+    """Return the modules that provide a name, one per package.
+
+    For ``Node``, one of them is ``rclpy.node``.
+    """
     modules_by_package: dict[str, str] = {}
     for package in packages():
         providers = [
@@ -159,7 +168,7 @@ def parse(text: str) -> dict[str, Module]:
 
 
 def _join_lines(text: str) -> list[str]:
-    """Return the lines of a table, with continuation lines appended to the line that they continue."""
+    """Return the lines of a table, with continuation lines joined."""
     lines: list[str] = []
     for line in text.splitlines():
         if line[:1] in ("", "#"):

@@ -1,4 +1,4 @@
-"""Replaces markup such as ``@{redf}`` with terminal colours (the API of ``osrf_pycommon.terminal_color``)."""
+"""Terminal colours for markup such as ``@{redf}`` (API of ``osrf_pycommon.terminal_color``)."""
 
 from __future__ import annotations
 
@@ -55,7 +55,10 @@ def ansi(key: str) -> str:
 
 
 def get_ansi_dict() -> dict[str, str]:
-    """Return the escape sequences of all styles by name; they are empty while colours are disabled."""
+    """Return the escape sequences of all styles by name.
+
+    They are empty while colours are disabled.
+    """
     return dict(_SEQUENCES_BY_NAME) if _ColourSetting.is_on else dict.fromkeys(_SEQUENCES_BY_NAME, "")
 
 
@@ -70,7 +73,9 @@ def disable_ansi_color_substitution_globally() -> None:
 
 
 def format_color(msg: str) -> str:
-    """Replace the markup in a string, including short forms such as ``@!``, and append the sequence ``reset``.
+    """Replace the markup in a string, and append the sequence ``reset``.
+
+    Short forms such as ``@!`` are also replaced.
 
     Raises:
         KeyError: there is no such colour or style.
@@ -82,7 +87,7 @@ def format_color(msg: str) -> str:
 
 
 def print_color(*args: Any, **kwargs: Any) -> None:
-    """Print strings after replacing their markup; the arguments are those of ``print``."""
+    """Print strings after replacing their markup. The arguments are those of ``print``."""
     end, separator = kwargs.pop("end", "\n"), kwargs.pop("sep", " ")
     print(format_color(separator.join(map(str, args))), end=end, **kwargs)
 

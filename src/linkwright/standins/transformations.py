@@ -2,7 +2,7 @@
 
 Quaternions are in the order x y z w. A matrix is an array of shape (4, 4) that multiplies column vectors. Euler angles
 are in radians. Their axes code is ``s`` for static or ``r`` for rotating axes, followed by the three axes in the order
-of rotation; ``sxyz`` means ROS's roll, pitch and yaw.
+of rotation. ``sxyz`` means ROS's roll, pitch and yaw.
 """
 
 from __future__ import annotations
@@ -114,7 +114,9 @@ def euler_matrix(ai: float, aj: float, ak: float, axes: str = "sxyz") -> Matrix:
 
 
 def euler_from_matrix(matrix: ArrayLike, axes: str = "sxyz") -> tuple[float, float, float]:
-    """Return the Euler angles of a rotation matrix; in gimbal lock, the last (rotating axes: first) angle is 0.
+    """Return the Euler angles of a rotation matrix.
+
+    In gimbal lock, the last angle is 0 for static axes, and the first for rotating axes.
 
     Raises:
         ValueError: the axes code is invalid.
@@ -156,7 +158,10 @@ def quaternion_about_axis(angle: float, axis: ArrayLike) -> Vector:
 
 
 def quaternion_matrix(quaternion: ArrayLike) -> Matrix:
-    """Return the rotation matrix of a quaternion x y z w, which need not have unit length."""
+    """Return the rotation matrix of a quaternion x y z w.
+
+    The quaternion need not have unit length.
+    """
     x, y, z, w = (float(value) for value in np.asarray(quaternion, dtype=float)[:4])
     squared_length = x * x + y * y + z * z + w * w
     matrix = np.eye(4)
@@ -336,7 +341,9 @@ def compose_matrix(
 
 
 def decompose_matrix(matrix: ArrayLike) -> tuple[Vector, list[float], list[float], Vector, Vector]:
-    """Return the scale, shear, Euler angles (``sxyz``), translation and last row of a matrix; see `compose_matrix`.
+    """Return the scale, shear, Euler angles (``sxyz``), translation and last row of a matrix.
+
+    This is the inverse of `compose_matrix`.
 
     Raises:
         ValueError: the matrix is not invertible.

@@ -1,6 +1,6 @@
-"""Keep the finished runs of a sweep in a file beside the table, so that the sweep can be resumed.
+"""A file with the finished runs of a sweep, for resuming the sweep.
 
-The file has a line for the plan, and then one line per run.
+The file is next to the table. It has a line for the plan, and then one line per run.
 """
 
 from __future__ import annotations
@@ -131,7 +131,7 @@ def _to_entry(outcome: Outcome) -> dict[str, Any]:
 
 
 def _parse_line(line: str) -> dict[str, Any] | None:
-    """Return the content of a line of the journal; None if the line is truncated."""
+    """Return the content of a line of the journal, or None if the line is truncated."""
     try:
         entry = json.loads(line)
     except ValueError:

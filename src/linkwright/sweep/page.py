@@ -14,7 +14,7 @@ from linkwright.sweep.running import Result
 from linkwright.sweep.table import Table
 
 _MAX_ROWS = 1000
-"""The maximum number of rows that the page lists; the table contains all of them."""
+"""The maximum number of rows that the page lists. The table contains all of them."""
 
 _STYLE = """
 :root { color-scheme: light dark; --ink: #1d2733; --soft: #66758a; --line: #d8dee6; --back: #f6f8fa; --card: #fff;
@@ -98,7 +98,10 @@ def _finite_values(table: Table, name: str) -> list[float]:
 
 
 def _varied_parameters(table: Table) -> list[str]:
-    """Return the parameters that have several values; the seed if no parameter has, and it has several."""
+    """Return the parameters with several values.
+
+    If there are none, but several seeds, return the seed.
+    """
     parameters = [parameter for parameter in table.parameters[:-1] if len(set(table.columns[parameter])) > 1]
     return parameters or [parameter for parameter in table.parameters[-1:] if len(set(table.columns[parameter])) > 1]
 

@@ -32,10 +32,10 @@ class Run:
 
 
 def plan_runs(scenario: Scenario) -> list[Run]:
-    """Return all runs of a scenario. Runs with the same listed values and different seeds are adjacent.
+    """Return all runs of a scenario.
 
-    A drawn value depends only on the seed and the name of its parameter. It does not change if other parameters or
-    seeds are added.
+    Runs with the same listed values and different seeds are adjacent. A drawn value depends only on the seed and the
+    name of its parameter. It does not change if other parameters or seeds are added.
     """
     lists = {name: values for name, values in scenario.parameters.items() if not isinstance(values, Uniform | Normal)}
     values_by_seed = {seed: _draw_values(scenario, seed) for seed in scenario.seeds}

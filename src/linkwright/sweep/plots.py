@@ -13,13 +13,13 @@ _WIDTH, _HEIGHT = 360.0, 220.0
 _LEFT, _RIGHT, _TOP, _BOTTOM = 56.0, 12.0, 12.0, 40.0
 _MAX_BARS = 24
 _MAX_POINTS = 2000
-"""The maximum number of runs that are drawn; of more runs, only every n-th is drawn."""
+"""The maximum number of runs that are drawn. Of more runs, only every n-th is drawn."""
 _POINT_RADIUS = 3.0
 
 
 @dataclass(frozen=True)
 class Axis:
-    """An axis of a plot; calling it converts a value to a coordinate in the drawing.
+    """An axis of a plot. Calling it converts a value to a coordinate in the drawing.
 
     Attributes:
         low, high: the values at both ends.
@@ -59,7 +59,7 @@ class Axis:
 
     @classmethod
     def of_names(cls, names: Sequence[str], begin: float, end: float) -> Axis:
-        """Return an axis with a position for each name; the first has the value 0."""
+        """Return an axis with a position for each name. The first position has the value 0."""
         return cls(-0.5, len(names) - 0.5, [(float(index), name) for index, name in enumerate(names)], begin, end)
 
     def __call__(self, value: float) -> float:

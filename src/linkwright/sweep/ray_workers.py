@@ -24,7 +24,7 @@ _PATIENCE = 10.0
 """The seconds that a machine has to answer."""
 
 _scenario: Scenario | None = None
-"""The scenario that this process of the cluster has loaded; Ray uses a process for several runs."""
+"""The scenario that this process of the cluster has loaded. Ray uses a process for several runs."""
 
 
 def run_on_ray(path: Path, runs: Iterable[Run], address: str, report: Report) -> None:
@@ -108,7 +108,7 @@ def _run_in_cluster(name: str, run: Run) -> Outcome:
 
     The working directory of the process contains the copied files.
     """
-    global _scenario  # noqa: PLW0603 - the process is used for one run after the other
+    global _scenario  # noqa: PLW0603 - the process executes several runs
     path = Path(name).absolute()
     if _scenario is None or _scenario.path != path:
         try:

@@ -28,7 +28,7 @@ class Outcome:
     Attributes:
         row: the row number of the run.
         results: the results that the scenario returned, by name.
-        error: why there are no results; empty if the run succeeded.
+        error: the reason why there are no results; empty if the run succeeded.
     """
 
     row: int
@@ -58,7 +58,7 @@ def run_once(scenario: Scenario, run: Run) -> Outcome:
     """Run a scenario, and return the outcome. An exception becomes the outcome's error."""
     try:
         return Outcome(run.row, run_scenario(scenario, run))
-    except (Exception, SystemExit) as error:  # noqa: BLE001 - a scenario may raise whatever it likes
+    except (Exception, SystemExit) as error:  # noqa: BLE001 - a scenario may raise any exception
         line = line_in_traceback(scenario.path, error)
         location = f" ({scenario.path.name}:{line})" if line else ""
         return Outcome(run.row, error=f"{described(error)}{location}")
@@ -83,7 +83,7 @@ def run_scenario(scenario: Scenario, run: Run) -> dict[str, Result]:
     results: dict[str, Result] = {}
     for name, value in returned.items():
         if not isinstance(name, str) or name in used_names:
-            raise BadResultError(f"a result cannot be called {name!r}: that is a column already, or no text")
+            raise BadResultError(f"a result cannot be named {name!r}: use text that is not a column's name")
         results[name] = _to_result(name, value)
     return results
 

@@ -33,12 +33,15 @@ _DECLARATION_ATTRIBUTE = "__linkwright_scenario__"
 _MODULE_NAME = "linkwright_scenario"
 SEED = "seed"
 COLUMNS = ("row", SEED, "error")
-"""The names of the columns that every table has; no parameter or result can have these names."""
+"""The names of the columns that every table has. No parameter or result can have these names."""
 
 
 @dataclass(frozen=True, slots=True)
 class Uniform:
-    """A distribution from which a parameter's value is drawn for each seed: uniform, from `low` to `high`."""
+    """A uniform distribution from `low` to `high`.
+
+    The value of a parameter is drawn from it for each seed.
+    """
 
     low: float
     high: float
@@ -46,7 +49,10 @@ class Uniform:
 
 @dataclass(frozen=True, slots=True)
 class Normal:
-    """A distribution from which a parameter's value is drawn for each seed: normal, with `mean` and `stddev`."""
+    """A normal distribution with `mean` and `stddev`.
+
+    The value of a parameter is drawn from it for each seed.
+    """
 
     mean: float
     stddev: float
@@ -89,8 +95,7 @@ def scenario(*, seeds: int | Sequence[int] = 1, **parameters: Values) -> Callabl
             ...
             return {"distance": ..., "arrived": ...}
 
-    This function is run forty times: for each friction with each of 20 seeds, and with a mass that is drawn for the
-        seed.
+    This function is run forty times: for each friction with each of 20 seeds. The mass is drawn for each seed.
 
     Args:
         seeds: the number of seeds, starting at 0, or the seeds themselves.
@@ -105,12 +110,14 @@ def scenario(*, seeds: int | Sequence[int] = 1, **parameters: Values) -> Callabl
 
 
 def load_scenario(path: Path) -> Scenario:
-    """Load a scenario by running its file as a module; the module can import others from its folder.
+    """Load a scenario by running its file as a module.
+
+    The module can import other modules from its folder.
 
     Raises:
         LinkwrightError: SWEEP101, the file cannot be read; SWEEP102, the file cannot be run; SWEEP103, the file does
-            not contain exactly one scenario; SWEEP104, the declared parameters are not those of the
-            function; SWEEP105, the values are not valid.
+            not contain exactly one scenario; SWEEP104, the declared parameters are not those of the function; SWEEP105,
+            the values are not valid.
     """
     module = _load_module(path)
     functions = [
@@ -245,7 +252,7 @@ def _load_module(path: Path) -> ModuleType:
         raise LinkwrightError(Diagnostic("SWEEP101", message)) from None
     except LinkwrightError:
         raise
-    except (Exception, SystemExit) as error:  # noqa: BLE001 - a scenario may raise whatever it likes
+    except (Exception, SystemExit) as error:  # noqa: BLE001 - a scenario may raise any exception
         raise _load_error(path, error) from None
     return module
 
@@ -257,7 +264,7 @@ def _load_error(path: Path, error: BaseException) -> LinkwrightError:
 
 
 def line_in_traceback(path: Path, error: BaseException) -> int | None:
-    """Return the last line of a file in the traceback of an error; None if the file is not in it."""
+    """Return the last line of a file in the traceback of an error, or None if there is none."""
     lines = [
         frame_summary.lineno
         for frame_summary in traceback.extract_tb(error.__traceback__)

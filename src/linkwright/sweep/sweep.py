@@ -42,7 +42,7 @@ class Sweep:
     def run(self, runner: Runner, *, resume: bool, progress: Callable[[int, int, int], None]) -> Table:
         """Execute all runs without an outcome, and write the table and the summary page.
 
-        After an interruption by Ctrl-C they are written as well.
+        Both are also written after an interruption by Ctrl-C.
 
         Args:
             runner: executes the runs.

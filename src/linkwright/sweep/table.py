@@ -56,7 +56,7 @@ class Table:
 
 
 def check_format(path: Path) -> None:
-    """Raise if a table cannot be written to a file; called before the first run.
+    """Raise if a table cannot be written to a file. Call this before the first run.
 
     Raises:
         LinkwrightError: SWEEP110, the extension is not supported; SWEEP111, pyarrow is not installed.
@@ -74,7 +74,7 @@ def table_bytes(table: Table, path: Path) -> bytes:
 
 
 def _to_csv(table: Table) -> bytes:
-    """Return the table as CSV with a header line; floats keep their full precision."""
+    """Return the table as CSV with a header line. Floats keep their full precision."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(table.columns)
@@ -101,7 +101,7 @@ def _to_parquet(table: Table) -> bytes:
 def _to_one_type(values: Sequence[Result]) -> list[Result]:
     """Return values converted to one type, as a Parquet column requires.
 
-    Integers and floats become floats; other mixed types become strings.
+    Integers and floats become floats. Other mixed types become strings.
     """
     types = {type(value) for value in values if value is not None}
     if len(types) < 2:

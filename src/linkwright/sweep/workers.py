@@ -49,7 +49,7 @@ def run_locally(path: Path, runs: Iterable[Run], workers: int, report: Report) -
                 worker.start_run(pending.popleft())
                 busy_workers[worker.connection] = worker
             for connection in wait(list(busy_workers)):
-                worker = busy_workers.pop(connection)  # type: ignore[call-overload]  # connections only were waited for
+                worker = busy_workers.pop(connection)  # type: ignore[call-overload]  # only connections are waited for
                 outcome = worker.outcome()
                 if outcome is not None:
                     idle_workers.append(worker)
@@ -83,11 +83,11 @@ class _Worker:
     def start_run(self, run: Run) -> None:
         """Send a run to the process for execution."""
         self.run = run
-        with suppress(OSError):  # the process has died, as the caller learns when waiting for the outcome
+        with suppress(OSError):  # the process has died; the caller notices this when waiting for the outcome
             self.connection.send(run)
 
     def outcome(self) -> Outcome | None:
-        """Return the outcome of the run; None if the process has died."""
+        """Return the outcome of the run, or None if the process has died."""
         try:
             receive_outcome: Outcome = self.connection.recv()
         except (EOFError, OSError):
@@ -99,7 +99,7 @@ class _Worker:
         self._process.terminate()
 
     def end(self) -> str:
-        """Wait until the process has ended, and return how it ended, as a clause without a subject."""
+        """Wait until the process has ended, and describe its end as a clause without a subject."""
         self.connection.close()
         self._process.join(_PATIENCE)
         if self._process.is_alive():

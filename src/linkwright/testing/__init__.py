@@ -1,4 +1,4 @@
-"""Graphs for tests of nodes: time passes only when the test advances it.
+"""Graphs for tests of nodes. Time passes only when the test advances it.
 
 An hour of such time takes milliseconds. With `SteppedSimulation`, a simulated world advances together with the graph.
 """
@@ -19,4 +19,4 @@ __all__ = ["AsyncSteppedGraph", "AsyncSteppedSimulation", "Recording", "SteppedG
 
 
 __getattr__ = deferred(__name__, {"simulated": ("AsyncSteppedSimulation", "SteppedSimulation")})
-"""Imports the names that need the simulation only when they are used, because that import is slow."""
+"""Imports the names that need the simulation on first use, because that import is slow."""

@@ -1,4 +1,4 @@
-"""Recording of the messages that are published on a topic during a test."""
+"""Records the messages that are published on a topic during a test."""
 
 from __future__ import annotations
 
@@ -18,7 +18,9 @@ from linkwright.graph import (
 
 
 class Recording:
-    """The messages of a topic in the order of arrival; the method ``record`` of a stepped graph creates it.
+    """The messages of a topic in the order of arrival.
+
+    The method ``record`` of a stepped graph creates a recording.
 
     The subscription is created when a node first publishes or subscribes to the topic, which determines its type. A
     recording can therefore be created before the node under test. Messages that a transient local publisher stores are

@@ -1,4 +1,4 @@
-"""Loading of worlds and robots for simulations, which are cached until their files change."""
+"""Loads worlds and robots for simulations, and caches them until their files change."""
 
 from __future__ import annotations
 
@@ -13,7 +13,10 @@ from linkwright.sdf.models import Model
 from linkwright.simulation.server.worlds import LoadedWorld, load_world
 
 _MAX_CACHED_SCENES = 64
-"""The maximum number of cached worlds and robots; a test over many arguments loads a robot for each value."""
+"""The maximum number of cached worlds and robots.
+
+A test over many arguments loads a robot for each value.
+"""
 
 
 class _CacheEntry(NamedTuple):

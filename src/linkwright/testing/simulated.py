@@ -1,4 +1,4 @@
-"""A simulated world for tests, which advances together with the graph, step by step."""
+"""A simulated world for tests. It advances together with the graph, step by step."""
 
 from __future__ import annotations
 
@@ -43,7 +43,10 @@ _ORIGIN = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 class AsyncSteppedSimulation(AsyncSteppedGraph):
-    """`SteppedSimulation` for tests that are coroutines; arguments and attributes are the same."""
+    """`SteppedSimulation` for tests that are coroutines.
+
+    Arguments and attributes are those of `SteppedSimulation`.
+    """
 
     def __init__(
         self,
@@ -127,7 +130,7 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
             RuntimeError: the test has not started.
         """
         if self._server is None:
-            raise RuntimeError("use it as a context manager")
+            raise RuntimeError("the test has not started: use the simulation as a context manager")
         return self._server
 
     @property
@@ -144,22 +147,22 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
         namespace: str = "",
         arguments: Mapping[str, object] | None = None,
     ) -> str:
-        """Spawn another robot in the world; see `SteppedSimulation.spawn`."""
+        """Spawn another robot in the world. See `SteppedSimulation.spawn`."""
         model = _read_robot(_resolve_path(robot), arguments or {})
         self.server.spawn(model, name or model.name, _transform_from_rpy(pose), namespace)
         return name or model.name
 
     def delete(self, name: str) -> None:
-        """Delete a model from the world; see `SteppedSimulation.delete`."""
+        """Delete a model from the world. See `SteppedSimulation.delete`."""
         self.server.delete(name)
 
     def robot_pose(self) -> Transform:
-        """Return the robot's true pose; see `SteppedSimulation.robot_pose`."""
+        """Return the robot's true pose. See `SteppedSimulation.robot_pose`."""
         assert self._model is not None, "there is a robot"
         return self.simulation.model_pose(self._model.name)
 
     def drive(self, linear: float, angular: float = 0.0, topic: str = "/cmd_vel") -> None:
-        """Command the robot's velocity; see `SteppedSimulation.drive`."""
+        """Command the robot's velocity. See `SteppedSimulation.drive`."""
         message = get_message(_TWIST)()
         message.linear.x, message.angular.z = float(linear), float(angular)
         self.publish(topic, message)
@@ -247,11 +250,11 @@ class SteppedSimulation(SteppedGraph):
     ...     1.0 < odometry.last.pose.pose.position.x < 1.25
     True
 
-    Neither threads nor real time are used. The world moves for a `period`. Then the graph calls the timers that have
-    expired, publishes the time on ``/clock``, receives the messages of plugins and sensors, and runs the callbacks that
-    these messages cause. After that the world moves again, with the commands that it has received. The results of a
-    test are therefore bit-identical in each run. Nodes written for rclpy run in the graph after `init_rclpy`, and
-    follow simulated time if the parameter ``use_sim_time`` is set.
+    Neither threads nor real time are used. The world moves for a `period`. Then the graph calls the expired timers,
+    publishes the time on ``/clock``, receives the messages of plugins and sensors, and runs the callbacks that these
+    messages cause. After that the world moves again, with the commands that it has received. The results of a test are
+    therefore bit-identical in each run. Nodes written for rclpy run in the graph after `init_rclpy`, and follow
+    simulated time if the parameter ``use_sim_time`` is set.
 
     The simulation offers the services of a simulator: ``/spawn_entity``, ``/delete_entity``, ``/set_entity_state``,
     ``/pause_physics`` and so on; `spawn` and `delete` do the same as the first two services.
@@ -351,7 +354,7 @@ class SteppedSimulation(SteppedGraph):
         self._steps.drive(linear, angular, topic)
 
     def reset(self) -> None:
-        """Restore the initial state; see `AsyncSteppedSimulation.reset`."""
+        """Restore the initial state. See `AsyncSteppedSimulation.reset`."""
         self._run(self._steps.reset())
 
 
@@ -362,7 +365,7 @@ def _with_world_friction(world: World, friction: float) -> World:
 
 
 class _Progress:
-    """The handler of the simulator services that pause the simulation and run single steps."""
+    """The handler of the simulator services that pause the simulation or run single steps."""
 
     def __init__(self, simulation: Simulation) -> None:
         self.paused = False

@@ -25,7 +25,9 @@ _NODE = "test"
 
 
 class AsyncSteppedGraph:
-    """A graph whose time passes only in `advance`: an hour of timers, rates and throttles takes milliseconds.
+    """A graph whose time passes only in `advance`.
+
+    An hour of timers, rates and throttles takes milliseconds.
 
     All callbacks run in one thread, in a reproducible order. If a callback fails, the step in which it runs raises the
     error. For tests that are not coroutines, use `SteppedGraph`.
@@ -38,7 +40,9 @@ class AsyncSteppedGraph:
                 node = test.create_node("talker")
                 publisher = node.create_publisher(String, "chatter", 10)
                 node.create_timer(0.5, lambda: publisher.publish(String(data=f"Hello: {len(chatter)}")))
-                await test.advance(3600.0) assert len(chatter) == 7200 assert chatter.last.data == "Hello: 7199"
+                await test.advance(3600.0)
+            assert len(chatter) == 7200
+            assert chatter.last.data == "Hello: 7199"
 
     Args:
         start: the time of day at the start, in seconds since the epoch.
@@ -82,7 +86,7 @@ class AsyncSteppedGraph:
             RuntimeError: the test has not started.
         """
         if self._graph is None:
-            raise RuntimeError("use it as a context manager")
+            raise RuntimeError("the test has not started: use the graph as a context manager")
         return self._graph
 
     @property
@@ -98,7 +102,7 @@ class AsyncSteppedGraph:
         return self.clock.steady_ns() / 1e9
 
     def create_node(self, name: str, **options: Any) -> Node:
-        """Create a node in the graph; the options are the arguments of ``Graph.create_node``."""
+        """Create a node in the graph. The options are the arguments of ``Graph.create_node``."""
         return self.graph.create_node(name, **options)
 
     def record(self, topic: str, msg_type: Any = None) -> Recording:
@@ -111,7 +115,7 @@ class AsyncSteppedGraph:
         return Recording(self.graph, self.node, topic, msg_type)
 
     def publish(self, topic: str, message: Any, qos_profile: QoSProfile | int = DEFAULT_QOS) -> None:
-        """Publish a message, which subscribers receive in the next step.
+        """Publish a message. Subscribers receive it in the next step.
 
         The publisher is created on the first call and used for later messages.
         """
@@ -165,7 +169,7 @@ class AsyncSteppedGraph:
             await self.advance(timeout)
         if not future.ended():
             client.remove_pending_request(future)
-            raise TimeoutError(f"service '{client.srv_name}' has not answered within {timeout:g} s")
+            raise TimeoutError(f"service '{client.srv_name}' has not responded within {timeout:g} s")
         return future.result()
 
     def _service_client(self, service: str) -> Client[Any, Any]:

@@ -17,7 +17,9 @@ if TYPE_CHECKING:
 
 
 class SteppedGraph:
-    """`AsyncSteppedGraph` for tests that are not coroutines, with an event loop in the test's thread.
+    """`AsyncSteppedGraph` for tests that are not coroutines.
+
+    The event loop runs in the test's thread.
 
     >>> from linkwright.messages import String
     >>> with SteppedGraph() as test:
@@ -81,7 +83,7 @@ class SteppedGraph:
 
     @property
     def clock(self) -> JumpClock:
-        """The clock; ``clock.jump(seconds)`` changes only the time of day."""
+        """The clock. ``clock.jump(seconds)`` changes only the time of day."""
         return self._steps.clock
 
     @property
@@ -119,15 +121,18 @@ class SteppedGraph:
         return self._context
 
     def create_node(self, name: str, **options: Any) -> Node:
-        """Create a node in the graph; the options are the arguments of ``Graph.create_node``."""
+        """Create a node in the graph. The options are the arguments of ``Graph.create_node``."""
         return self._steps.create_node(name, **options)
 
     def record(self, topic: str, msg_type: Any = None) -> Recording:
-        """Record the messages that are published on a topic from now on; see `AsyncSteppedGraph.record`."""
+        """Record the messages that are published on a topic from now on.
+
+        See `AsyncSteppedGraph.record`.
+        """
         return self._steps.record(topic, msg_type)
 
     def publish(self, topic: str, message: Any, qos_profile: QoSProfile | int = DEFAULT_QOS) -> None:
-        """Publish a message, which subscribers receive in the next step."""
+        """Publish a message. Subscribers receive it in the next step."""
         self._steps.publish(topic, message, qos_profile)
 
     def settle(self) -> None:
@@ -141,7 +146,7 @@ class SteppedGraph:
     spin = settle
 
     def advance(self, seconds: float) -> None:
-        """Advance the time of the graph; see `AsyncSteppedGraph.advance`.
+        """Advance the time of the graph. See `AsyncSteppedGraph.advance`.
 
         Raises:
             Exception: the error of a callback; time has advanced even then.
@@ -149,7 +154,7 @@ class SteppedGraph:
         self._run(self._steps.advance(seconds))
 
     def call(self, service: str, request: Any, *, timeout: float = 0.0) -> Any:
-        """Call a service of the graph; see `AsyncSteppedGraph.call`.
+        """Call a service of the graph. See `AsyncSteppedGraph.call`.
 
         Raises:
             LookupError: there is no service with this name.
@@ -164,5 +169,5 @@ class SteppedGraph:
     def _run(self, coroutine: Any) -> Any:
         if self._loop is None:
             coroutine.close()
-            raise RuntimeError("use it as a context manager")
+            raise RuntimeError("the test has not started: use the graph as a context manager")
         return self._loop.run_until_complete(coroutine)

@@ -35,7 +35,7 @@ class Body:
 
 
 class Bodies:
-    """The bodies of a robot; empty if there is no robot."""
+    """The bodies of a robot, or no bodies if there is no robot."""
 
     def __init__(self, robot: Robot | None) -> None:
         self._robot = robot

@@ -1,4 +1,4 @@
-"""The reader, which converts a URDF document to a robot and reports all mistakes together.
+"""The reader that converts a URDF document to a robot, and reports all mistakes together.
 
 The reader accepts what urdfdom 3.0.1 accepts and, for files of version 1.1 and 1.2, what urdfdom 6.0.0 accepts. Where
 urdfdom stops at the first error, the reader continues. Links, their materials, and joints are read by urdfdom's rules.
@@ -7,8 +7,9 @@ If a joint cannot be read, urdfdom refuses the whole model. If a part of a link 
 link, but without this part and without the parts after it, in the order inertial, visuals, collisions. Linkwright
 does the same, and reports all errors.
 
-The first definition of a material name in the file wins. Definitions at robot level take precedence over those in
-links, even over the colour in the visual itself. A definition in a later link does not apply to an earlier link.
+If a material is defined several times, the first definition applies. Definitions at robot level take precedence over
+those in links, even over the colour in the visual itself. A definition in a later link does not apply to an earlier
+link.
 """
 
 from __future__ import annotations
@@ -112,7 +113,7 @@ class MaterialTable:
         self._undefined: list[tuple[Material, Element]] = []
 
     def define(self, element: Element, robot: Element) -> None:
-        """Add a material at robot level; a material without colour and texture is black."""
+        """Add a material at robot level. A material without colour and texture is black."""
         findings = self._findings
         material = read_material(element, robot, findings) or Material("", element=element)
         if material.rgba is None and material.texture is None:
@@ -171,10 +172,9 @@ def read_material(element: Element, owner: Element, findings: UrdfReport) -> Mat
 
 
 def read_joint(element: Element, findings: UrdfReport) -> Joint:
-    """Return a joint; if it cannot be read, report this and mark the model as refused.
+    """Return a joint. If it cannot be read, report this and mark the model as refused.
 
-    Without the element ``<axis>``, the axis is 1 0 0. For an element without 'xyz', it is 0 0 0, which is odd but as in
-    urdfdom.
+    As in urdfdom, the axis is 1 0 0 without ``<axis>``, but 0 0 0 for an ``<axis>`` without 'xyz'.
     """
     errors_before = findings.error_count
     rule = JOINT if element.attributes.get("type") in _AXIS_TYPES else _WITHOUT_AXIS
@@ -292,7 +292,7 @@ def _read_robot(root: Element, findings: UrdfReport) -> Robot | None:
 
 
 def _index_by_name(kind: str, parts: Iterable[PartT], findings: UrdfReport) -> dict[str, PartT]:
-    """Return links or joints by name; for a repeated name, only the first one counts."""
+    """Return links or joints by name, with only the first one for a repeated name."""
     parts_by_name: dict[str, PartT] = {}
     for part in parts:
         first = parts_by_name.setdefault(part.name, part)

@@ -94,7 +94,7 @@ class Findings:
         self._add(Severity.WARNING, code, message, element, attribute, hint, notes)
 
     def duplicate(self, kind: str, name: str, element: Element, first: Element | None) -> None:
-        """Report a second element of the same kind and name; `first_element` is the first one."""
+        """Report a second element of the same kind and name as `first`."""
         notes = (Note(phrase("it is first defined here"), first.span()),) if first else ()
         hint = phrase("give each {kind} its own name", kind=term(kind))
         self.reject(
@@ -107,7 +107,7 @@ class Findings:
         )
 
     def first_error(self) -> Diagnostic:
-        """Return the first error, which must exist."""
+        """Return the first of at least one error."""
         return next(finding for finding in self._found if finding.severity is Severity.ERROR)
 
     def annotate(self, finding: Diagnostic, note: Note) -> None:

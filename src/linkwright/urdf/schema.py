@@ -55,9 +55,9 @@ _UNSIGNED = ("effort", "velocity", "acceleration", "deceleration", "jerk")
 
 
 def pose_of(xyz: Vector3, rpy: Vector3, quaternion: Quaternion | None) -> Pose:
-    """Return the pose of an ``<origin>``; a quaternion takes precedence over `rpy`.
+    """Return the pose of an ``<origin>``.
 
-    A quaternion is normalised, and a zero quaternion is the identity.
+    A quaternion takes precedence over `rpy`. It is normalised, and a zero quaternion is the identity.
     """
     if quaternion is None:
         return Pose(xyz, rpy)
@@ -90,7 +90,7 @@ def check_origin(pose: Pose, element: Element, owner: Element, findings: Finding
 
 
 def check_sizes(geometry: Geometry, shape: Element, owner: Element, findings: Findings) -> Any:
-    """Check that every size is positive, as URDF 1.2 requires; older versions accept any size."""
+    """Check that every size is positive, as URDF 1.2 requires. Older versions accept any size."""
     if findings.version < (1, 2):
         return geometry
     is_valid = True

@@ -19,9 +19,9 @@ _MAX_VISITS = 64
 
 
 def children_of(robot: Robot) -> Mapping[str, tuple[Joint, ...]]:
-    """Return the child joints of every link, by link name; empty for a leaf.
+    """Return the child joints of every link, by link name.
 
-    The joints are ordered by name.
+    The joints are ordered by name. A leaf has none.
     """
     children: dict[str, list[Joint]] = {name: [] for name in robot.links}
     for _, joint in sorted(robot.joints.items()):

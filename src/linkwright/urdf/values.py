@@ -61,7 +61,7 @@ def number(text: str) -> float:
 
 @lru_cache(maxsize=_CACHE_SIZE)
 def vector3(text: str) -> Vector3:
-    """Return the three numbers in a text, which spaces separate.
+    """Return the three numbers in a text, separated by spaces.
 
     Raises:
         ValueError: if the count is not 3, or if one of the words is not a number.
@@ -79,10 +79,10 @@ def vector3(text: str) -> Vector3:
 
 
 def numbers(text: str) -> tuple[float, ...]:
-    """Return the numbers in a text, which spaces separate; there may be any count of them.
+    """Return any count of numbers in a text, separated by spaces.
 
     Raises:
-        ValueError: if one of the words is not a number; its only argument is this word.
+        ValueError: if one of the words is not a number. The only argument is this word.
     """
     return tuple(number(piece) for piece in text.split(" ") if piece)
 

@@ -13,7 +13,7 @@ _Path = tuple[str, ...]
 
 
 def meanings(name: str) -> list[Phrase]:
-    """Return the meanings of a name or path in Markdown; empty if URDF does not define it.
+    """Return the meanings of a name or path in Markdown, or an empty list if URDF does not define it.
 
     A path leads from outer to inner elements, may start at any element, and may end with an attribute.
     ``joint.limit.effort`` and ``limit.effort`` are the same, and so are ``limit/effort`` and ``<limit> effort``.
@@ -56,5 +56,5 @@ def _ends_with(path: _Path, suffix: _Path) -> bool:
 
 
 def _path_heading(paths: list[_Path]) -> str:
-    """Return a Markdown heading that lists paths, which are relative to ``<robot>``."""
+    """Return a Markdown heading that lists paths relative to ``<robot>``."""
     return "# " + ", ".join(f"`{'.'.join(path[1:] or path)}`" for path in paths)

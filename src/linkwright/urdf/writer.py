@@ -1,4 +1,4 @@
-"""The writer of robots as URDF; reading the text again gives an equal robot."""
+"""The writer of robots as URDF. The reader returns an equal robot from the text."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The viewer, which is a node of the graph with a page in the browser, and views of recordings."""
+"""The viewer: a node of the graph with a page in the browser, and views of recordings."""
 
 from typing import TYPE_CHECKING
 

@@ -107,7 +107,7 @@ class GuestRecordings:
         return key
 
     def audience(self, key: str) -> Audience | None:
-        """Return the pages that show the recording with a key, or None if there is no such recording."""
+        """Return the pages that show the recording with a key, or None if there is none."""
         guest = self._guests.get(key)
         return None if guest is None else guest.viewer.audience
 

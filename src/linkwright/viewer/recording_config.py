@@ -38,15 +38,14 @@ _DISPLAYS = (
     ("sensor_msgs/msg/Image", "Image", 1),
     ("sensor_msgs/msg/CompressedImage", "Image", 1),
 )
-"""Message types, the display for each, and the number of enabled displays; further displays are disabled."""
+"""Message types, the display for each, and the number of enabled displays. Further displays are disabled."""
 
 
 def recording_config(bag: BagReader, robot: Robot | None = None) -> RvizConfig:
-    """Return the initial configuration of a recording: its robot, and displays for topics of common types.
+    """Return the initial configuration of a recording: robot and displays of common topics.
 
-    TF is enabled only if there is no robot, because its axes would cover the
-    robot. A recording of a simulation shows the
-    simulated world in the world frame; the robot model is disabled, because the world contains the robot.
+    TF is enabled only if there is no robot, because its axes would cover the robot. A recording of a simulation shows
+    the simulated world in the world frame. The robot model is then disabled, because the world contains the robot.
 
     Args:
         bag: the recording.
@@ -137,7 +136,10 @@ def _root_and_frames(bag: BagReader, namespace: str) -> tuple[str | None, set[st
 
 
 def _frame_of_messages(bag: BagReader) -> str:
-    """Return the frame of the first displayed message, which is the Fixed Frame if there are no transforms."""
+    """Return the frame of the first displayed message.
+
+    It is the Fixed Frame if there are no transforms.
+    """
     for message, _, _ in _DISPLAYS:
         for topic in (topic for topic in bag.topics if topic.type_name == message and topic.count):
             first_message = next(iter(bag.messages([topic.name])), None)

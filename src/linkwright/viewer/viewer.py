@@ -1,4 +1,4 @@
-"""The viewer, which is a node of the graph with a page in the browser."""
+"""The viewer: a node of the graph with a page in the browser."""
 
 from __future__ import annotations
 
@@ -123,7 +123,7 @@ class Viewer:
         for feature in make_features(self):
             self._add(feature)
 
-    # --- life --------------------------------------------------------------------------------------------------
+    # --- lifecycle ---------------------------------------------------------------------------------------------
 
     async def start(self) -> None:
         """Subscribe to topics, and serve pages.
@@ -153,7 +153,7 @@ class Viewer:
         if self._server.is_open_to_others:
             host = self._server.host
             self._node.get_logger().warning(
-                f"Listening on '{host}': anyone who reaches it and knows the token can see and move the robot"
+                f"Listening on '{host}': anyone who can reach it and has the token can see and move the robot"
             )
 
     async def close(self) -> None:
@@ -183,7 +183,7 @@ class Viewer:
 
     @property
     def url(self) -> str:
-        """The address to open in a browser, including the token; empty before `start`."""
+        """The address to open in a browser, including the token. It is empty before `start`."""
         return self._server.url
 
     @property
@@ -206,10 +206,10 @@ class Viewer:
         """The displays that all pages share."""
         return self.manager.displays
 
-    # --- what the rest of the program shows --------------------------------------------------------------------
+    # --- content from the rest of the program ------------------------------------------------------------------
 
     def attach_joint_panel(self, panel: JointPanel | None) -> None:
-        """Show the sliders of a node that moves joints; None removes the sliders."""
+        """Show the sliders of a node that moves joints. None removes the sliders."""
         self.add_feature(JointsFeature).attach(panel)
 
     def attach_recording(self, playback: Playback, bag: BagReader) -> None:
@@ -255,7 +255,7 @@ class Viewer:
         self._receivers.update((message, feature.receive) for message in (*feature.receives, *receives))
 
     def show_diagnostics(self, diagnostics: Sequence[Diagnostic]) -> None:
-        """Replace the current findings about the description with new findings; the list may be empty."""
+        """Replace the current findings about the description. The new list may be empty."""
         for feature in self._features:
             feature.diagnostics_changed(diagnostics)
 
@@ -264,7 +264,7 @@ class Viewer:
     def _opening(self, page: Page) -> list[Payload]:
         manager = self.managers.enter(page)
         messages, frames = self.opening_messages(manager)
-        manager.pages.add(page)  # added here, so that messages published later follow the opening messages
+        manager.pages.add(page)  # added here so that messages published later follow the opening messages
         return [*(encode(message, page.language) for message in messages), *frames]
 
     def opening_messages(self, manager: VisualizationManager) -> tuple[list[ServerMessage], list[Payload]]:

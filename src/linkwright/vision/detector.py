@@ -1,4 +1,4 @@
-"""The interface of detectors, which take an image and return boxes."""
+"""The interface of detectors, which find boxes in an image."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class Detector(ABC):
     @property
     @abstractmethod
     def names(self) -> tuple[str, ...]:
-        """The names of its classes; empty if they depend on the image, such as the texts of QR codes."""
+        """The names of its classes, or an empty tuple if they depend on the image, such as the texts of QR codes."""
 
     @property
     def notes(self) -> tuple[Phrase, ...]:

@@ -1,4 +1,4 @@
-"""Evaluate detectors: average precision as COCO defines it, and confusion of classes."""
+"""The evaluation of detectors: average precision as COCO defines it, and confusion of classes."""
 
 from __future__ import annotations
 
@@ -47,8 +47,8 @@ class ClassResults:
         objects: the number of objects.
         ap50: the average precision at an overlap of 0.5; None if there is no object.
         ap: the mean of the average precision over `OVERLAPS`; None if there is no object.
-        precision: the share of correct detections among those with a score of at least 0.5; None if there are none.
-        recall: the share of objects found with a score of at least 0.5; None if there is no object.
+        precision: the fraction of correct detections among those with a score of at least 0.5; None if there are none.
+        recall: the fraction of objects found with a score of at least 0.5; None if there is no object.
     """
 
     name: str
@@ -71,8 +71,8 @@ class Evaluation:
         confusion: shape ``(classes + 1, classes + 1)``: the number of objects of a class (row) detected as a class
             (column) with a score of at least 0.5. The last column counts objects that were not found, the last row
                 detections at which there is no object.
-        recall_by_size: for each size range its name, the number of objects, and the share of them found with a score of
-            at least 0.5.
+        recall_by_size: for each size range its name, the number of objects, and the fraction of them that was found
+            with a score of at least 0.5.
     """
 
     images: int
@@ -205,7 +205,7 @@ def _renumber_classes(class_numbers: dict[str, int], detections: Detections) -> 
 def _average_precisions(
     place: int, truth: Sequence[GroundTruth], predictions: Sequence[_SortedDetections]
 ) -> NDArray[np.float64] | None:
-    """Return the average precisions of one class, shape (overlaps,); None if it has no object."""
+    """Return the average precisions of one class, shape (overlaps,), or None if it has no object."""
     object_count = sum(int(((objects.classes == place) & ~objects.ignored).sum()) for objects in truth)
     if object_count == 0:
         return None
@@ -235,7 +235,7 @@ def _average_precisions(
 
 
 def _ignored_shares(boxes: NDArray[np.float32], hidden: NDArray[np.float32]) -> NDArray[np.float64]:
-    """Return for each box the largest share of its area that is inside one ignored box."""
+    """Return for each box the largest fraction of its area that is inside one ignored box."""
     if not len(hidden):
         return np.zeros(len(boxes))
     overlap_sizes = np.minimum(boxes[:, None, 2:], hidden[None, :, 2:]) - np.maximum(
@@ -255,9 +255,9 @@ def _interpolated_precision(recall: NDArray[np.float64], precision: NDArray[np.f
 
 
 def _match_objects(overlaps: NDArray[np.float64], min_overlap: float) -> NDArray[np.int64]:
-    """Return the object that each detection matches, or -1; an object is matched at most once.
+    """Return the index of the object that each detection matches, or -1.
 
-    The detections must be sorted: earlier ones choose first.
+    An object is matched at most once. The detections must be sorted, because earlier ones are matched first.
 
     Args:
         overlaps: the overlap of each detection with each object, shape (detections, objects).

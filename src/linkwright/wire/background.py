@@ -1,4 +1,4 @@
-"""The base class of transports, which mirror the graph of this process in the background."""
+"""The base class of transports. A transport mirrors this process's graph in the background."""
 
 from __future__ import annotations
 
@@ -44,7 +44,9 @@ class DepartureMonitor(Protocol):
 
 
 class BackgroundTransport(ABC):
-    """Connects the graph of this process to the network; a transport (`graph.endpoints.bus`).
+    """The base class of transports, which connect the graph of this process to the network.
+
+    Subclasses implement `graph.endpoints.bus.Transport`.
 
     Separate threads do the work, and never run a user's callback. No method blocks unless its docstring states that it
     does. In a forked process, the transport neither sends nor receives anything.
@@ -244,7 +246,10 @@ class BackgroundTransport(ABC):
         self._do(lambda _: None)  # wakes the engine, which monitors processes from now on
 
     def close(self) -> None:
-        """Leave the domain once reliable messages are acknowledged, after a second at the latest."""
+        """Leave the domain, after waiting at most a second for reliable messages to be acknowledged.
+
+        If the domain is still being joined, this method first waits for that, for at most 10 s.
+        """
         if self._closed:
             return
         self._closed = True
@@ -281,7 +286,7 @@ class BackgroundTransport(ABC):
             self._do(work)
 
     def _do(self, work: Callable[[Engine], None]) -> None:
-        """Queue a call with the engine, which its thread makes once the domain is joined."""
+        """Queue a call for the engine's thread, which makes the call once the domain is joined."""
         if self._closed or self.problem is not None:
             return
         self._work.append(work)
@@ -335,7 +340,7 @@ if hasattr(os, "register_at_fork"):
 def log_join_failure(logger: Logger, error: LinkwrightError) -> None:
     """Log why the domain could not be joined, and that the process runs without the network."""
     findings = "\n".join(render(diagnostic) for diagnostic in error.diagnostics)
-    logger.error(f"{findings}\nThis process continues by itself: other processes do not see its nodes.")
+    logger.error(f"{findings}\nThis process continues without the network: other processes cannot discover its nodes.")
 
 
 def log_no_transport(logger: Logger, reason: Phrase) -> None:
@@ -350,10 +355,10 @@ class TransportOptions(TypedDict, total=False):
     """The options with which a transport is created."""
 
     only_looks: bool
-    """Whether the graph sees other processes and is not seen by them."""
+    """Whether the graph discovers other processes without announcing itself to them."""
 
     must_join: bool
-    """Whether the caller raises the transport's `problem`, which is not logged then."""
+    """Whether the caller raises the transport's `problem`. The problem is then not logged."""
 
 
 class JoinOptions(TransportOptions, total=False):
@@ -374,7 +379,7 @@ def join_with(
     unavailable_reason: Callable[[Mapping[str, str] | None], Phrase],
     options: JoinOptions,
 ) -> AnyTransport | None:
-    """Attach a transport to a graph, and return it; None if the graph stays without the network.
+    """Attach a transport to a graph and return it, or None if no transport is available.
 
     Args:
         graph: the graph.

@@ -1,4 +1,4 @@
-"""The base class of transport engines, whose single thread serves requests of any thread."""
+"""The base class of transport engines. A single thread serves the requests of all threads."""
 
 from __future__ import annotations
 
@@ -107,7 +107,7 @@ class Engine(ABC):
         guarded(partial(self._work.popleft(), self), self._report)
 
     def _report(self, error: Exception) -> None:
-        """Log that an endpoint is not mirrored, with the reason for it.
+        """Log that an endpoint is not mirrored, with the reason.
 
         For an error of Linkwright itself, the traceback is logged.
         """

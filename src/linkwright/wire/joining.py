@@ -40,7 +40,9 @@ def middleware(environment: Mapping[str, str] | None = None) -> str:
 
 
 def unavailable_reason(environment: Mapping[str, str] | None = None) -> Phrase:
-    """Return the reason why this process does not communicate with others; empty if it does.
+    """Return the reason why this process does not communicate with others.
+
+    Return an empty phrase if it does.
 
     Args:
         environment: the environment variables; those of this process if omitted.
@@ -68,7 +70,7 @@ def available(environment: Mapping[str, str] | None = None) -> bool:
 
 
 def check_security(environment: Mapping[str, str] | None = None) -> None:
-    """Raise an error if security is enforced, that is, only nodes with DDS security may join.
+    """Raise an error if only nodes with DDS security may join.
 
     If communication with other processes is switched off, no error is raised.
 

@@ -1,4 +1,4 @@
-"""Calls functions so that a failure is reported and does not end the calling thread."""
+"""Calls functions and reports their exceptions, so that the calling thread continues."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ R = TypeVar("R")
 
 
 def guarded(call: Callable[[], R], report: Callable[[Exception], object] | None = None) -> R | None:
-    """Call a function; report an exception instead of raising it.
+    """Call a function. Report an exception instead of raising it.
 
     Args:
         call: the function.

@@ -41,7 +41,9 @@ def send(sender: socket.socket, data: bytes, group: str = GROUP, port: int = POR
 
 
 def open_receiver(group: str = GROUP, port: int = PORT) -> socket.socket:
-    """Open a socket that receives the datagrams of a group, which other programs may share.
+    """Open a socket that receives the datagrams of a group.
+
+    Other programs may use the same group and port.
 
     Raises:
         LinkwrightError: CLI461, the system refuses to open the socket.

@@ -1,6 +1,6 @@
 """Serializes and deserializes requests and responses, for all transports.
 
-This happens in transport threads, on which other endpoints depend. A failure there is logged like the failure of a
+This happens in transport threads, which also serve other endpoints. A failure there is logged like the failure of a
 callback, and does not propagate.
 """
 
@@ -55,7 +55,10 @@ def forward_response(body: bytes, client: Any, on_response: Callable[[Any], None
 
 
 def _read_or_warn(body: bytes, message_kind: Literal["Request", "Response"], endpoint: Any) -> Any:
-    """Deserialize a request or response; if that fails, log the reason and return None."""
+    """Deserialize a request or response.
+
+    If that fails, log the reason and return None.
+    """
     if endpoint.raw:
         return body
     try:
@@ -66,5 +69,5 @@ def _read_or_warn(body: bytes, message_kind: Literal["Request", "Response"], end
 
 
 def to_cdr(message: Any) -> bytes:
-    """Serialize a request or response to CDR with its header; bytes are returned unchanged."""
+    """Serialize a request or response to CDR with its header. Bytes are returned unchanged."""
     return message if type(message) is bytes else serialize(message)

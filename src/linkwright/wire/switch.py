@@ -22,5 +22,5 @@ def is_switched_off(environment: Mapping[str, str] | None = None) -> bool:
 
 
 def switched_off_reason() -> Phrase:
-    """Return a text that explains how communication was switched off."""
+    """Return the reason why communication is switched off."""
     return phrase("the environment variable {switch} is 0", switch=SWITCH)

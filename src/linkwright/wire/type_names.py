@@ -17,6 +17,6 @@ def dds_type(type_name: str) -> str:
 
 
 def ros_type(type_name: str) -> str | None:
-    """Return the ROS name of a type on the wire; None if the type is not a ROS type."""
+    """Return the ROS name of a type on the wire, or None if the type is not a ROS type."""
     match = _TYPE.fullmatch(type_name)
     return f"{match['package']}/{match['kind']}/{match['name']}" if match else None

@@ -1,4 +1,4 @@
-"""ROS 2 settings that no transport supports: security, discovery servers, other middlewares.
+"""ROS 2 settings that no transport supports: security, discovery servers, other middleware.
 
 A real node applies these settings: it refuses nodes without certificates, or is found only through a server. A
 Linkwright node would start anyway and find no other node, or send unencrypted data that the user believes to be
@@ -35,7 +35,7 @@ _reported: set[str] = set()
 
 
 def refuse_enforced_security(environment: Mapping[str, str] | None = None) -> None:
-    """Raise an error if security is enforced: no node may then join the graph without it.
+    """Raise an error if security is enforced, because no node may then join the graph without it.
 
     Args:
         environment: the environment variables; those of this process if omitted.
@@ -101,7 +101,7 @@ def unsupported_settings(environment: Mapping[str, str] | None = None) -> list[D
             Diagnostic(
                 "DDS124",
                 phrase(
-                    "RMW_IMPLEMENTATION is '{name}', a middleware that Linkwright does not know: Linkwright uses "
+                    "RMW_IMPLEMENTATION is '{name}', a middleware that Linkwright does not support: it uses "
                     "DDS, as with {cyclone}",
                     name=middleware,
                     cyclone=CYCLONE,
@@ -121,5 +121,5 @@ def new_unsupported_settings(environment: Mapping[str, str] | None = None) -> li
 
 
 def _is_security_enabled(variables: Mapping[str, str]) -> bool:
-    """Return whether rcl would enable security, which requires exactly this spelling."""
+    """Return whether rcl would enable security. The variable must have exactly this spelling."""
     return variables.get("ROS_SECURITY_ENABLE") == "true"

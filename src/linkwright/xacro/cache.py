@@ -17,17 +17,22 @@ _STRIDE = 16
 class BoundedCache(Generic[_Key, _Value]):
     """A cache of values with a limit on their total size.
 
-    A full cache drops every sixteenth value, each time starting at a different position. A user that cycles through
-    more values than fit, such as a collection of robots, therefore still finds most of the values. If the oldest
-    values were dropped first, such a user would find none.
+    A full cache drops every sixteenth value, each time starting at a different position. A caller that cycles through
+    more values than fit, such as a check of many robots, therefore still finds most of the values. If the oldest
+    values were dropped first, the check would find none.
 
     Args:
         max_size: the maximum total size.
         size_of: the function that returns the size of a value.
 
     Attributes:
+        divisor: what the maximum sizes of all caches are divided by. The limits suit a command that reads a thousand
+            robots once. A process that runs for days and expands a text again after each edit needs less, because it
+            never reads the earlier versions of the text again.
         values: the cached values, by key. This is a plain dict because it is read for each text of a description.
     """
+
+    divisor = 1
 
     def __init__(self, max_size: int, size_of: Callable[[_Key, _Value], int]) -> None:
         self.values: dict[_Key, _Value] = {}
@@ -38,13 +43,13 @@ class BoundedCache(Generic[_Key, _Value]):
 
     def store(self, key: _Key, value: _Value) -> None:
         """Store a value, replacing an old value with the same key."""
-        values, size_of = self.values, self._size_of
+        values, size_of, max_size = self.values, self._size_of, self._max_size // self.divisor
         values.pop(key, None)
         value_size = size_of(key, value)
         self._size += value_size  # too large if the key existed; the sum below corrects it
-        while self._size > self._max_size and values:
+        while self._size > max_size and values:
             self._size = value_size + sum(size_of(*item) for item in list(values.items()))
-            if self._size > self._max_size:
+            if self._size > max_size:
                 self._start = (self._start + 1) % _STRIDE
                 for dropped in list(values)[self._start :: _STRIDE]:
                     values.pop(dropped, None)
@@ -95,9 +100,9 @@ documents: BoundedCache[tuple[str, str], tuple[int, int, Document]] = BoundedCac
 
 
 def read_document(path: str, overlay: Overlay | None = None) -> Document:
-    """Return the document of a file, which is shared and must not be changed.
+    """Return the parsed document of a file.
 
-    A file is parsed once in a process until it changes.
+    A file is parsed again only if it has changed. The document is shared, so callers must not change it.
 
     Args:
         path: the file.

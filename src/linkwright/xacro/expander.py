@@ -1,4 +1,4 @@
-"""The expander, which walks over the source tree once in document order and writes a new tree.
+"""The expander: one walk over the source tree in document order, which writes a new tree.
 
 Source trees are never changed, so each file is parsed only once. The new tree shares texts and comments without
 expressions with the source tree. Every element of the result has its position in the source, and the macro calls and
@@ -40,7 +40,7 @@ from linkwright.xmltree.nodes import LazyCopy
 
 
 class CommentSweeper:
-    """Removes the comments above expanded tags in one document."""
+    """A remover of the comments above expanded tags in one document."""
 
     def __init__(self) -> None:
         self._marker = Text("\n\n")
@@ -89,7 +89,10 @@ _MAX_ERRORS = 20
 
 
 class Container(Element):
-    """A temporary element that receives the expansion of a tag, and is not part of the result."""
+    """A temporary element that receives the expansion of a tag.
+
+    The element itself is not part of the result.
+    """
 
     __slots__ = ()
 
@@ -113,7 +116,7 @@ class Site(NamedTuple):
 
 
 Directive = Callable[["Expander", Site], None]
-"""Expands a tag of the language."""
+"""A function that expands a tag of the language."""
 
 
 class Expander:
@@ -122,7 +125,7 @@ class Expander:
     Args:
         session: the state of the expansion.
         directives: the functions that expand xacro's own tags, by tag.
-        call: the function that expands any other tag with the xacro prefix, which is a macro call.
+        call: the function that expands macro calls: all other tags with the xacro prefix.
 
     Attributes:
         session: the state of the expansion.
@@ -178,7 +181,7 @@ class Expander:
             self._errors.append(self._nesting_diagnostic())
             return None
         expanded = container.children[0]
-        assert isinstance(expanded, Element), "an ordinary element comes out as an element"
+        assert isinstance(expanded, Element), "the expansion of an ordinary element is an element"
         result = Document(expanded, document.source)
         result.prolog, result.epilog = list(document.prolog), list(document.epilog)
         result.doctype, result.doctype_index = document.doctype, document.doctype_index
@@ -276,7 +279,7 @@ class Expander:
         return container
 
     def attributes(self, node: Element, scope: Scope) -> dict[str, str]:
-        """Return the evaluated attributes of an element, except those for xacro."""
+        """Return the evaluated attributes of an element, without those that have the xacro prefix."""
         session, plan = self.session, plan_of(node)
         result = plan.attributes.copy()
         for name in plan.evaluated:
@@ -362,7 +365,7 @@ class Expander:
             self.fail(fault)
 
     def sweep(self, site: Site) -> None:
-        """Remove the comments above a tag that leaves nothing in the result."""
+        """Remove the comments above a tag that produces no output."""
         output = site.parent.children
         if self.sweeper.sweep(output, followed=site.has_followers):
             self.sweeper.mark(output)
@@ -405,7 +408,8 @@ class Expander:
         """
         limit = self.session.limits.depth
         if frame.depth > limit:
-            fault = Fault("XAC601", phrase("macro calls and includes are nested more than {limit} deep", limit=limit))
+            message = phrase("macro calls and includes are nested more than {limit} levels deep", limit=limit)
+            fault = Fault("XAC601", message)
             fault.hint = phrase("end the recursion with xacro:if or xacro:unless")
             fault.place_at(frame.site)
             self.fail(fault)
@@ -432,7 +436,7 @@ class Expander:
         self.fail(fault)
 
     def _fail_too_deep(self, node: Element) -> NoReturn:
-        fault = Fault("XAC601", phrase("elements are nested more than {deepest} deep", deepest=self._max_nesting))
+        fault = Fault("XAC601", phrase("elements are nested more than {count} levels deep", count=self._max_nesting))
         fault.place_at(next(node.elements(), node))
         self.fail(fault)
 
@@ -513,7 +517,10 @@ def _with_attribute(element: Element, name: str, value: str) -> Element:
 
 
 def _without_repeats(diagnostics: list[Diagnostic]) -> list[Diagnostic]:
-    """Return the diagnostics without repetitions, which a macro that is called often produces."""
+    """Return the diagnostics without duplicates.
+
+    Each call of a macro reports the errors of its body again.
+    """
     unique: dict[tuple[str, str, Span | None], Diagnostic] = {}
     for diagnostic in diagnostics:
         unique.setdefault((diagnostic.code, diagnostic.message, diagnostic.span), diagnostic)
@@ -537,7 +544,7 @@ def check_attributes(expander: Expander, node: Element, required: tuple[str, ...
             )
             expander.fail_at(
                 "XAC301",
-                phrase("'{tag}' lacks its attribute '{name}'", tag=node.tag, name=name),
+                phrase("'{tag}' needs the attribute '{name}'", tag=node.tag, name=name),
                 node,
                 node.span(),
                 missing,

@@ -95,7 +95,9 @@ def expand(
     root_dir: str | Path | None = None,
     overlay: Overlay | None = None,
 ) -> Expansion:
-    """Expand a xacro file as ros/xacro 2.1 does; a plain URDF file is returned unchanged.
+    """Expand a xacro file as ros/xacro 2.1 does.
+
+    A plain URDF file is returned unchanged.
 
     Args:
         path_or_text: the path of a file, or a text, which is recognized by its ``<``. Relative paths are resolved in
@@ -138,7 +140,7 @@ _BANNER = (
 
 
 def banner(name: str) -> list[Comment]:
-    """Return the comments at the top of an expanded text, which name its source file."""
+    """Return the comments that begin an expanded text and name its source file."""
     displayed_name = name
     while "--" in displayed_name:  # XML does not allow two dashes in a comment
         displayed_name = displayed_name.replace("--", "-")

@@ -151,9 +151,9 @@ class Fault(Exception):  # noqa: N818 - it becomes a diagnostic, and is not part
             self.start, self.end = self.start + shift, self.end + shift
 
     def place_in_attribute(self, element: Element, name: str, shift: int = 0) -> None:
-        """Set the location to an attribute's value; the evaluated text starts at `shift` in it.
+        """Set the location to an attribute's value, or add a note if the location is already set.
 
-        If the location is already set, a note is added instead.
+        `shift` is the offset of the evaluated text in the value.
         """
         start = None if self.start is None else self.start + shift
         end = None if self.end is None else self.end + shift
@@ -252,7 +252,10 @@ def attribute_span(element: Element, name: str, start: int | None, end: int | No
 
 
 def attribute_name(element: Element, name: str) -> Span | None:
-    """Return the location of an attribute's name, or of the element if it lacks the attribute."""
+    """Return the location of an attribute's name, or of the element if it lacks the attribute.
+
+    The result is None if the element was created by a program.
+    """
     from linkwright.xmltree.positions import attribute_name_range
 
     source = element.source
@@ -280,7 +283,10 @@ def text_part(text: Text, start: int | None, end: int | None) -> Span | None:
 
 
 def xml_hint(diagnostic: Diagnostic) -> Phrase | None:
-    """Return the hint of an XML mistake; for the xacro prefix, how to declare it."""
+    """Return the hint of an XML error, or None.
+
+    For an undeclared prefix ``xacro``, the hint is the namespace declaration.
+    """
     if diagnostic.code == "XML205" and diagnostic.message.startswith("the prefix 'xacro'"):
         return phrase('declare it on the root element: xmlns:xacro="http://www.ros.org/wiki/xacro"')
     return diagnostic.hint

@@ -101,7 +101,7 @@ class Budget:
         self._characters = limits.characters
         self._call_depth = 0
         self._macros = 0
-        self._look_at = limits.steps  # when so many steps remain, the clock is read next
+        self._look_at = limits.steps  # the number of remaining steps at which the clock is read next
         self._ends = thread_time() + limits.seconds
 
     def too_many_elements(self) -> Fault:
@@ -140,7 +140,7 @@ class Budget:
             self._check_clock()
 
     def charge_steps(self, count: int = 2) -> None:
-        """Charge steps of an expression; the default is one iteration of a comprehension.
+        """Charge steps of an expression. The default is one iteration of a comprehension.
 
         Raises:
             Fault: XAC603 if there were too many steps, or XAC606 if the expansion took too long.
@@ -156,7 +156,7 @@ class Budget:
             self._check_clock()
 
     def enter_lambda(self) -> None:
-        """Charge a call of a lambda, which may be recursive.
+        """Charge a call of a lambda, and count its nesting depth.
 
         Raises:
             Fault: XAC604 if lambda calls are nested too deeply, or XAC603 if there were too many steps.
@@ -164,9 +164,8 @@ class Budget:
         self.charge_steps(_LAMBDA_COST)
         self._call_depth += 1
         if self._call_depth > _MAX_CALL_DEPTH:
-            raise Fault(
-                "XAC604", phrase("lambdas call each other more than {call_depth} deep", call_depth=_MAX_CALL_DEPTH)
-            )
+            message = phrase("lambdas call each other more than {count} levels deep", count=_MAX_CALL_DEPTH)
+            raise Fault("XAC604", message)
 
     def leave_lambda(self) -> None:
         """Leave the innermost lambda call."""

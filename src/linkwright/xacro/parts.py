@@ -114,7 +114,11 @@ class _PartsExpander(Expander):
         return result
 
     def blocks(self, node: Element, scope: Scope, macros: MacroTable) -> Element:
-        """Return the expanded content of a macro call; a call with a gap in its content is left out."""
+        """Return the expanded content of a macro call.
+
+        Raises:
+            _LeftOutError: if the content has a gap.
+        """
         container = super().blocks(node, scope, macros)
         if _GAP in container.attributes:
             raise _LeftOutError

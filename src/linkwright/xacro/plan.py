@@ -84,7 +84,7 @@ def plan_document(document: Document) -> None:
 
 
 def plan_of(node: Element) -> Plan:
-    """Return the plan of an element, which is computed on first use."""
+    """Return the plan of an element, and compute it on first use."""
     plan = node.plan
     if not isinstance(plan, Plan):
         plan = node.plan = _compute_plan(node, plan if isinstance(plan, int) else _UNKNOWN_OFFSET, 0)
@@ -92,7 +92,7 @@ def plan_of(node: Element) -> Plan:
 
 
 def steps_of(node: Element) -> list[Step]:
-    """Return the steps for the children of an element, which are computed on first use."""
+    """Return the steps for the children of an element, and compute them on first use."""
     plan = plan_of(node)
     if plan.steps is None:
         plan.steps = _StepBuilder(node.children, _UNKNOWN_OFFSET, 0).steps
@@ -100,7 +100,10 @@ def steps_of(node: Element) -> list[Step]:
 
 
 def _compute_plan(node: Element, end: int, depth: int) -> Plan:
-    """Return a new plan of an element; `end` is the offset after its text, or `_UNKNOWN_OFFSET`."""
+    """Compute the plan of an element.
+
+    `end` is the offset after the text of the element, or `_UNKNOWN_OFFSET`.
+    """
     plan = Plan(node.attributes)
     children = _StepBuilder(node.children, end, depth)
     plan.steps = children.steps

@@ -40,10 +40,14 @@ if TYPE_CHECKING:
 
 
 class Packages(Protocol):
-    """The interface for finding share folders, which `linkwright.packages.PackageFinder` implements."""
+    """The interface of a package finder, such as `linkwright.packages.PackageFinder`."""
 
     def share(self, name: str) -> Path:
-        """Return the share folder of a package; raises `LinkwrightError` if there is none."""
+        """Return the share folder of a package.
+
+        Raises:
+            LinkwrightError: if the package is not found.
+        """
         ...
 
 
@@ -97,7 +101,7 @@ class Session:
         self.globals = Scope(None, self, symbols.global_names(self))
 
     def close(self) -> None:
-        """Clear all scopes, which refer to the session, so that memory is freed immediately."""
+        """Break the reference cycle between the session and its scopes, so that memory is freed immediately."""
         self.globals.values.clear()
         del self.globals
 
@@ -230,7 +234,7 @@ class Session:
 
     @property
     def working_directory(self) -> str:
-        """The working directory, which is the value of ``$(cwd)``."""
+        """The working directory: the value of ``$(cwd)``."""
         return os.path.abspath(self.root_dir)  # noqa: PTH100 - a string is needed
 
     def on_disk(self, path: str) -> str:
@@ -291,7 +295,7 @@ class Session:
     # findings
 
     def warn_of_unused_arguments(self) -> None:
-        """Warn about passed arguments that no file declares or uses, which are probably misspelt."""
+        """Warn about passed arguments that no file declares or uses, because they are probably misspelt."""
         self.current_node = self.frame = None
         for name in self.arguments:
             if name not in self.known_arguments:

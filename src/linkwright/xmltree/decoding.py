@@ -31,7 +31,7 @@ _UTF_16_STARTS = (b"<\0", b"\0<")
 _GBK_PATTERN = rb"(?:[\x00-\x7f]|[\xa1-\xf7][\xa1-\xfe])+"  # compiled only when needed
 """Text whose bytes beyond ASCII come in pairs, as in GBK and other East Asian encodings."""
 _BINARY_CHECK_LENGTH = 1024
-"""The number of leading bytes to search for a zero byte, which images, archives, programs and meshes have."""
+"""The number of leading bytes to search for a zero byte, as in images, archives, programs and meshes."""
 
 
 class Decoded(NamedTuple):

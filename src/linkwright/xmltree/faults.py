@@ -247,7 +247,7 @@ class _Fault:
 
     @property
     def _character(self) -> str:
-        """The character at which expat stopped; empty at the end of the text."""
+        """The character at which expat stopped, or an empty string at the end of the text."""
         return self._text[self._offset : self._offset + 1]
 
     @property

@@ -70,7 +70,9 @@ class _Node:
 
 
 def format_text(text: str, name: str, style: Style = Style()) -> str:  # noqa: B008 - a tuple of numbers
-    """Return an XML text in a uniform format; a formatted text is returned unchanged.
+    """Return an XML text in a uniform format.
+
+    A formatted text is returned unchanged.
 
     Args:
         text: the text, with the line endings and the byte order mark of its file.

@@ -25,8 +25,13 @@ _before = (0, 0, 0)
 class seldom_collected:  # noqa: N801 - it is called in a ``with`` statement, as a function is
     """A context in which the garbage collector runs less often.
 
-    At the end of the context, all objects become part of the oldest generation.
+    Attributes:
+        ages_objects: whether all objects become part of the oldest generation at the end of the context, which spares
+            a command the search of the result. A process that runs for days sets it to False. Otherwise, the garbage
+            of each expansion gathers in the oldest generation, which Python seldom searches.
     """
+
+    ages_objects = True
 
     def __enter__(self) -> None:
         global _active, _before  # noqa: PLW0603 - there is one collector for the whole process
@@ -42,7 +47,9 @@ class seldom_collected:  # noqa: N801 - it is called in a ``with`` statement, as
         with _depth_lock:
             _active -= 1
             if _active == 0:
-                if gc.get_freeze_count() == 0:  # move new objects to the oldest generation without a collection
+                if (
+                    self.ages_objects and gc.get_freeze_count() == 0
+                ):  # move new objects to the oldest generation without a collection
                     gc.freeze()
                     gc.unfreeze()
                 gc.set_threshold(*_before)
@@ -64,7 +71,7 @@ class Text:
 
 
 class Comment:
-    """A comment; `data` is the text between ``<!--`` and ``-->``."""
+    """A comment with the text `data` between ``<!--`` and ``-->``."""
 
     __slots__ = ("data", "offset", "source")
 
@@ -147,13 +154,13 @@ class Element:
         return "".join(child.data for child in self.children if isinstance(child, Text))
 
     def span(self) -> Span | None:
-        """Return the location of the ``<`` and the name in the start tag; None if a program created the element."""
+        """Return the location of the ``<`` and the name in the start tag, or None if the node has no source."""
         if self.source is None:
             return None
         return self.source.span(self.offset, self.offset + 1 + len(self.tag))
 
     def attribute_span(self, name: str) -> Span | None:
-        """Return the location of an attribute's value in the source.
+        """Return the location of an attribute's value in the source, or None if the node has no source.
 
         If the attribute is absent or was created by a program, the location of the element is returned.
         """

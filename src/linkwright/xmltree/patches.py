@@ -46,7 +46,7 @@ class StartTag:
 
 
 def apply(text: str, edits: Iterable[Replacement]) -> str:
-    """Return a text with replacements applied; the replacements must not overlap."""
+    """Return a text with non-overlapping replacements applied."""
     parts, position = [], 0
     for edit in sorted(edits, key=lambda edit: (edit.start, edit.end)):
         parts += [text[position : edit.start], edit.text]

@@ -49,7 +49,7 @@ def start_tag_end(text: str, offset: int) -> int:
 
 _Ranges = dict[str, tuple[tuple[int, int], tuple[int, int]]]
 _read_last: tuple[str, int, _Ranges] = ("", -1, {})
-"""The last tag that was read: callers often ask for several attributes of a tag, which may have thousands."""
+"""The last tag that was read, because callers often need several attributes of one tag."""
 
 
 def _attributes(text: str, offset: int) -> _Ranges:

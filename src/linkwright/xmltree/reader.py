@@ -1,4 +1,4 @@
-"""The XML reader, which builds a tree with the position of each node.
+"""The XML reader that builds a tree with the position of each node.
 
 It reads a file, or a text that replaces the content of a file, such as an unsaved one.
 """
@@ -37,7 +37,7 @@ _ENTITY_REFERENCE = r"&([^\s#;&<]+);"  # not compiled here because few files nee
 
 
 class EntityGuard:
-    """Computes how long a text becomes when the internal entities of its document are expanded."""
+    """The lengths of texts after the expansion of the internal entities of a document."""
 
     def __init__(self) -> None:
         self._values: dict[str, str] = {}
@@ -419,10 +419,10 @@ def _to_character_offsets(document: Document, data: bytes) -> None:
 
 
 class Overlay:
-    """Reads files, some of which have a replacement text, such as the unsaved text in an editor.
+    """Replacement texts of files, such as unsaved texts in an editor, and access to files with or without one.
 
     Args:
-        texts: the replacement texts by path; the files need not exist.
+        texts: the replacement texts by path. The files need not exist.
     """
 
     def __init__(self, texts: Mapping[str | os.PathLike[str], str] | None = None) -> None:

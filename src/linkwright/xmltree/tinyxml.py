@@ -1,4 +1,4 @@
-"""Parses XML as leniently as TinyXML2, the parser of urdfdom and the simulators.
+"""A parser of XML as lenient as TinyXML2, the parser of urdfdom and the simulators.
 
 TinyXML2 does not support namespaces, and ends a comment only at ``-->``. It skips text before the root element and
 elements after the root, and stops at a closing tag without an open element. It also accepts an ``&`` that does not
@@ -25,9 +25,9 @@ from linkwright.xmltree.nodes import Comment, Document, Element, Node, Text
 from linkwright.xmltree.reader import parse
 
 _PRIVATE_USE_START = 0xE000
-"""The start of Unicode's private use area: XML allows these characters, but files rarely contain them."""
+"""The start of Unicode's private use area. XML allows these characters, but files rarely contain them."""
 _CONTROL_CHARACTERS = frozenset({*map(chr, range(1, 0x20))} - {*"\t\n\r"})
-"""The control characters that XML forbids, without NUL, which ends the text for TinyXML2."""
+"""The control characters that XML forbids, except NUL, because it ends the text for TinyXML2."""
 _CONTROL_BLANKS = "\v\f"
 """Control characters that C and TinyXML2 treat as whitespace."""
 _SUBSTITUTES = {character: chr(_PRIVATE_USE_START + ord(character)) for character in ("&", "<", *_CONTROL_CHARACTERS)}
@@ -158,9 +158,9 @@ def _values_and_blanks(text: str) -> Iterator[tuple[_Value, str]]:
 _UNDECLARED_PREFIX_CODE, _AFTER_ROOT_CODE, _NOT_XML_CODE = "XML205", "XML207", "XML206"
 _OUTSIDE_TAGS = lazy_pattern(r"<!--(.*?)-->|<!\[CDATA\[.*?\]\]>", re.DOTALL)
 COMMENT = "<!--[^-]*(?:-(?!->)[^-]*)*-->"
-"""Matches one comment; ``.*?`` could extend over several comments, which takes exponential time to backtrack."""
+"""A pattern for one comment. ``.*?`` could extend over several comments, and backtrack in exponential time."""
 _BEFORE_ROOT = lazy_pattern(rf"\A(?:\s*<\?xml\s[^>]*\?>)?(?:\s|{COMMENT})*([^<\s][^<]*)(?=<(?!\?xml\s))")
-"""Finds text before the root element, but not before a declaration, because TinyXML2 rejects that too."""
+"""A pattern for text before the root element, but not before a declaration, because TinyXML2 rejects that too."""
 _SECOND_DECLARATION = lazy_pattern(r"\s*<\?xml\s[^>]*\?>\s*(?=(<\?xml\s[^>]*\?>))")
 _BARE_AMPERSAND = lazy_pattern(r"&(?!(?:#[0-9]+|#x[0-9a-fA-F]+|amp|lt|gt|quot|apos);)")
 _ENTITY_DEFINITION = "<!ENTITY"
@@ -355,5 +355,5 @@ def _is_ignored_content(content: str) -> bool:
 
 
 def _has_dashes(comment: str | None) -> bool:
-    """Return whether a comment has dashes that XML forbids; False if `comment` is None."""
+    """Return whether there is a comment with dashes that XML forbids."""
     return comment is not None and ("--" in comment or comment.endswith("-"))

@@ -1,4 +1,6 @@
-"""Splits any text into XML tokens; every character belongs to one token.
+"""The split of any text into XML tokens.
+
+Every character belongs to one token.
 
 Editors request the tokens of incomplete XML, and a formatter must preserve text that a tree leaves out. Therefore, the
 text need not be well-formed. An incomplete tag ends before the next ``<``. An attribute without its closing quote ends
@@ -97,7 +99,7 @@ class Token(NamedTuple):
 
     @property
     def name(self) -> str:
-        """The name of a tag as written; empty for a tag without a name and for other tokens."""
+        """The name of a tag as written, or an empty string for a tag without a name and for other tokens."""
         name_match = _TAG_NAME.match(self.text) if self.kind in (Kind.START, Kind.END) else None
         return "" if name_match is None else str(name_match[1])
 
@@ -115,7 +117,7 @@ class Token(NamedTuple):
 
 
 def tokens(text: str) -> Iterator[Token]:
-    """Yield the tokens of a text, which need not be well-formed XML.
+    """Yield the tokens of a text, even if it is not well-formed XML.
 
     The texts of the tokens, joined in order, are equal to the text.
     """

@@ -1,4 +1,4 @@
-"""Serializes a tree to XML text.
+"""The serialization of a tree to XML text.
 
 The format is the same as from ros/xacro 2.1 on Python up to 3.12: minidom's ``toprettyxml`` with an indentation of two
 blanks, attributes in alphabetical order, no blank text, and elements that contain only text on one line. This writer

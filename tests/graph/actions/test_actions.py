@@ -218,7 +218,7 @@ async def test_a_result_of_the_wrong_type_is_told(stage, log):
     stage.serve(work)
     response = await (await stage.send()).get_result_async()
     assert (response.status, list(response.result.sequence)) == (GoalStatus.SUCCEEDED, [])
-    assert "gave <class 'list'>, not" in log[-1].text
+    assert "returned <class 'list'>, not" in log[-1].text
 
 
 async def test_the_result_may_come_with_the_end(stage):

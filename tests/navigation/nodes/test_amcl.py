@@ -205,7 +205,7 @@ def test_scans_that_fit_nowhere_near_are_told(begin: Begin) -> None:
     house.test.advance(0.5)
     house.drive([(-2.2, -0.4), (-2.2, -2.0), (-0.2, -2.4), (0.0, 0.0)])
     assert house.error()[0] > 0.5
-    assert any("of the beams end near something on the map" in text for text in house.logged(LogLevel.WARN))
+    assert any("of the beams end near an obstacle of the map" in text for text in house.logged(LogLevel.WARN))
 
 
 def test_it_says_what_it_waits_for(begin: Begin) -> None:

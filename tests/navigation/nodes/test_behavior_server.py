@@ -102,7 +102,7 @@ async def test_a_costmap_that_falls_silent_stops_the_robot(scene, log):
     scene.sees = False
     assert await goal.ends(10.0) == GoalStatus.ABORTED
     assert scene.velocity == STILL
-    assert any("the costmap has fallen silent" in record.text for record in log)
+    assert any("the costmap is no longer published" in record.text for record in log)
 
 
 async def test_it_waits_and_can_be_canceled(scene):

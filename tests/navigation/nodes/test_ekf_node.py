@@ -308,11 +308,11 @@ async def test_parameters_of_sensors_that_are_not_there_are_named(test):
     start(test, odom0="wheels", odom0_config=config(X), odom0_diferential=True, odom2_config=config(X))
     (misspelt,) = logged(test, "WARN")
     assert misspelt.startswith("'odom0_diferential' is not a parameter of this node; did you mean 'odom0_differential'")
-    assert "parameters that this node does not have are not read: odom2_config" in logged(test, "INFO")
+    assert "parameters that this node does not have are ignored: odom2_config" in logged(test, "INFO")
 
 
 async def test_a_sensor_that_gives_nothing_is_named(test):
     start(test, odom0="wheels")
     assert logged(test, "WARN") == [
-        "wheels is listed as an input topic (odom0), but nothing that it gives is true in odom0_config"
+        "wheels is listed as an input topic (odom0), but odom0_config enables none of its values"
     ]

@@ -232,7 +232,7 @@ async def test_poses_become_what_is_asked_for(stage, logged):
     word = "/one@geometry_msgs/msg/Pose]gz.msgs.Pose"
     ParameterBridge(stage.graph, NodeOptions(name="back", arguments=[word]))
     assert logged("WARN") == [
-        "/one is not bridged: geometry_msgs/msg/Pose does not become geometry_msgs/msg/TransformStamped"
+        "/one is not bridged: geometry_msgs/msg/Pose cannot be converted to geometry_msgs/msg/TransformStamped"
     ]
 
 

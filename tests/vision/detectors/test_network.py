@@ -330,10 +330,10 @@ def test_networks_in_other_forms(tmp_path, ending):
     ("shape", "names", "words"),
     [
         ((4, 3, 96, 128), ("images",), "is a batch of 4 images, not 1"),
-        ((1, 96, 128, 3), ("images",), "does not take an image"),
-        ((1, 1, 96, 128), ("images",), "does not take an image"),
-        ((1, 10), ("images",), "does not take an image"),
-        ((1, 3, 96, 128), ("images", "sizes"), "does not take an image"),
+        ((1, 96, 128, 3), ("images",), "does not accept an image"),
+        ((1, 1, 96, 128), ("images",), "does not accept an image"),
+        ((1, 10), ("images",), "does not accept an image"),
+        ((1, 3, 96, 128), ("images", "sizes"), "does not accept an image"),
     ],
 )
 def test_inputs_that_are_no_image(tmp_path, shape, names, words):

@@ -132,4 +132,4 @@ def test_a_request_that_names_nothing_moves_nothing(tmp_path):
         test.advance(1.0)
         assert test.spoken() == []
         assert len(test.commands) == 0
-        assert any("names nothing to go to" in record.text for record in test.log)
+        assert any("does not name an object" in record.text for record in test.log)

@@ -105,7 +105,7 @@ def test_what_is_seen_in_a_sentence():
     ]
     assert described(seen, "en") == "I see a red ball 1.2 m ahead, an orange thing 1.6 m to the left and two crates."
     assert described(seen, "zh") == "我看到前方1.2米处有一个红色的球，左边1.6米处有一个橙色的东西和两个箱子。"
-    assert described([], "en") == "I see nothing that I know."
+    assert described([], "en") == "I see no objects."
     assert described([], "zh") == "我什么也没看到。"
     assert described([Sighting("person", None, -1.0, 0.0)], "en") == "I see a person 1.0 m behind me."
     balls = [Sighting("red", None, 1.0, 0.0), Sighting("red", "red", 2.0, 0.0)]

@@ -140,7 +140,7 @@ def test_a_sample_that_does_not_say_whose_it_is_is_dropped_and_told_once(process
         us.spin_until(us.warnings)
     assert not got
     (text,) = us.warnings()
-    assert "does not name its sender" in text
+    assert "it lacks the sender" in text
 
 
 def test_bytes_of_a_type_that_is_not_known_here_are_passed_on(processes):

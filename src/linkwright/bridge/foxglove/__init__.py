@@ -1,4 +1,4 @@
-"""The foxglove_bridge: the graph over a WebSocket, with the protocol of Foxglove and Lichtblick."""
+"""The foxglove_bridge, which serves the graph over a WebSocket to Foxglove and Lichtblick."""
 
 from linkwright.bridge.foxglove.bridge import FoxgloveBridge
 

@@ -1,4 +1,4 @@
-"""Assets for clients: meshes and images in packages that a robot description names."""
+"""Assets for clients: the meshes and images in packages that a robot description names."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _MAX_SIZE = 256 << 20
 
 
 class AssetRefusedError(Exception):
-    """Raised when an asset is refused; the message gives the reason."""
+    """Raised when an asset is refused. The message gives the reason."""
 
 
 class Assets:
@@ -44,11 +44,11 @@ class Assets:
         match = _PACKAGE.match(uri)
         relative = PurePosixPath(uri[match.end() :]) if match else PurePosixPath()
         if match is None or match[1] not in self._packages:
-            raise AssetRefusedError("only files of packages that a robot description names are given")
+            raise AssetRefusedError("only files of packages that a robot description names are served")
         if relative.suffix.lower() not in _ENDINGS:
-            raise AssetRefusedError("only meshes and images are given")
+            raise AssetRefusedError("only meshes and images are served")
         if ".." in relative.parts or relative.is_absolute() or "\0" in uri or "\\" in uri:
-            raise AssetRefusedError("the path leads out of its package")
+            raise AssetRefusedError("the path is outside its package")
         try:
             if self._finder is None:
                 self._finder = PackageFinder()
@@ -71,9 +71,9 @@ def _content(package: str, share: Path, relative: PurePosixPath) -> bytes:
     if not path.is_relative_to(share.resolve(strict=True)):
         enclosing = enclosing_package(path.parent)
         if enclosing is None or enclosing[0] != package:
-            raise AssetRefusedError("a link leads out of the package")
+            raise AssetRefusedError("a link points outside the package")
     if not path.is_file() or path.suffix.lower() not in _ENDINGS:
-        raise AssetRefusedError("it is neither a mesh nor an image")
+        raise AssetRefusedError("the file is neither a mesh nor an image")
     if path.stat().st_size > _MAX_SIZE:
-        raise AssetRefusedError("it is too large")
+        raise AssetRefusedError("the file is too large")
     return path.read_bytes()

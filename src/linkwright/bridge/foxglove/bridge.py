@@ -35,7 +35,7 @@ _UPDATE_DELAY_S = 0.1
 
 
 class FoxgloveBridge(SingleNode):
-    """The node foxglove_bridge, with those parameters of the ROS node that it supports.
+    """The node foxglove_bridge, with the supported subset of the ROS node's parameters.
 
     The server binds the loopback address unless `address` names another one, because every client that connects may
     publish, call services and set parameters.

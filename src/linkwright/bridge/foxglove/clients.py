@@ -40,7 +40,7 @@ class Client:
         self._has_messages.set()
 
     def send_data(self, frame: bytes) -> None:
-        """Queue a message of a topic, which is dropped if the client is too slow."""
+        """Queue a message of a topic. It is dropped if the client is too slow."""
         self._data.append(frame)
         self._queued_bytes += len(frame)
         while self._queued_bytes > self._max_bytes and len(self._data) > 1:

@@ -8,11 +8,11 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
 from linkwright.graph.names.expressions import Expression, ExpressionError, TooCostlyError
 
 _MAX_CACHED = 10_000
-"""The number of cached decisions; clients may ask for as many names as they like."""
+"""The maximum number of cached decisions, because clients may ask for any number of names."""
 
 
 class NameFilter:
-    """A filter of names by regular expressions, one of which must match the full name.
+    """A filter of names. One of its regular expressions must match the full name.
 
     An expression that takes too long is not used again.
 

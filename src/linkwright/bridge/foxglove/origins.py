@@ -11,7 +11,7 @@ from urllib.parse import urlsplit
 
 _APPLICATIONS = ("foxglove.dev", "lichtblick-suite.github.io")
 _APPLICATION_SCHEMES = ("file", "app", "foxglove", "lichtblick")
-"""Desktop programs built from web pages."""
+"""The URL schemes of desktop programs that are built from web pages."""
 
 
 def is_allowed_origin(origin: str | None, extra_origins: Collection[str] = ()) -> bool:

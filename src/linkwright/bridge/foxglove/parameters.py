@@ -30,7 +30,10 @@ class Parameters:
         self._clients: dict[str, AsyncParameterClient] = {}
 
     async def get(self, names: Sequence[str]) -> list[dict[str, Any]]:
-        """Return the entries of the parameters with these names, or of all parameters if no name is given."""
+        """Return the entries of parameters.
+
+        If no name is given, the entries of all parameters are returned.
+        """
         by_node: dict[str, list[str] | None] = {}
         if names:
             for name in names:
@@ -47,7 +50,7 @@ class Parameters:
         ]
 
     async def set(self, parameters: Sequence[Mapping[str, Any]]) -> None:
-        """Set parameters; a parameter that its node refuses keeps its value."""
+        """Set parameters. A parameter keeps its value if its node refuses the new one."""
         for entry in parameters:
             name = str(entry.get("name", ""))
             node, _, parameter = name.partition(".")
@@ -95,7 +98,7 @@ class Parameters:
         return self._clients[node]
 
     async def _wait_for(self, future: Any) -> Any:
-        """Return the result of a future of the graph; None if it takes too long."""
+        """Return the result of a future of the graph, or None if it takes too long."""
         loop = asyncio.get_running_loop()
         done_event = asyncio.Event()
         future.add_done_callback(lambda _: loop.call_soon_threadsafe(done_event.set))

@@ -11,7 +11,10 @@ from enum import IntEnum
 from typing import Any
 
 SUBPROTOCOLS = ("foxglove.websocket.v1", "foxglove.sdk.v1")
-"""The second subprotocol has the same messages; Foxglove's SDK uses this name."""
+"""The accepted subprotocols.
+
+Both have the same messages. Foxglove's SDK uses the second name.
+"""
 
 ENCODING = "cdr"
 SCHEMA_ENCODING = "ros2msg"
@@ -29,7 +32,10 @@ class StatusLevel(IntEnum):
 
 
 class BadFrameError(ValueError):
-    """Raised when bytes from a client are not a message of the protocol; the message gives the reason."""
+    """Raised when bytes from a client are not a message of the protocol.
+
+    The error message gives the reason.
+    """
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,7 +102,7 @@ def read_frame(frame: bytes) -> ClientMessage | ServiceRequest:
             return ServiceRequest(service, call, frame[13:start].decode(), frame[start:])
     except (IndexError, struct.error, UnicodeDecodeError):
         raise BadFrameError("the message is too short") from None
-    raise BadFrameError(f"no message has the code {opcode}")
+    raise BadFrameError(f"unknown message code {opcode}")
 
 
 def status(level: StatusLevel, message: str) -> dict[str, Any]:

@@ -19,7 +19,7 @@ _PATIENCE = 10.0
 
 
 class CallFailedError(Exception):
-    """Raised when a service call fails; the message gives the reason."""
+    """Raised when a service call fails. The message gives the reason."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,7 +70,7 @@ class Services:
         return list(self._services.values())
 
     def poll_changes(self) -> tuple[list[OfferedService], list[int]]:
-        """Return the services added since the last call, and the IDs of those removed since."""
+        """Return the services that were added since the last call, and the IDs of removed services."""
         current = {
             (endpoint.name, endpoint.type_name)
             for endpoint in self._node.graph.endpoints()
@@ -106,9 +106,9 @@ class Services:
             None,
         )
         if service is None:
-            raise CallFailedError("there is no such service any more")
+            raise CallFailedError("the service no longer exists")
         if request.encoding != ENCODING:
-            raise CallFailedError(f"the encoding '{request.encoding[:40]}' is not understood; send {ENCODING}")
+            raise CallFailedError(f"the encoding '{request.encoding[:40]}' is not supported: use {ENCODING}")
         service_class: Any = get_service(service.type_name)
         client = self._clients.get(service.number)
         if client is None:
@@ -125,7 +125,7 @@ class Services:
             await asyncio.wait_for(response_event.wait(), _PATIENCE)
         except asyncio.TimeoutError:
             client.remove_pending_request(future)
-            raise CallFailedError(f"'{service.name}' did not answer within {_PATIENCE:g} s") from None
+            raise CallFailedError(f"'{service.name}' did not respond within {_PATIENCE:g} s") from None
         try:
             response: Any = future.result()
             return bytes(serialize(response))

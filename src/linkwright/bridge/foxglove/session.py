@@ -67,7 +67,7 @@ class Session:
     _tasks: set[asyncio.Task[None]] = field(default_factory=set)
 
     def receive(self, message: str | bytes) -> None:
-        """Handle a message of the client; an error is sent back to the client."""
+        """Handle a message of the client. An error is sent back to the client."""
         try:
             if isinstance(message, bytes):
                 self._frame(read_frame(message))
@@ -78,7 +78,7 @@ class Session:
         except BadFrameError as error:
             self._send_status(str(error))
         except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
-            self._send_status(f"the message is not of the protocol: {type(error).__name__}: {str(error)[:200]}")
+            self._send_status(f"the message does not follow the protocol: {type(error).__name__}: {str(error)[:200]}")
 
     def graph_changed(self, removed_channels: list[int]) -> None:
         """Remove the subscriptions to channels that no longer exist, and update the connection graph."""
@@ -150,23 +150,23 @@ class Session:
             case "fetchAsset":
                 self._run(self._fetch(str(request["uri"]), int(request["requestId"])))
             case operation:
-                self._send_status(f"no message has the op '{str(operation)[:40]}'")
+                self._send_status(f"unknown operation '{str(operation)[:40]}'")
 
     def _subscribe(self, number: int, channel_number: int) -> None:
         channel = self.offer.channels.get(channel_number)
         if channel is None:
             self._send_status(f"there is no channel {channel_number}")
         elif number in self._forwardings:
-            self._send_status(f"subscription {number} is there already")
+            self._send_status(f"subscription {number} already exists")
         elif any(forwarding.channel is channel for forwarding in self._forwardings.values()):
-            self._send_status(f"'{channel.topic}' is subscribed to already", StatusLevel.WARNING)
+            self._send_status(f"the client is already subscribed to '{channel.topic}'", StatusLevel.WARNING)
         else:
             self._forwardings[number] = Forwarding(self.offer.node, channel, self.client, number)
 
     def _advertise(self, number: int, channel: dict[str, Any]) -> None:
         topic = str(channel["topic"])
         if number in self._publications or len(self._publications) >= _MAX_CHANNELS:
-            self._send_status(f"channel {number} cannot be advertised: it is, or there are too many")
+            self._send_status(f"channel {number} cannot be advertised: it already is, or there are too many channels")
         elif not self.offer.publishable.accepts(self.offer.node.resolve_topic_name(topic)):
             self._send_status(f"clients may not publish on '{topic}'")
         else:
@@ -177,7 +177,7 @@ class Session:
     def _run(self, request: Coroutine[Any, Any, None]) -> None:
         if len(self._tasks) >= _MAX_TASKS:
             request.close()
-            self._send_status("too many questions at once")
+            self._send_status("too many requests at once")
             return
         task = asyncio.get_running_loop().create_task(request)
         self._tasks.add(task)

@@ -64,7 +64,7 @@ class Channels:
         return next((channel for channel in self._channels.values() if channel.number == number), None)
 
     def poll_changes(self) -> tuple[list[Channel], list[int]]:
-        """Return the channels added since the last call, and the IDs of those removed since."""
+        """Return the channels that were added since the last call, and the IDs of removed channels."""
         current = {
             (endpoint.name, endpoint.type_name)
             for endpoint in self._node.graph.endpoints()
@@ -142,7 +142,7 @@ class Publication:
 
     def __init__(self, node: Node, channel: Mapping[str, Any]) -> None:
         if channel.get("encoding") != ENCODING:
-            raise ValueError(f"the encoding '{str(channel.get('encoding'))[:40]}' is not understood; send {ENCODING}")
+            raise ValueError(f"the encoding '{str(channel.get('encoding'))[:40]}' is not supported: use {ENCODING}")
         self._node = node
         self._class: Any = get_message(_full_type(str(channel["schemaName"])))
         self._publisher: Publisher[Any] = node.create_publisher(self._class, str(channel["topic"]), 10)
@@ -161,5 +161,5 @@ class Publication:
 
 
 def _full_type(name: str) -> str:
-    """Return the full name of a message type; the short form ``std_msgs/String`` is accepted too."""
+    """Return the full name of a message type. The short form ``std_msgs/String`` is accepted, too."""
     return name.replace("/", "/msg/", 1) if name.count("/") == 1 else name

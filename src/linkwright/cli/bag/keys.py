@@ -1,4 +1,4 @@
-"""Reads single key presses from the terminal while an event loop runs."""
+"""Single key presses from the terminal while an event loop runs."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Computes the completions of a command line.
+"""The completions of a command line.
 
 `tools/command_reference.py` extracts the commands, their options and arguments from the commands' own parsers, and
 writes them to the table ``commands.json``. Creating the parsers at run time would take too long after TAB is pressed.
@@ -21,7 +21,10 @@ _LAUNCH_METAVAR = "PACKAGE FILE | PATH [NAME:=VALUE ...]"
 
 
 def split_line(line: str) -> list[str]:
-    """Split a command line up to the cursor into words; the last word is incomplete and may be empty."""
+    """Split a command line up to the cursor into words.
+
+    The last word is the one at the cursor, and may be empty.
+    """
     try:
         words = shlex.split(line)
     except ValueError:  # an opening quotation mark is not closed yet
@@ -30,7 +33,7 @@ def split_line(line: str) -> list[str]:
 
 
 def complete(words: Sequence[str]) -> list[str]:
-    """Return the completions of the last word; `scripts.FILES` represents file names."""
+    """Return the completions of the last word. The completion `scripts.FILES` represents all file names."""
     program, *arguments = words
     *preceding, current = arguments or [""]
     current = current.lstrip("'\"")  # the opening quotation mark of an unfinished string

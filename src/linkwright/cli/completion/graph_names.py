@@ -69,7 +69,7 @@ def _start_discovery(path: Path) -> None:
 
 
 def discover() -> int:
-    """Discover the names of the graph, cache them for `cached_names`, and return the exit status."""
+    """Discover the names of the graph, cache them for `names_of`, and return the exit status."""
     from argparse import Namespace
 
     from linkwright.cli.calls import node_names

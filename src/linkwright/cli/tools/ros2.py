@@ -36,7 +36,7 @@ COMMANDS = (
 _UNSUPPORTED = {
     "extension_points": "it lists plugins of ros2cli",
     "extensions": "it lists plugins of ros2cli",
-    "security": "it makes the keys of SROS 2",
+    "security": "it generates the keys of SROS 2",
 }
 
 
@@ -70,5 +70,5 @@ def _overview() -> str:
     for name in COMMANDS:
         alias_target = OTHER_NAMES.get(name)
         lines.append(f"  {name:{width}}  {f'the same as {alias_target}' if alias_target else help_texts()[name]}")
-    lines += ["", "`ros2 COMMAND -h` says more."]
+    lines += ["", "`ros2 COMMAND -h` describes a command."]
     return "\n".join(lines)

@@ -1,4 +1,4 @@
-"""Compiles the Python expression of ``--filter``, which selects messages ``m``."""
+"""The Python expression of ``--filter``, which selects messages ``m``."""
 
 from __future__ import annotations
 

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 _RATE_WINDOW = 10_000
 _DELAY_WINDOW = 10_000
 _STAMP_FORMATS = {0: struct.Struct(">iI"), 1: struct.Struct("<iI")}
-"""The formats of a stamp's seconds and nanoseconds, by the byte order in the second byte of the CDR header."""
+"""The `struct` formats of a stamp, by the byte order in the second byte of the CDR header."""
 _CDR_HEADER = 4
 _SIZE_WINDOW = 100
 _REPORT_PERIOD = 1.0
@@ -197,7 +197,7 @@ def _subscribe(
 
 
 async def _report_until_finished(session: Session, text: Callable[[], str | None]) -> int:
-    """Print the text that `text` returns, if any, each second until the command ends.
+    """Print the text that `text` returns each second, unless it is None, until the command ends.
 
     Returns:
         The exit status.

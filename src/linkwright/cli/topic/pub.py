@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 _KEEP_ALIVE = 0.1
 _WAITING_NOTICE_PERIOD = 1.0
 _MUTUAL_DISCOVERY_DELAY = 0.15
-"""Seconds until a discovered subscription has also discovered the publisher; earlier messages may be lost."""
+"""Seconds until a discovered subscription has also discovered the publisher. Earlier messages may be lost."""
 _MessageWithStamps = tuple[Any, list[Callable[[Any], None]]]
 
 

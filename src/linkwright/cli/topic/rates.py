@@ -31,7 +31,7 @@ class Spread:
 
     @classmethod
     def of(cls, durations: Iterable[float]) -> Spread:
-        """Compute the statistics of durations in nanoseconds; at least one is required."""
+        """Compute the statistics of at least one duration in nanoseconds."""
         values = list(durations)
         mean = sum(values) / len(values)
         deviation = math.sqrt(sum((value - mean) ** 2 for value in values) / len(values))

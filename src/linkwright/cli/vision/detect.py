@@ -111,7 +111,7 @@ def run(arguments: argparse.Namespace) -> int:
 def _checked_classes(detector: Detector, class_names: list[str]) -> frozenset[str]:
     for name in class_names:
         if detector.names and name not in detector.names:
-            message = phrase("the detector does not know the class '{name}'", name=name)
+            message = phrase("the detector has no class '{name}'", name=name)
             hint = did_you_mean(name, detector.names) or phrase(
                 "its classes are {names}", names=", ".join(detector.names)
             )

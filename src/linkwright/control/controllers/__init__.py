@@ -1,1 +1,1 @@
-"""Controllers, one per file, which are found through entry points."""
+"""Controllers, one per file, found through entry points."""

@@ -1,4 +1,7 @@
-"""``ackermann_steering_controller/AckermannSteeringController``: two driven wheels and two steered wheels."""
+"""``ackermann_steering_controller/AckermannSteeringController``: a car-like vehicle.
+
+Two wheels are driven, and two wheels are steered.
+"""
 
 from __future__ import annotations
 
@@ -13,13 +16,15 @@ from linkwright.nodes.parameter_tables import HUMBLE, JAZZY, parameter
 class Parameters(SteeringParameters):
     """The parameters shared by all steered vehicles, and the dimensions of this vehicle."""
 
-    traction_wheels_radius: float = parameter(0.0, description="of the wheels that drive, in m", only=JAZZY)
-    traction_track_width: float = parameter(0.0, description="between the wheels that drive, in m", only=JAZZY)
-    steering_track_width: float = parameter(0.0, description="between those that steer; 0 for the same", only=JAZZY)
-    front_wheels_radius: float = parameter(0.0, description="of the wheels in front, in m", only=HUMBLE)
-    rear_wheels_radius: float = parameter(0.0, description="of the wheels behind, in m", only=HUMBLE)
-    front_wheel_track: float = parameter(0.0, description="between the wheels in front, in m", only=HUMBLE)
-    rear_wheel_track: float = parameter(0.0, description="between the wheels behind, in m", only=HUMBLE)
+    traction_wheels_radius: float = parameter(0.0, description="the radius of the driven wheels, in m", only=JAZZY)
+    traction_track_width: float = parameter(0.0, description="the distance between the driven wheels, in m", only=JAZZY)
+    steering_track_width: float = parameter(
+        0.0, description="the distance between the steered wheels, in m; 0 for traction_track_width", only=JAZZY
+    )
+    front_wheels_radius: float = parameter(0.0, description="the radius of the front wheels, in m", only=HUMBLE)
+    rear_wheels_radius: float = parameter(0.0, description="the radius of the rear wheels, in m", only=HUMBLE)
+    front_wheel_track: float = parameter(0.0, description="the distance between the front wheels, in m", only=HUMBLE)
+    rear_wheel_track: float = parameter(0.0, description="the distance between the rear wheels, in m", only=HUMBLE)
 
 
 class AckermannSteeringController(SteeringController[Parameters]):
@@ -30,7 +35,10 @@ class AckermannSteeringController(SteeringController[Parameters]):
     JOINTS = (2, 2)
 
     def drive(self) -> CarDrive:
-        """Return the drive with the dimensions from the parameters, which have different names in Humble and Jazzy."""
+        """Return the drive with the dimensions from the parameters.
+
+        The dimensions have different names in Humble and Jazzy.
+        """
         parameters = self.parameters
         traction_track_width = parameters.traction_track_width or parameters.select_traction(
             parameters.front_wheel_track, parameters.rear_wheel_track

@@ -1,4 +1,7 @@
-"""Action servers of controllers: goals arrive on the event loop, and are executed in the update thread."""
+"""Action servers of controllers.
+
+Goals arrive on the event loop, and are executed in the update thread.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""``bicycle_steering_controller/BicycleSteeringController``: one driven wheel and one steered wheel."""
+"""``bicycle_steering_controller/BicycleSteeringController``: a bicycle.
+
+One wheel is driven, and one wheel is steered.
+"""
 
 from __future__ import annotations
 
@@ -13,9 +16,9 @@ from linkwright.nodes.parameter_tables import HUMBLE, JAZZY, parameter
 class Parameters(SteeringParameters):
     """The parameters shared by all steered vehicles, and the dimensions of this vehicle."""
 
-    traction_wheel_radius: float = parameter(0.0, description="of the wheel that drives, in m", only=JAZZY)
-    front_wheel_radius: float = parameter(0.0, description="of the wheel in front, in m", only=HUMBLE)
-    rear_wheel_radius: float = parameter(0.0, description="of the wheel behind, in m", only=HUMBLE)
+    traction_wheel_radius: float = parameter(0.0, description="the radius of the driven wheel, in m", only=JAZZY)
+    front_wheel_radius: float = parameter(0.0, description="the radius of the front wheel, in m", only=HUMBLE)
+    rear_wheel_radius: float = parameter(0.0, description="the radius of the rear wheel, in m", only=HUMBLE)
 
 
 class BicycleSteeringController(SteeringController[Parameters]):
@@ -26,7 +29,10 @@ class BicycleSteeringController(SteeringController[Parameters]):
     JOINTS = (1, 1)
 
     def drive(self) -> CarDrive:
-        """Return the drive with the dimensions from the parameters, which have different names in Humble and Jazzy."""
+        """Return the drive with the dimensions from the parameters.
+
+        The dimensions have different names in Humble and Jazzy.
+        """
         parameters = self.parameters
         radius = parameters.traction_wheel_radius or parameters.select_traction(
             parameters.front_wheel_radius, parameters.rear_wheel_radius

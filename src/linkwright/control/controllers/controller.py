@@ -47,7 +47,9 @@ InterfaceNames = Sequence[str] | Interfaces
 
 
 class ControllerError(LinkwrightError):
-    """Raised by a controller that cannot be configured, activated or updated; the message is logged.
+    """Raised by a controller that cannot be configured, activated or updated.
+
+    The message is logged.
 
     Args:
         message: what is wrong, and how to fix it.
@@ -100,11 +102,11 @@ class Controller(ABC, Generic[P]):
 
     PARAMETERS: ClassVar[type[Any]] = NoParameters
 
-    def __init__(self, place: ControllerContext) -> None:
-        self.name = place.name
-        self.node = place.node
-        self.update_rate = place.update_rate
-        self.robot_description = place.robot_description
+    def __init__(self, context: ControllerContext) -> None:
+        self.name = context.name
+        self.node = context.node
+        self.update_rate = context.update_rate
+        self.robot_description = context.robot_description
         self.commands: list[CommandInterface] = []
         self.states: list[StateInterface] = []
         self.references: list[CommandInterface] = []
@@ -112,13 +114,13 @@ class Controller(ABC, Generic[P]):
         self.is_chained = False
         self.time_ns = 0
         self.state: LifecycleState = UNCONFIGURED
-        self._parameters: ParameterTable[P] = ParameterTable(place.node.graph_node, self.PARAMETERS)
+        self._parameters: ParameterTable[P] = ParameterTable(context.node.graph_node, self.PARAMETERS)
         for name, hint in self._parameters.unknown():
             message = phrase("'{name}' is not a parameter of this controller", name=name)
             self.node.logger.warning(message if hint is None else joined((message, hint), "; "))
 
     @classmethod
-    def variant(cls, parameter_names: Collection[str]) -> type[Controller[Any]]:  # noqa: ARG003 - for those that share a name
+    def variant(cls, parameter_names: Collection[str]) -> type[Controller[Any]]:  # noqa: ARG003 - overrides use it
         """Return the controller class for which the parameters are intended.
 
         If two packages use the same type name, this may return another class. `parameter_names` are the set parameters.
@@ -127,12 +129,15 @@ class Controller(ABC, Generic[P]):
 
     @property
     def parameters(self) -> P:
-        """The current parameters; do not store them, because they may change at run time."""
+        """The current parameters.
+
+        Do not store them, because they may change at run time.
+        """
         return self._parameters.values
 
     @cached_property
     def robot(self) -> Robot | None:
-        """The parsed robot description; None if no description is known or it cannot be parsed."""
+        """The parsed robot description, or None if it is unknown or cannot be parsed."""
         from linkwright.descriptions import DescriptionLibrary
 
         return DescriptionLibrary().read(self.robot_description).robot if self.robot_description else None
@@ -171,7 +176,9 @@ class Controller(ABC, Generic[P]):
         """
 
     def on_activate(self) -> None:
-        """Start the controller; `commands` and `states` are available from now on.
+        """Start the controller.
+
+        `commands` and `states` are available from this call until `on_deactivate` returns.
 
         Raises:
             ControllerError: the controller cannot be activated; it stays inactive.
@@ -190,7 +197,7 @@ class Controller(ABC, Generic[P]):
         """
 
     def on_error(self) -> None:
-        """Handle an exception other than `ControllerError` that another callback or an update raised."""
+        """Handle an exception, other than `ControllerError`, of a callback or an update."""
 
     def on_set_chained_mode(self, chained: bool) -> None:
         """Handle a change of chained mode, in which another controller commands the references.

@@ -1,4 +1,4 @@
-"""``diff_drive_controller/DiffDriveController``: a differential drive with wheels on two sides.
+"""``diff_drive_controller/DiffDriveController``: a differential drive.
 
 Source: ros2_controllers for Humble and Jazzy (parameters, defaults, topics, messages). Deliberate differences:
 open-loop odometry integrates the limited velocity, wheels may start at any angle, and a command that is not finite
@@ -31,14 +31,14 @@ class LinearLimits:
 class Parameters(LimitedDriveParameters):
     """Parameters of the controller."""
 
-    left_wheel_names: tuple[str, ...] = parameter((), description="joints of the wheels on the left side")
-    right_wheel_names: tuple[str, ...] = parameter((), description="joints of the wheels on the right side")
-    wheel_separation: float = parameter(0.0, description="between the wheels of both sides, in m")
-    wheels_per_side: int = parameter(0, description="without effect: the wheel names determine it", only=HUMBLE)
-    wheel_radius: float = parameter(0.0, description="in m")
-    wheel_separation_multiplier: float = parameter(1.0, description="corrects wheel_separation")
-    left_wheel_radius_multiplier: float = parameter(1.0, description="corrects wheel_radius on the left")
-    right_wheel_radius_multiplier: float = parameter(1.0, description="corrects wheel_radius on the right")
+    left_wheel_names: tuple[str, ...] = parameter((), description="the joints of the left wheels")
+    right_wheel_names: tuple[str, ...] = parameter((), description="the joints of the right wheels")
+    wheel_separation: float = parameter(0.0, description="the distance between the left and right wheels, in m")
+    wheels_per_side: int = parameter(0, description="no effect: the wheel names determine it", only=HUMBLE)
+    wheel_radius: float = parameter(0.0, description="the radius of the wheels, in m")
+    wheel_separation_multiplier: float = parameter(1.0, description="a factor for wheel_separation")
+    left_wheel_radius_multiplier: float = parameter(1.0, description="a factor for wheel_radius on the left")
+    right_wheel_radius_multiplier: float = parameter(1.0, description="a factor for wheel_radius on the right")
     linear: LinearLimits = LinearLimits()
 
 
@@ -64,7 +64,7 @@ class DiffDriveController(LimitedDrive[Parameters]):
         return [f"{wheel}/{kind}" for wheel in (*parameters.left_wheel_names, *parameters.right_wheel_names)]
 
     def reference_interfaces(self) -> Sequence[str]:
-        """Return the references: the forward velocity in m/s, and the angular velocity about z in rad/s."""
+        """Return the references: the forward velocity in m/s, and the yaw rate in rad/s."""
         return ("linear/velocity", "angular/velocity")
 
     def limits(self) -> Mapping[str, SpeedLimits]:

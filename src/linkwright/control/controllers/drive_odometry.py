@@ -16,7 +16,9 @@ _AXES = 6
 
 
 def variances(name: str, values: tuple[float, ...]) -> Variances:
-    """Check that a parameter has six values, and return them as the variances of x, y, z, roll, pitch and yaw.
+    """Return the six values of a parameter as variances.
+
+    The order is x, y, z, roll, pitch, yaw.
 
     Raises:
         ControllerError: the parameter does not have six values.
@@ -31,7 +33,9 @@ def variances(name: str, values: tuple[float, ...]) -> Variances:
 
 
 def frame_prefix(node: ControllerNode, prefix: str, *, enabled: bool = True) -> str:
-    """Return the prefix of frame names; it is empty or ends with a slash, and never begins with one.
+    """Return the prefix of frame names.
+
+    The prefix is empty or ends with a slash, and never begins with one.
 
     Args:
         node: the controller's node.

@@ -31,7 +31,7 @@ class MultiInterfaceParameters:
     """Parameters of ``MultiInterfaceForwardCommandController``."""
 
     joint: str = parameter("", description="the joint whose interfaces are commanded")
-    interface_names: tuple[str, ...] = parameter((), description="its interfaces")
+    interface_names: tuple[str, ...] = parameter((), description="the interfaces of the joint")
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -1,4 +1,4 @@
-"""Gripper controllers, which open and close a gripper on request of an action.
+"""Gripper controllers: action servers that open and close a gripper.
 
 ``position_controllers/GripperActionController`` forwards the position, ``effort_controllers/GripperActionController``
 computes an effort by PID from the position error, and ``parallel_gripper_action_controller/GripperActionController``
@@ -29,13 +29,15 @@ from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 class GripperParameters:
     """Parameters of all grippers."""
 
-    action_monitor_rate: float = parameter(20.0, description="how often feedback comes, in Hz", check=at_least(0.1))
+    action_monitor_rate: float = parameter(20.0, description="the rate of feedback, in Hz", check=at_least(0.1))
     joint: str = parameter("", read_only=True, description="the joint of the gripper", check=not_empty)
-    goal_tolerance: float = parameter(0.01, description="rad or m", check=at_least(0.0))
-    max_effort: float = parameter(0.0, description="Nm or N; 0 for any", check=at_least(0.0))
-    allow_stalling: bool = parameter(False, description="a goal succeeds when the gripper holds something")
-    stall_velocity_threshold: float = parameter(0.001, description="rad/s or m/s")
-    stall_timeout: float = parameter(1.0, description="seconds without motion", check=at_least(0.0))
+    goal_tolerance: float = parameter(0.01, description="the maximum final error, in rad or m", check=at_least(0.0))
+    max_effort: float = parameter(0.0, description="the maximum effort, Nm or N; 0 for any", check=at_least(0.0))
+    allow_stalling: bool = parameter(False, description="whether a goal succeeds when the gripper stalls")
+    stall_velocity_threshold: float = parameter(0.001, description="the velocity that counts as 0, in rad/s or m/s")
+    stall_timeout: float = parameter(
+        1.0, description="the time without motion after which the gripper has stalled, in seconds", check=at_least(0.0)
+    )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -49,18 +51,25 @@ class EffortGripperParameters(GripperParameters):
 class ParallelGripperParameters(GripperParameters):
     """Parameters of the gripper with interfaces for the maximum effort and velocity."""
 
-    max_effort: float = parameter(10.0, description="N, for goals without an effort", check=at_least(0.0))
-    max_velocity: float = parameter(0.1, description="m/s, for goals without a velocity", check=at_least(0.0))
+    max_effort: float = parameter(
+        10.0, description="the maximum effort for goals without an effort, in N", check=at_least(0.0)
+    )
+    max_velocity: float = parameter(
+        0.1, description="the maximum velocity for goals without a velocity, in m/s", check=at_least(0.0)
+    )
     state_interfaces: tuple[str, ...] = (POSITION, VELOCITY)
-    max_effort_interface: str = parameter("", description="the command interface that gets the greatest effort")
-    max_velocity_interface: str = parameter("", description="the command interface that gets the greatest velocity")
+    max_effort_interface: str = parameter("", description="the command interface for the maximum effort")
+    max_velocity_interface: str = parameter("", description="the command interface for the maximum velocity")
 
 
 P = TypeVar("P", bound=GripperParameters)
 
 
 class Gripper(Controller[P]):
-    """The base class of gripper controllers, which accepts goals and decides when they end."""
+    """The base class of gripper controllers.
+
+    It accepts goals, and decides when they end.
+    """
 
     ACTION: ClassVar[str] = "control_msgs/action/GripperCommand"
 
@@ -177,7 +186,10 @@ class Gripper(Controller[P]):
         self._max_effort = request.command.max_effort
 
     def _command(self, error: float, velocity: float, period_s: float) -> float:
-        """Write the commands, and return the effort to report, which is the maximum effort by default."""
+        """Write the commands, and return the effort to report.
+
+        By default, this is the maximum effort.
+        """
         self.commands[0].value = self._wanted
         return self._max_effort
 
@@ -229,7 +241,10 @@ class ParallelGripper(Gripper[ParallelGripperParameters]):
     ACTION = "control_msgs/action/ParallelGripperCommand"
 
     def command_interfaces(self) -> InterfaceNames:
-        """Return the position interface, and the interfaces for the maximum effort and velocity if they are named."""
+        """Return the position interface, and the interfaces for maximum effort and velocity.
+
+        The last two are left out if the parameters do not name them.
+        """
         parameters = self.parameters
         limit_interfaces = [
             name for name in (parameters.max_effort_interface, parameters.max_velocity_interface) if name

@@ -1,4 +1,6 @@
-"""Husarion's ``mecanum_drive_controller/MecanumDriveController``, for the robots ROSbot XL and Panther.
+"""Husarion's ``mecanum_drive_controller/MecanumDriveController``.
+
+It is for the robots ROSbot XL and Panther.
 
 A different controller of ros2_controllers has the same type name. Husarion's controller has the parameters and topics
 of diff_drive_controller, with four named wheels.
@@ -36,24 +38,24 @@ _NO_LINEAR_LIMITS = LinearLimits()
 class Parameters(LimitedDriveParameters):
     """Parameters of the controller."""
 
-    front_left_wheel_name: str = parameter("", description="a joint")
-    front_right_wheel_name: str = parameter("", description="a joint")
-    rear_left_wheel_name: str = parameter("", description="a joint")
-    rear_right_wheel_name: str = parameter("", description="a joint")
-    wheel_separation_x: float = parameter(0.0, description="between front and rear wheels, in m")
-    wheel_separation_y: float = parameter(0.0, description="between left and right wheels, in m")
-    wheel_radius: float = parameter(0.0, description="in m")
-    wheel_separation_x_multiplier: float = parameter(1.0, description="corrects wheel_separation_x")
-    wheel_separation_y_multiplier: float = parameter(1.0, description="corrects wheel_separation_y")
-    wheel_radius_multiplier: float = parameter(1.0, description="corrects wheel_radius")
-    use_stamped_vel: bool = parameter(True, description="whether ~/cmd_vel_unstamped is left out")
+    front_left_wheel_name: str = parameter("", description="the joint of the front left wheel")
+    front_right_wheel_name: str = parameter("", description="the joint of the front right wheel")
+    rear_left_wheel_name: str = parameter("", description="the joint of the rear left wheel")
+    rear_right_wheel_name: str = parameter("", description="the joint of the rear right wheel")
+    wheel_separation_x: float = parameter(0.0, description="the distance between front and rear wheels, in m")
+    wheel_separation_y: float = parameter(0.0, description="the distance between left and right wheels, in m")
+    wheel_radius: float = parameter(0.0, description="the radius of the wheels, in m")
+    wheel_separation_x_multiplier: float = parameter(1.0, description="a factor for wheel_separation_x")
+    wheel_separation_y_multiplier: float = parameter(1.0, description="a factor for wheel_separation_y")
+    wheel_radius_multiplier: float = parameter(1.0, description="a factor for wheel_radius")
+    use_stamped_vel: bool = parameter(True, description="false to receive ~/cmd_vel_unstamped, too")
     linear: LinearLimits = _NO_LINEAR_LIMITS
 
 
 class HusarionMecanumController(LimitedDrive[Parameters]):
     """A controller of a mecanum drive.
 
-    Wheel velocities are computed from velocity commands, which may be sideways, and odometry from the states of the
+    Wheel velocities are computed from velocity commands, sideways motion included, and odometry from the states of the
     wheels.
     """
 
@@ -65,7 +67,7 @@ class HusarionMecanumController(LimitedDrive[Parameters]):
         return [f"{name}/{kind}" for name in (*names, parameters.rear_right_wheel_name)]
 
     def command_interfaces(self) -> InterfaceNames:
-        """Return the velocity interfaces of the wheels: front left, front right, rear left, rear right."""
+        """Return the wheels' velocity interfaces: front left, front right, rear left, rear right."""
         return self._wheel_interfaces(VELOCITY)
 
     def state_interfaces(self) -> InterfaceNames:

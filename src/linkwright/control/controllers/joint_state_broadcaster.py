@@ -30,12 +30,14 @@ class InterfaceMap:
 class Parameters:
     """Parameters of the broadcaster."""
 
-    use_local_topics: bool = parameter(False, description="topics in the namespace of the controller's own name")
-    joints: tuple[str, ...] = parameter((), description="only these joints; used together with interfaces")
-    extra_joints: tuple[str, ...] = parameter((), description="joints that are published too, with 0")
-    interfaces: tuple[str, ...] = parameter((), description="only these interfaces; used together with joints")
+    use_local_topics: bool = parameter(False, description="whether topics are in the namespace of the controller")
+    joints: tuple[str, ...] = parameter((), description="the joints to publish, combined with interfaces")
+    extra_joints: tuple[str, ...] = parameter((), description="additional joints, published with the value 0")
+    interfaces: tuple[str, ...] = parameter((), description="the interfaces to publish, combined with joints")
     map_interface_to_joint_state: InterfaceMap = InterfaceMap()
-    use_urdf_to_filter: bool = parameter(True, description="joint_states has only joints of the robot's description")
+    use_urdf_to_filter: bool = parameter(
+        True, description="whether joint_states contains only joints of the robot's description"
+    )
     frame_id: str = parameter("", description="the frame_id of joint_states")
 
 

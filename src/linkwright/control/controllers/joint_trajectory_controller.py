@@ -1,4 +1,4 @@
-"""``joint_trajectory_controller/JointTrajectoryController``, which moves joints along trajectories.
+"""``joint_trajectory_controller/JointTrajectoryController``: motion along trajectories.
 
 Source: ros2_controllers (parameters, topics, action, service, times of commands, tolerances, messages). The controller
 commands the state of the trajectory at the next update, and checks the tolerances against its state at the current
@@ -305,7 +305,7 @@ class JointTrajectoryController(Controller[Parameters]):
         desired = self._next_sample if time_ns == self._next_sample_ns else trajectory.sample(time_ns)
         next_sample = trajectory.sample(time_ns + self._period_ns)
         assert desired is not None
-        assert next_sample is not None, "it has begun now or earlier"
+        assert next_sample is not None, "the trajectory has begun"
         self._next_sample_ns, self._next_sample = time_ns + self._period_ns, next_sample
         self._desired, self._computed_error = desired.state, None
         self._check_and_command(time_ns, period_s, desired.state, next_sample, first=is_first)

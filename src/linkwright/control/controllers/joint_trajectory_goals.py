@@ -1,4 +1,4 @@
-"""Validation of trajectory messages, and their conversion to trajectories of all joints of a controller.
+"""Validation of trajectory messages, and conversion to trajectories of a controller.
 
 Source: joint_trajectory_controller of ros2_controllers (error messages, effects of missing joints, tolerances of
 goals).
@@ -26,7 +26,7 @@ def nanoseconds(time: Any) -> int:
 
 
 def trajectory_error(message: Any, parameters: Parameters, now_ns: int) -> str | None:
-    """Return the error message of ros2_controllers for an invalid trajectory, or None if it is valid.
+    """Return ros2_controllers' error message for an invalid trajectory, or None.
 
     Args:
         message: trajectory_msgs/msg/JointTrajectory.
@@ -120,7 +120,7 @@ def trajectory_of(message: Any, parameters: Parameters, held_positions: Sequence
 
 
 def tolerances_of(goal: Any, joints: Sequence[str], default: Tolerances, log: Callable[[str], object]) -> Tolerances:
-    """Return the controller's tolerances, with the tolerances of the goal for the joints that it names.
+    """Return the controller's tolerances, overridden by the tolerances of a goal.
 
     Args:
         goal: control_msgs/action/FollowJointTrajectory_Goal.

@@ -59,24 +59,26 @@ class Gains(PidParameters):
     """The gains of a joint's PID controller."""
 
     ff_velocity_scale: float = parameter(0.0, description="the fraction of the desired velocity to add")
-    angle_wraparound: bool = parameter(False, description="whether the joint turns without an end", only=HUMBLE)
+    angle_wraparound: bool = parameter(False, description="whether the joint rotates without limits", only=HUMBLE)
     normalize_error: bool = parameter(False, description="an older name of angle_wraparound", only=HUMBLE)
 
 
 @dataclass(frozen=True, kw_only=True)
 class JointConstraints:
-    """The tolerances of a joint's position, in rad or m; 0 for no limit."""
+    """The tolerances of a joint's position, in rad or m, where 0 means no limit."""
 
-    trajectory: float = parameter(0.0, description="on the way, in rad or m; 0 for any")
-    goal: float = parameter(0.0, description="at the end, in rad or m; 0 for any")
+    trajectory: float = parameter(0.0, description="along the trajectory, in rad or m; 0 for no limit")
+    goal: float = parameter(0.0, description="at the end, in rad or m; 0 for no limit")
 
 
 @dataclass(frozen=True, kw_only=True)
 class Constraints:
     """The tolerances of all joints, and the time limit of goals."""
 
-    stopped_velocity_tolerance: float = parameter(0.01, description="the velocity at the end, in rad/s or m/s")
-    goal_time: float = parameter(0.0, description="seconds after the end; 0 for any time", check=at_least(0.0))
+    stopped_velocity_tolerance: float = parameter(0.01, description="the maximum velocity at the end, in rad/s or m/s")
+    goal_time: float = parameter(
+        0.0, description="the maximum delay of the goal, in seconds; 0 for no limit", check=at_least(0.0)
+    )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -87,38 +89,40 @@ class Parameters:
         (), read_only=True, description="the joints that trajectories move", check=not_empty
     )
     command_joints: tuple[str, ...] = parameter(
-        (), read_only=True, description="the joints that are commanded, where these have other names"
+        (), read_only=True, description="the names of the commanded joints, if they differ"
     )
     command_interfaces: tuple[str, ...] = parameter(
-        (), read_only=True, description="of each joint: position, velocity, ...", check=_check_command_combination
+        (), read_only=True, description="the command interfaces of each joint", check=_check_command_combination
     )
     state_interfaces: tuple[str, ...] = parameter(
-        (), read_only=True, description="of each joint: position, velocity, ...", check=_check_state_combination
+        (), read_only=True, description="the state interfaces of each joint", check=_check_state_combination
     )
-    allow_partial_joints_goal: bool = parameter(False, description="trajectories may name some of the joints")
+    allow_partial_joints_goal: bool = parameter(False, description="whether trajectories may leave out joints")
     open_loop_control: bool = parameter(
-        False, read_only=True, description="trajectories begin at the last command", only=HUMBLE
+        False, read_only=True, description="whether trajectories begin at the last command", only=HUMBLE
     )
     interpolate_from_desired_state: bool = parameter(
-        False, read_only=True, description="trajectories begin at the last command", only=JAZZY
+        False, read_only=True, description="whether trajectories begin at the last command", only=JAZZY
     )
-    allow_integration_in_goal_trajectories: bool = parameter(False, description="points may have no positions")
+    allow_integration_in_goal_trajectories: bool = parameter(False, description="whether points may lack positions")
     set_last_command_interface_value_as_state_on_activation: bool = parameter(
         True, description="whether the controller starts at the last command, if there is one"
     )
     state_publish_rate: float | None = parameter(
-        None, description="Hz; without it the state comes at each update", only=HUMBLE
+        None, description="the rate of states, in Hz; each update if not set", only=HUMBLE
     )
     action_monitor_rate: float = parameter(
-        20.0, read_only=True, description="how often feedback comes, in Hz", check=at_least(0.1)
+        20.0, read_only=True, description="the rate of feedback, in Hz", check=at_least(0.1)
     )
     interpolation_method: str = parameter(
-        "splines", read_only=True, description="between the points", check=one_of("splines", "none")
+        "splines", read_only=True, description="the interpolation between points", check=one_of("splines", "none")
     )
     allow_nonzero_velocity_at_trajectory_end: bool = parameter(
         True, description="whether a trajectory may end in motion", later=False
     )
-    cmd_timeout: float = parameter(0.0, description="seconds after the end of a trajectory; more than goal_time")
+    cmd_timeout: float = parameter(
+        0.0, description="the time after the end of a trajectory until it is aborted, in seconds; more than goal_time"
+    )
     gains: Mapping[str, Gains] = for_each("joints", Gains)
     constraints: Constraints = Constraints()
     joint_constraints: Mapping[str, JointConstraints] = for_each("joints", JointConstraints, prefix="constraints")

@@ -1,4 +1,4 @@
-"""The base class of drives that follow ``~/cmd_vel`` within limits, with their topics, odometry and parameters.
+"""The base class of drives that follow ``~/cmd_vel`` within limits.
 
 Source: diff_drive_controller of ros2_controllers, which is also the model of Husarion's mecanum controller.
 """
@@ -37,19 +37,19 @@ class LimitedDriveParameters:
     """Parameters of all drives with limits."""
 
     tf_frame_prefix_enable: bool = parameter(True, description="whether frames have a prefix")
-    tf_frame_prefix: str = parameter("", description="the prefix of frames; the namespace where it is empty")
-    odom_frame_id: str = parameter("odom", description="the frame that the robot moves in")
+    tf_frame_prefix: str = parameter("", description="the prefix of frames; the namespace if empty")
+    odom_frame_id: str = parameter("odom", description="the frame in which the robot moves")
     base_frame_id: str = parameter("base_link", description="the frame of the robot")
-    pose_covariance_diagonal: tuple[float, ...] = parameter(_NO_VARIANCES, description="variances of the pose")
-    twist_covariance_diagonal: tuple[float, ...] = parameter(_NO_VARIANCES, description="variances of the velocity")
-    open_loop: bool = parameter(False, description="odometry from the commands of the wheels, not from their states")
-    position_feedback: bool = parameter(True, description="odometry from positions of the wheels, not from velocities")
+    pose_covariance_diagonal: tuple[float, ...] = parameter(_NO_VARIANCES, description="the variances of the pose")
+    twist_covariance_diagonal: tuple[float, ...] = parameter(_NO_VARIANCES, description="the variances of the velocity")
+    open_loop: bool = parameter(False, description="whether odometry uses wheel commands instead of wheel states")
+    position_feedback: bool = parameter(True, description="whether odometry uses wheel positions instead of velocities")
     enable_odom_tf: bool = parameter(True, description="whether the transform of odometry is published")
-    cmd_vel_timeout: float = parameter(0.5, description="how long a command holds, in seconds")
+    cmd_vel_timeout: float = parameter(0.5, description="how long a command is valid, in seconds")
     publish_limited_velocity: bool = parameter(False, description="whether ~/cmd_vel_out is published")
-    velocity_rolling_window_size: int = parameter(10, description="window of the rolling mean of odometry")
-    use_stamped_vel: bool = parameter(True, description="whether ~/cmd_vel_unstamped is left out", only=HUMBLE)
-    publish_rate: float = parameter(50.0, description="of odometry, in Hz")
+    velocity_rolling_window_size: int = parameter(10, description="the window of the rolling mean of odometry")
+    use_stamped_vel: bool = parameter(True, description="false to receive ~/cmd_vel_unstamped, too", only=HUMBLE)
+    publish_rate: float = parameter(50.0, description="the rate of odometry, in Hz")
     angular: AngularLimits = _NO_ANGULAR_LIMITS
 
 

@@ -1,4 +1,4 @@
-"""``mecanum_drive_controller/MecanumDriveController``: a drive of four wheels with rollers at 45 degrees.
+"""``mecanum_drive_controller/MecanumDriveController``: a drive of four mecanum wheels.
 
 Source: ros2_controllers for Jazzy (parameters, defaults, topics, the order of wheels). Deliberate differences: odometry
 follows arcs, and a command that is not finite stops the robot.
@@ -41,9 +41,9 @@ class Kinematics:
     """The dimensions of the drive."""
 
     base_frame_offset: BaseFrameOffset = _NO_OFFSET
-    wheels_radius: float = parameter(0.0, description="in m")
-    sum_of_robot_center_projection_on_X_Y_axis: float = parameter(  # noqa: N815 - as ros2_controllers have it
-        0.0, description="half the wheelbase and half the track together, in m"
+    wheels_radius: float = parameter(0.0, description="the radius of the wheels, in m")
+    sum_of_robot_center_projection_on_X_Y_axis: float = parameter(  # noqa: N815 - the name in ros2_controllers
+        0.0, description="half the wheelbase plus half the track, in m"
     )
 
 
@@ -54,25 +54,25 @@ _NO_KINEMATICS = Kinematics()
 class Parameters:
     """Parameters of the controller."""
 
-    reference_timeout: float = parameter(0.0, description="how long a command holds, in seconds; 0 for one update")
+    reference_timeout: float = parameter(0.0, description="how long a command is valid, in seconds; 0 for one update")
     front_left_wheel_command_joint_name: str = parameter("", description="the joint of the wheel")
     front_right_wheel_command_joint_name: str = parameter("", description="the joint of the wheel")
     rear_right_wheel_command_joint_name: str = parameter("", description="the joint of the wheel")
     rear_left_wheel_command_joint_name: str = parameter("", description="the joint of the wheel")
-    front_left_wheel_state_joint_name: str = parameter("", description="the measured joint, if it is another one")
-    front_right_wheel_state_joint_name: str = parameter("", description="the measured joint, if it is another one")
-    rear_right_wheel_state_joint_name: str = parameter("", description="the measured joint, if it is another one")
-    rear_left_wheel_state_joint_name: str = parameter("", description="the measured joint, if it is another one")
+    front_left_wheel_state_joint_name: str = parameter("", description="the measured joint, if it differs")
+    front_right_wheel_state_joint_name: str = parameter("", description="the measured joint, if it differs")
+    rear_right_wheel_state_joint_name: str = parameter("", description="the measured joint, if it differs")
+    rear_left_wheel_state_joint_name: str = parameter("", description="the measured joint, if it differs")
     kinematics: Kinematics = _NO_KINEMATICS
     tf_frame_prefix_enable: bool = parameter(True, description="whether frames have a prefix")
-    tf_frame_prefix: str = parameter("", description="the prefix of frames; the namespace where it is empty")
+    tf_frame_prefix: str = parameter("", description="the prefix of frames; the namespace if empty")
     base_frame_id: str = parameter("base_link", description="the frame of the robot")
-    odom_frame_id: str = parameter("odom", description="the frame that the robot moves in")
+    odom_frame_id: str = parameter("odom", description="the frame in which the robot moves")
     enable_odom_tf: bool = parameter(True, description="whether the transform of odometry is published")
     twist_covariance_diagonal: tuple[float, ...] = parameter(
-        _DEFAULT_VARIANCES, description="variances of the velocity"
+        _DEFAULT_VARIANCES, description="the variances of the velocity"
     )
-    pose_covariance_diagonal: tuple[float, ...] = parameter(_DEFAULT_VARIANCES, description="variances of the pose")
+    pose_covariance_diagonal: tuple[float, ...] = parameter(_DEFAULT_VARIANCES, description="the variances of the pose")
 
 
 _CORNERS = ("front_left", "front_right", "rear_right", "rear_left")
@@ -81,7 +81,7 @@ _CORNERS = ("front_left", "front_right", "rear_right", "rear_left")
 class MecanumDriveController(Controller[Parameters]):
     """A controller of a mecanum drive.
 
-    Wheel velocities are computed from velocity commands, which may be sideways, and odometry from the states of the
+    Wheel velocities are computed from velocity commands, sideways motion included, and odometry from the states of the
     wheels.
     """
 
@@ -89,15 +89,18 @@ class MecanumDriveController(Controller[Parameters]):
 
     @classmethod
     def variant(cls, parameter_names: Collection[str]) -> type[Controller[Any]]:
-        """Return Husarion's controller of the same type name if its parameters are set, and this class otherwise."""
+        """Return Husarion's controller if its parameters are set, and this class otherwise.
+
+        Both controllers have the same type name.
+        """
         return HusarionMecanumController if "front_left_wheel_name" in parameter_names else cls
 
     def command_interfaces(self) -> InterfaceNames:
-        """Return the velocity interfaces of the wheels: front left, front right, rear right, rear left."""
+        """Return the wheels' velocity interfaces: front left, front right, rear right, rear left."""
         return [f"{name}/{VELOCITY}" for name in self._joints("command")]
 
     def state_interfaces(self) -> InterfaceNames:
-        """Return the velocity interfaces of the wheels: front left, front right, rear right, rear left."""
+        """Return the wheels' velocity interfaces: front left, front right, rear right, rear left."""
         pairs = zip(self._joints("state"), self._joints("command"), strict=True)
         return [f"{measured or commanded}/{VELOCITY}" for measured, commanded in pairs]
 
@@ -105,7 +108,10 @@ class MecanumDriveController(Controller[Parameters]):
         return [getattr(self.parameters, f"{corner}_wheel_{kind}_joint_name") for corner in _CORNERS]
 
     def reference_interfaces(self) -> Sequence[str]:
-        """Return the references: the velocities forward and to the left in m/s, and about z in rad/s."""
+        """Return the references: the velocities forward and to the left, and the yaw rate.
+
+        Units are m/s and rad/s.
+        """
         return ("linear/x/velocity", "linear/y/velocity", "angular/z/velocity")
 
     def on_configure(self) -> None:
@@ -190,7 +196,7 @@ class MecanumDriveController(Controller[Parameters]):
             command.value = value
 
     def _base_velocity(self, forward: float, sideways: float, angular: float) -> tuple[float, float, float]:
-        """Return the velocity of the robot's frame, computed from the velocity of the centre of the wheels."""
+        """Return the velocity of the robot's frame from the velocity of the wheels' centre."""
         offset = self._settings.kinematics.base_frame_offset
         base_forward, base_sideways = _rotate(
             forward - offset.y * angular, sideways + offset.x * angular, -offset.theta

@@ -42,5 +42,5 @@ class _Call:
         self._call = function
 
     def publish(self, message: None) -> None:
-        """Call the function; the message is ignored."""
+        """Call the function, and ignore the message."""
         self._call()

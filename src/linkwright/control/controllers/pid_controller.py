@@ -25,7 +25,10 @@ _LATEST = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 
 
 def _check_interfaces(name: str, value: tuple[str, ...]) -> Phrase | None:
-    """Return an error message unless a list contains one or two interfaces: a value, and optionally its derivative."""
+    """Return an error message unless a list contains one or two interfaces.
+
+    The second interface is the derivative of the first.
+    """
     if not 1 <= len(value) <= 2:
         return phrase("parameter '{name}' must contain one interface, or an interface and its derivative", name=name)
     return None
@@ -35,27 +38,25 @@ def _check_interfaces(name: str, value: tuple[str, ...]) -> Phrase | None:
 class Gains(PidParameters):
     """The PID gains of a degree of freedom."""
 
-    feedforward_gain: float = parameter(0.0, description="how much of the reference is added to the command")
-    angle_wraparound: bool = parameter(False, description="whether it turns without an end")
-    save_i_term: bool = parameter(True, description="keep the integral when the controller is activated again")
+    feedforward_gain: float = parameter(0.0, description="the factor of the reference in the command")
+    angle_wraparound: bool = parameter(False, description="whether the degree of freedom rotates without limits")
+    save_i_term: bool = parameter(True, description="whether the integral is kept on activation")
 
 
 @dataclass(frozen=True, kw_only=True)
 class Parameters:
     """Parameters of the controller."""
 
-    dof_names: tuple[str, ...] = parameter(
-        (), read_only=True, description="the joints that are commanded", check=not_empty
-    )
+    dof_names: tuple[str, ...] = parameter((), read_only=True, description="the commanded joints", check=not_empty)
     reference_and_state_dof_names: tuple[str, ...] = parameter(
-        (), read_only=True, description="the measured joints, if they are other ones"
+        (), read_only=True, description="the measured joints, if they differ"
     )
-    command_interface: str = parameter("", read_only=True, description="position, velocity or effort", check=not_empty)
+    command_interface: str = parameter("", read_only=True, description="the commanded interface", check=not_empty)
     reference_and_state_interfaces: tuple[str, ...] = parameter(
-        (), read_only=True, description="the measured values: position, velocity", check=_check_interfaces
+        (), read_only=True, description="the measured interfaces: a value and its derivative", check=_check_interfaces
     )
-    use_external_measured_states: bool = parameter(False, description="states come from ~/measured_state")
-    enable_feedforward: bool = parameter(False, description="whether feedforward_gain counts from the beginning")
+    use_external_measured_states: bool = parameter(False, description="whether states are received on ~/measured_state")
+    enable_feedforward: bool = parameter(False, description="whether feedforward_gain applies at the start")
     gains: Mapping[str, Gains] = for_each("dof_names", Gains)
 
     @property
@@ -74,7 +75,7 @@ class PidController(Controller[Parameters]):
         return [f"{dof_name}/{self.parameters.command_interface}" for dof_name in self.parameters.dof_names]
 
     def state_interfaces(self) -> InterfaceNames:
-        """Return the state interfaces, ordered by kind; none if states are received on a topic."""
+        """Return the state interfaces by kind, or none if states are received on a topic."""
         return () if self.parameters.use_external_measured_states else self._interface_names()
 
     def reference_interfaces(self) -> Sequence[str]:

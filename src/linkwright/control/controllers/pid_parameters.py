@@ -19,16 +19,16 @@ class PidParameters:
     p: float = parameter(0.0, description="the proportional gain")
     i: float = parameter(0.0, description="the integral gain")
     d: float = parameter(0.0, description="the derivative gain")
-    i_clamp: float | None = parameter(None, description="bound of the integral term, above and below 0")
-    i_clamp_max: float = parameter(inf, description="the greatest integral term")
-    i_clamp_min: float = parameter(-inf, description="the least integral term")
-    u_clamp_max: float = parameter(inf, description="the greatest command")
-    u_clamp_min: float = parameter(-inf, description="the least command")
-    antiwindup: bool = parameter(False, description="bound the integral, and not only the integral term")
+    i_clamp: float | None = parameter(None, description="the maximum magnitude of the integral term")
+    i_clamp_max: float = parameter(inf, description="the maximum integral term")
+    i_clamp_min: float = parameter(-inf, description="the minimum integral term")
+    u_clamp_max: float = parameter(inf, description="the maximum command")
+    u_clamp_min: float = parameter(-inf, description="the minimum command")
+    antiwindup: bool = parameter(False, description="whether to bound the integral, not only the integral term")
     antiwindup_strategy: str = parameter(
         NONE, description="how the integral is bounded while the command is at its limit", check=one_of(*STRATEGIES)
     )
-    tracking_time_constant: float = parameter(0.0, description="of back_calculation, in seconds")
+    tracking_time_constant: float = parameter(0.0, description="the time constant of back_calculation, in seconds")
     error_deadband: float = parameter(1e-16, description="smaller errors do not change the integral")
 
     @property

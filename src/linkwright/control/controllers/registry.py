@@ -1,4 +1,6 @@
-"""The registry of controller classes by type name, from the entry points ``linkwright.controllers``.
+"""The registry of controller classes by type name.
+
+The classes are entry points of the group ``linkwright.controllers``.
 
 The type name ``diff_drive_controller/DiffDriveController``, for example, belongs to a subclass of `Controller`.
 """
@@ -45,6 +47,10 @@ def controller_class(type_name: str) -> type[Controller[Any]]:
         loaded_class: type[Controller[Any]] = entry.load()
     except Exception as error:
         message = phrase("the controller '{name}' cannot be imported", name=type_name)
-        hint = phrase("it is part of '{place}': {problem}", place=entry.distribution, problem=foreign(error))
+        hint = phrase(
+            "the Python package '{place}' provides it, but its import fails: {problem}",
+            place=entry.distribution,
+            problem=foreign(error),
+        )
         raise LinkwrightError(Diagnostic("CTL104", message, hint=hint)) from error
     return loaded_class

@@ -1,4 +1,4 @@
-"""``ur_controllers/ScaledJointTrajectoryController``, which follows trajectories at a scaled speed.
+"""``ur_controllers/ScaledJointTrajectoryController``: trajectories at a scaled speed.
 
 Source: ur_controllers of the driver for Universal Robots (the parameter; the factor scales the time of a trajectory).
 """
@@ -26,7 +26,7 @@ class ScaledParameters(Parameters):
     speed_scaling_interface_name: str = parameter(
         "speed_scaling/speed_scaling_factor",
         read_only=True,
-        description="the state interface of the robot's speed, 1 as planned; empty always runs as planned",
+        description="the state interface of the speed factor, 1 for the planned speed; empty for none",
     )
 
 
@@ -59,7 +59,10 @@ class ScaledJointTrajectoryController(JointTrajectoryController):
         super().on_activate()
 
     def update(self, time_ns: int, period_s: float) -> None:
-        """Command the trajectory at the scaled time; each new trajectory resets the scaled time."""
+        """Command the trajectory at the scaled time.
+
+        Each new trajectory resets the scaled time.
+        """
         if self._factor is not None and isfinite(self._factor.value):
             self._delay_ns += round((1.0 - max(self._factor.value, 0.0)) * period_s * NANOSECONDS_PER_SECOND)
         super().update(time_ns - self._delay_ns, period_s)

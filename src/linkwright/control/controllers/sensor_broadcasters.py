@@ -32,8 +32,8 @@ def _check_covariance(name: str, value: tuple[float, ...]) -> Phrase | None:
 class ImuParameters:
     """Parameters of the IMU broadcaster."""
 
-    sensor_name: str = parameter("", description="the sensor, as ros2_control names it", check=not_empty)
-    frame_id: str = parameter("", description="the frame of the messages", check=not_empty)
+    sensor_name: str = parameter("", description="the name of the sensor in ros2_control", check=not_empty)
+    frame_id: str = parameter("", description="the frame_id of the messages", check=not_empty)
     static_covariance_orientation: tuple[float, ...] = parameter(
         _UNKNOWN_COVARIANCE, description="the covariance of the orientation, 9 values", check=_check_covariance
     )
@@ -118,8 +118,8 @@ class WrenchParameters:
     `offset` is added to the wrench before it is multiplied by `multiplier`.
     """
 
-    frame_id: str = parameter("", description="the frame of the messages", check=not_empty)
-    sensor_name: str = parameter("", description="the sensor, as ros2_control names it")
+    frame_id: str = parameter("", description="the frame_id of the messages", check=not_empty)
+    sensor_name: str = parameter("", description="the name of the sensor in ros2_control")
     interface_names: WrenchNames = WrenchNames()
     offset: Offset = Offset()
     multiplier: Multiplier = Multiplier()
@@ -129,13 +129,13 @@ class WrenchParameters:
 class RangeParameters:
     """Parameters of the range broadcaster."""
 
-    sensor_name: str = parameter("", description="the sensor, as ros2_control names it", check=not_empty)
-    frame_id: str = parameter("", description="the frame of the messages", check=not_empty)
+    sensor_name: str = parameter("", description="the name of the sensor in ros2_control", check=not_empty)
+    frame_id: str = parameter("", description="the frame_id of the messages", check=not_empty)
     radiation_type: int = parameter(0, description="0 for ultrasound, 1 for infrared")
-    field_of_view: float = parameter(0.52, description="rad")
-    min_range: float = parameter(0.52, description="m")
-    max_range: float = parameter(4.0, description="m")
-    variance: float = parameter(0.0, description="m²; Humble's messages have no place for it")
+    field_of_view: float = parameter(0.52, description="the field of view, in rad")
+    min_range: float = parameter(0.52, description="the minimum range, in m")
+    max_range: float = parameter(4.0, description="the maximum range, in m")
+    variance: float = parameter(0.0, description="the variance of the range, in m²; without effect in Humble")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -143,16 +143,16 @@ class TransformParameters:
     """Parameters of the transform that is published with a pose."""
 
     enable: bool = parameter(True, description="whether to publish the transform")
-    child_frame_id: str = parameter("", description="the frame at the pose; the name of the pose where it is empty")
-    publish_rate: float = parameter(0.0, description="Hz; 0 for each update", check=at_least(0.0))
+    child_frame_id: str = parameter("", description="the frame at the pose; pose_name if empty")
+    publish_rate: float = parameter(0.0, description="the rate in Hz; 0 for each update", check=at_least(0.0))
 
 
 @dataclass(frozen=True, kw_only=True)
 class PoseParameters:
     """Parameters of the pose broadcaster."""
 
-    frame_id: str = parameter("", description="the frame of the messages", check=not_empty)
-    pose_name: str = parameter("", description="the pose sensor, as ros2_control names it")
+    frame_id: str = parameter("", description="the frame_id of the messages", check=not_empty)
+    pose_name: str = parameter("", description="the name of the pose sensor in ros2_control")
     interface_names: PoseNames = PoseNames()
     tf: TransformParameters = TransformParameters()
 
@@ -161,7 +161,7 @@ P = TypeVar("P")
 
 
 class SensorBroadcaster(Controller[P]):
-    """The base class of broadcasters, which publish a message with their states at each update."""
+    """The base class of broadcasters that publish their states in a message at each update."""
 
     TYPE: ClassVar[str]
     TOPIC: ClassVar[str]
@@ -192,7 +192,7 @@ class SensorBroadcaster(Controller[P]):
 
     def header(self, time_ns: int) -> Header:
         """Return a header with a time in nanoseconds and the frame from the parameters."""
-        frame: str = self.parameters.frame_id  # type: ignore[attr-defined]  # all of them have one
+        frame: str = self.parameters.frame_id  # type: ignore[attr-defined]  # All parameter classes have it.
         return Header(stamp=Time(*divmod(time_ns, NANOSECONDS_PER_SECOND)), frame_id=frame)
 
 
@@ -265,7 +265,10 @@ class ForceTorqueBroadcaster(SensorBroadcaster[WrenchParameters]):
         return [name for name in self._names if name]
 
     def message(self, kind: Any, header: Header, values: Sequence[float]) -> Any:
-        """Return a wrench message; axes without an interface have the value 0 before offset and multiplier."""
+        """Return a wrench message.
+
+        Axes without an interface are 0 before the offset and the multiplier are applied.
+        """
         remaining_values = iter(values)
         parameters = self.parameters
         wrench_values = [

@@ -18,22 +18,23 @@ from linkwright.nodes.parameter_tables import HUMBLE, JAZZY, parameter
 
 @dataclass(frozen=True, kw_only=True)
 class SpeedLimits:
-    """The limits of one velocity component, in m/s or rad/s, and of its first and second derivatives."""
+    """The limits of one velocity component, and of its first and second derivatives.
 
-    has_velocity_limits: bool | None = parameter(
-        None, description="whether the limits of the velocity apply", only=HUMBLE
-    )
+    Velocities are in m/s or rad/s.
+    """
+
+    has_velocity_limits: bool | None = parameter(None, description="whether the velocity limits apply", only=HUMBLE)
     has_acceleration_limits: bool | None = parameter(
-        None, description="whether the limits of the acceleration apply", only=HUMBLE
+        None, description="whether the acceleration limits apply", only=HUMBLE
     )
-    has_jerk_limits: bool | None = parameter(None, description="whether the limits of the jerk apply", only=HUMBLE)
+    has_jerk_limits: bool | None = parameter(None, description="whether the jerk limits apply", only=HUMBLE)
     max_velocity: float = parameter(nan, description="in m/s or rad/s; NaN for no limit")
     min_velocity: float = parameter(nan, description="in m/s or rad/s; NaN for -max_velocity")
     max_acceleration: float = parameter(nan, description="in m/s² or rad/s²; NaN for no limit")
     min_acceleration: float = parameter(nan, description="negative, in m/s² or rad/s²; NaN for -max_acceleration")
     max_deceleration: float = parameter(nan, description="negative, in m/s² or rad/s²", only=JAZZY)
-    max_acceleration_reverse: float = parameter(nan, description="backwards, in m/s² or rad/s²", only=JAZZY)
-    max_deceleration_reverse: float = parameter(nan, description="backwards, in m/s² or rad/s²", only=JAZZY)
+    max_acceleration_reverse: float = parameter(nan, description="for driving backward, in m/s² or rad/s²", only=JAZZY)
+    max_deceleration_reverse: float = parameter(nan, description="for driving backward, in m/s² or rad/s²", only=JAZZY)
     max_jerk: float = parameter(nan, description="in m/s³ or rad/s³; NaN for no limit")
     min_jerk: float = parameter(nan, description="in m/s³ or rad/s³; NaN for -max_jerk")
 

@@ -1,4 +1,4 @@
-"""The base class of controllers of steered vehicles, which have a driven axle and a steered axle.
+"""The base class of controllers of vehicles with a driven axle and a steered axle.
 
 Source: steering_controllers_library of ros2_controllers, for Humble and Jazzy (parameters with their older names,
 defaults, topics, the order of joints: right, left). Deliberate differences: odometry and wheels always use the tangent
@@ -26,47 +26,50 @@ from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 _DEFAULT_VARIANCES = (0.0, 7.0, 14.0, 21.0, 28.0, 35.0)
 _SLOWDOWN_START, _SLOWDOWN_END = pi / 6.0, 1.5608
-"""The steering errors at which the wheels start and stop to slow down, in rad."""
+"""The range of steering errors, in rad, in which the speed of the wheels decreases."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class SteeringParameters:
     """Parameters of all steered vehicles."""
 
-    reference_timeout: float = parameter(1.0, description="how long a command holds, in seconds; 0 for one update")
-    traction_joints_names: tuple[str, ...] = parameter((), description="joints that drive: right, left", only=JAZZY)
-    steering_joints_names: tuple[str, ...] = parameter((), description="joints that steer: right, left", only=JAZZY)
+    reference_timeout: float = parameter(1.0, description="how long a command is valid, in seconds; 0 for one update")
+    traction_joints_names: tuple[str, ...] = parameter((), description="the driven joints: right, left", only=JAZZY)
+    steering_joints_names: tuple[str, ...] = parameter((), description="the steered joints: right, left", only=JAZZY)
     traction_joints_state_names: tuple[str, ...] = parameter(
-        (), description="measured joints, if they differ", only=JAZZY
+        (), description="the measured joints, if they differ", only=JAZZY
     )
     steering_joints_state_names: tuple[str, ...] = parameter(
-        (), description="measured joints, if they differ", only=JAZZY
+        (), description="the measured joints, if they differ", only=JAZZY
     )
     front_steering: bool = parameter(
-        True, description="which of front_wheels_names and rear_wheels_names steer", only=HUMBLE
+        True, description="whether the front wheels steer and the rear wheels drive", only=HUMBLE
     )
-    front_wheels_names: tuple[str, ...] = parameter((), description="joints that steer or drive", only=HUMBLE)
-    rear_wheels_names: tuple[str, ...] = parameter((), description="joints that drive or steer", only=HUMBLE)
-    front_wheels_state_names: tuple[str, ...] = parameter((), description="measured joints", only=HUMBLE)
-    rear_wheels_state_names: tuple[str, ...] = parameter((), description="measured joints", only=HUMBLE)
-    open_loop: bool = parameter(False, description="odometry by the commands of the wheels, not by their motion")
+    front_wheels_names: tuple[str, ...] = parameter((), description="the joints of the front wheels", only=HUMBLE)
+    rear_wheels_names: tuple[str, ...] = parameter((), description="the joints of the rear wheels", only=HUMBLE)
+    front_wheels_state_names: tuple[str, ...] = parameter((), description="the measured front joints", only=HUMBLE)
+    rear_wheels_state_names: tuple[str, ...] = parameter((), description="the measured rear joints", only=HUMBLE)
+    open_loop: bool = parameter(False, description="whether odometry uses commands instead of states")
     reduce_wheel_speed_until_steering_reached: bool = parameter(
-        False, description="whether wheels are slow while the steering is far from its angle", only=JAZZY
+        False, description="whether wheels slow down until the steering angle is reached", only=JAZZY
     )
-    velocity_rolling_window_size: int = parameter(10, description="window of the rolling mean of odometry")
+    velocity_rolling_window_size: int = parameter(10, description="the window of the rolling mean of odometry")
     base_frame_id: str = parameter("base_link", description="the frame of the robot")
-    odom_frame_id: str = parameter("odom", description="the frame that the robot moves in")
+    odom_frame_id: str = parameter("odom", description="the frame in which the robot moves")
     enable_odom_tf: bool = parameter(True, description="whether the transform of odometry is published")
     twist_covariance_diagonal: tuple[float, ...] = parameter(
-        _DEFAULT_VARIANCES, description="variances of the velocity"
+        _DEFAULT_VARIANCES, description="the variances of the velocity"
     )
-    pose_covariance_diagonal: tuple[float, ...] = parameter(_DEFAULT_VARIANCES, description="variances of the pose")
-    position_feedback: bool = parameter(False, description="odometry by positions of wheels, not by velocities")
-    use_stamped_vel: bool = parameter(True, description="whether ~/reference_unstamped is not taken too", only=HUMBLE)
-    wheelbase: float = parameter(0.0, description="between the axles, in m")
+    pose_covariance_diagonal: tuple[float, ...] = parameter(_DEFAULT_VARIANCES, description="the variances of the pose")
+    position_feedback: bool = parameter(False, description="whether odometry uses wheel positions, not velocities")
+    use_stamped_vel: bool = parameter(True, description="false to receive ~/reference_unstamped, too", only=HUMBLE)
+    wheelbase: float = parameter(0.0, description="the distance between the axles, in m")
 
     def select_traction(self, front: float, rear: float) -> float:
-        """Return the value for the driven axle from Humble's parameters for the front and the rear axle."""
+        """Return the value of the driven axle, from the values of the front and the rear axle.
+
+        Humble has parameters for the front and the rear axle.
+        """
         return rear if self.front_steering else front
 
     @property
@@ -115,7 +118,7 @@ class SteeringController(Controller[P], Generic[P]):
 
     @abstractmethod
     def drive(self) -> CarDrive:
-        """Return the drive with the dimensions of the vehicle, which are not checked."""
+        """Return the drive with the dimensions of the vehicle, without checking them."""
 
     def command_interfaces(self) -> InterfaceNames:
         """Return the velocities of the driven joints, then the positions of the steered joints."""
@@ -136,7 +139,7 @@ class SteeringController(Controller[P], Generic[P]):
         ]
 
     def reference_interfaces(self) -> Sequence[str]:
-        """Return the references: the forward velocity in m/s, and the angular velocity about z in rad/s."""
+        """Return the references: the forward velocity in m/s, and the yaw rate in rad/s."""
         return ("linear/velocity", "angular/velocity")
 
     def on_configure(self) -> None:

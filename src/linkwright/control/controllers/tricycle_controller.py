@@ -1,4 +1,4 @@
-"""``tricycle_controller/TricycleController``: a vehicle with a driven and steered front wheel.
+"""``tricycle_controller/TricycleController``: one driven and steered front wheel.
 
 Source: ros2_controllers for Humble and Jazzy (parameters, defaults, topics; the wheel is slow while it is far from its
 angle). A deliberate difference: open-loop odometry is computed from the limited commands of the wheel.
@@ -23,7 +23,7 @@ from linkwright.nodes.parameter_tables import above, not_empty, parameter
 
 _NO_VARIANCES = (0.0,) * 6
 _MAX_FULL_SPEED_ERROR, _MIN_CREEP_ERROR = pi / 6.0, pi / 2.0
-"""The steering errors below which the wheel has its commanded speed, and above which it hardly moves, in rad."""
+"""The steering errors, in rad, below which the wheel has its full speed, and above which it hardly moves."""
 _CREEP_FRACTION = 0.01
 
 
@@ -63,20 +63,20 @@ _NO_TRACTION_LIMITS, _NO_STEERING_LIMITS = TractionLimits(), SteeringLimits()
 class Parameters:
     """Parameters of the controller."""
 
-    traction_joint_name: str = parameter("", description="the joint that the wheel turns on")
-    steering_joint_name: str = parameter("", description="the joint that the wheel is steered by")
-    wheelbase: float = parameter(0.0, description="from the wheel to the axle behind, in m")
-    wheel_radius: float = parameter(0.0, description="in m")
-    odom_frame_id: str = parameter("odom", description="the frame that the robot moves in")
+    traction_joint_name: str = parameter("", description="the joint that drives the wheel")
+    steering_joint_name: str = parameter("", description="the joint that steers the wheel")
+    wheelbase: float = parameter(0.0, description="the distance from the wheel to the rear axle, in m")
+    wheel_radius: float = parameter(0.0, description="the radius of the wheel, in m")
+    odom_frame_id: str = parameter("odom", description="the frame in which the robot moves")
     base_frame_id: str = parameter("base_link", description="the frame of the robot")
-    pose_covariance_diagonal: tuple[float, ...] = parameter(_NO_VARIANCES, description="variances of the pose")
-    twist_covariance_diagonal: tuple[float, ...] = parameter(_NO_VARIANCES, description="variances of the velocity")
-    open_loop: bool = parameter(False, description="odometry by the commands of the wheel, not by its motion")
+    pose_covariance_diagonal: tuple[float, ...] = parameter(_NO_VARIANCES, description="the variances of the pose")
+    twist_covariance_diagonal: tuple[float, ...] = parameter(_NO_VARIANCES, description="the variances of the velocity")
+    open_loop: bool = parameter(False, description="whether odometry uses commands instead of states")
     enable_odom_tf: bool = parameter(False, description="whether the transform of odometry is published")
-    odom_only_twist: bool = parameter(False, description="odometry without the pose")
-    cmd_vel_timeout: int = parameter(500, description="how long a command holds, in milliseconds")
+    odom_only_twist: bool = parameter(False, description="whether odometry messages contain no pose")
+    cmd_vel_timeout: int = parameter(500, description="how long a command is valid, in milliseconds")
     publish_ackermann_command: bool = parameter(False, description="whether ~/cmd_ackermann is published")
-    velocity_rolling_window_size: int = parameter(10, description="window of the rolling mean of odometry")
+    velocity_rolling_window_size: int = parameter(10, description="the window of the rolling mean of odometry")
     use_stamped_vel: bool = parameter(True, description="whether commands have headers")
     traction: TractionLimits = _NO_TRACTION_LIMITS
     steering: SteeringLimits = _NO_STEERING_LIMITS

@@ -1,4 +1,7 @@
-"""``tricycle_steering_controller/TricycleSteeringController``: two driven wheels and one steered wheel."""
+"""``tricycle_steering_controller/TricycleSteeringController``: a tricycle.
+
+Two wheels are driven, and one wheel is steered.
+"""
 
 from __future__ import annotations
 
@@ -13,11 +16,11 @@ from linkwright.nodes.parameter_tables import HUMBLE, JAZZY, parameter
 class Parameters(SteeringParameters):
     """The parameters shared by all steered vehicles, and the dimensions of this vehicle."""
 
-    traction_wheels_radius: float = parameter(0.0, description="of the wheels that drive, in m", only=JAZZY)
-    traction_track_width: float = parameter(0.0, description="between the wheels that drive, in m", only=JAZZY)
-    front_wheels_radius: float = parameter(0.0, description="of the wheels in front, in m", only=HUMBLE)
-    rear_wheels_radius: float = parameter(0.0, description="of the wheels behind, in m", only=HUMBLE)
-    wheel_track: float = parameter(0.0, description="between the wheels that drive, in m", only=HUMBLE)
+    traction_wheels_radius: float = parameter(0.0, description="the radius of the driven wheels, in m", only=JAZZY)
+    traction_track_width: float = parameter(0.0, description="the distance between the driven wheels, in m", only=JAZZY)
+    front_wheels_radius: float = parameter(0.0, description="the radius of the front wheels, in m", only=HUMBLE)
+    rear_wheels_radius: float = parameter(0.0, description="the radius of the rear wheels, in m", only=HUMBLE)
+    wheel_track: float = parameter(0.0, description="the distance between the driven wheels, in m", only=HUMBLE)
 
 
 class TricycleSteeringController(SteeringController[Parameters]):
@@ -28,7 +31,10 @@ class TricycleSteeringController(SteeringController[Parameters]):
     JOINTS = (2, 1)
 
     def drive(self) -> CarDrive:
-        """Return the drive with the dimensions from the parameters, which have different names in Humble and Jazzy."""
+        """Return the drive with the dimensions from the parameters.
+
+        The dimensions have different names in Humble and Jazzy.
+        """
         parameters = self.parameters
         radius = parameters.traction_wheels_radius or parameters.select_traction(
             parameters.front_wheels_radius, parameters.rear_wheels_radius

@@ -16,7 +16,9 @@ REFERENCE_QOS = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 
 
 class VelocityInput:
-    """The velocity commands of a ``geometry_msgs/msg/TwistStamped`` topic, which expire after a timeout.
+    """The velocity commands of a topic, with a timeout.
+
+    The topic's type is ``geometry_msgs/msg/TwistStamped``.
 
     The age of a command counts from the time in its header. If that time is zero or in the future, the age counts from
     the update that first uses the command, so every command expires. A command that is not finite stops the drive.
@@ -63,7 +65,7 @@ class VelocityInput:
         self._command: tuple[Velocity, int] | None = None
 
     def _on_publisher_lost(self) -> bool:
-        """Discard the last command when its publisher disappears, and return whether the command was not zero."""
+        """Discard the last command of a lost publisher, and return whether it was not zero."""
         velocity, _ = self._new_command or self._command or ((0.0,), 0)
         self.forget()
         return any(velocity)

@@ -20,7 +20,9 @@ GROUP = "linkwright.hardware"
 
 
 class HardwareError(LinkwrightError):
-    """Raised when hardware fails or does not accept a request; the message is logged.
+    """Raised when hardware fails or does not accept a request.
+
+    The message is logged.
 
     Args:
         message: what is wrong.
@@ -98,7 +100,7 @@ class Hardware:
         """
 
     def perform_switch(self, start: Collection[str], stop: Collection[str]) -> None:
-        """Switch to other command interfaces; see `prepare_switch`."""
+        """Switch to other command interfaces, with the arguments of `prepare_switch`."""
 
     def read(self, time_ns: int, period_s: float) -> None:
         """Update `states` from the hardware.
@@ -108,7 +110,9 @@ class Hardware:
         """
 
     def write(self, time_ns: int, period_s: float) -> None:
-        """Send `commands` to the hardware; NaN means that a command is missing.
+        """Send `commands` to the hardware.
+
+        NaN means that a command is missing.
 
         Raises:
             HardwareError: the hardware does not accept the commands; its controllers are stopped.
@@ -128,6 +132,10 @@ def hardware_class(plugin: str) -> type[Hardware] | None:
         loaded_class: type[Hardware] = entry.load()
     except Exception as error:
         message = phrase("the hardware '{name}' cannot be imported", name=plugin)
-        hint = phrase("it is part of '{place}': {problem}", place=entry.distribution, problem=foreign(error))
+        hint = phrase(
+            "the Python package '{place}' provides it, but its import fails: {problem}",
+            place=entry.distribution,
+            problem=foreign(error),
+        )
         raise LinkwrightError(Diagnostic("CTL121", message, hint=hint)) from error
     return loaded_class

@@ -40,7 +40,7 @@ class Interface:
 
 
 class StateInterface(Interface):
-    """A state of hardware, which any number of controllers may read."""
+    """A hardware state that any number of controllers may read."""
 
     __slots__ = ()
 

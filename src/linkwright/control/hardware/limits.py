@@ -1,4 +1,4 @@
-"""Limits of joints, which are applied to commands.
+"""Limits of joints, applied to commands.
 
 Source: joint_limits of ros2_control (``enforce_command_limits`` of the controller manager, and the limits for each
 kind of command). The limits come from the joint's ``<limit>`` and ``<safety_controller>``, narrowed by ``min`` and
@@ -31,7 +31,9 @@ _UNLIMITED = (-inf, inf)
 
 @dataclass(frozen=True, slots=True)
 class JointLimits:
-    """The limits of a joint in rad and N m, or m and N, and seconds; infinite if there are none.
+    """The limits of a joint in rad and N m, or m and N, and seconds.
+
+    Missing limits are infinite.
 
     Attributes:
         position: the minimum and the maximum position.
@@ -133,7 +135,7 @@ class JointLimiter:
         return None if state is None or not isfinite(state.value) else state.value
 
     def _velocity_range(self, position: float | None) -> tuple[float, float]:
-        """Return the velocity limits in both directions, which decrease towards soft limits."""
+        """Return the velocity limits in both directions, reduced near soft limits."""
         max_velocity, safety = self._limits.velocity, self._limits.safety
         if safety is None or position is None or not safety.k_position:
             return -max_velocity, max_velocity
@@ -205,7 +207,7 @@ class CommandLimits:
         self._reported: set[tuple[str, str]] = set()
 
     def enforce(self, period_s: float, claimed: Collection[str]) -> None:
-        """Limit commands in place; see `JointLimiter.enforce`."""
+        """Limit commands in place, as in `JointLimiter.enforce`."""
         for limiter in self._limiters:
             for kind, requested, limited in limiter.enforce(period_s, claimed):
                 if (limiter.name, kind) not in self._reported:
@@ -223,7 +225,10 @@ class CommandLimits:
 
 
 def _range(interface: InterfaceDescription | None) -> tuple[float, float]:
-    """Return the minimum and maximum of an interface in the description; infinite if they are not set."""
+    """Return the minimum and maximum of an interface in the description.
+
+    Missing bounds are infinite.
+    """
     if interface is None:
         return _UNLIMITED
     return (

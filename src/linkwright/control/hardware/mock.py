@@ -27,7 +27,10 @@ _MODES = (POSITION, VELOCITY, ACCELERATION)
 
 
 class _Joint:
-    """A simulated joint with all kinds of states, of which only those in the description have an interface."""
+    """A simulated joint with all kinds of states.
+
+    Only the states in the description have an interface.
+    """
 
     def __init__(self, description: ComponentDescription, states: dict[str, StateInterface]) -> None:
         self.described = description
@@ -103,9 +106,9 @@ class GenericSystem(Hardware):
                         self.commands.append(command)
 
     def prepare_switch(self, start: Collection[str], stop: Collection[str]) -> None:
-        """If dynamics are calculated, check that each joint with started interfaces gets exactly one mode.
+        """Check that each joint with started interfaces gets exactly one mode.
 
-        The mode is position, velocity or acceleration.
+        The mode is position, velocity or acceleration. The check applies only if dynamics are calculated.
 
         Raises:
             HardwareError: such a joint gets no mode or several modes.
@@ -126,7 +129,7 @@ class GenericSystem(Hardware):
                 )
 
     def perform_switch(self, start: Collection[str], stop: Collection[str]) -> None:
-        """If dynamics are calculated, set the modes of joints to their started command interfaces."""
+        """Set the modes of joints to their started interfaces, if dynamics are calculated."""
         for name, joint in self._joints.items():
             for mode in _MODES:
                 if self._has_dynamics and f"{name}/{mode}" in start:

@@ -57,7 +57,10 @@ class Resources:
     # --- loading ------------------------------------------------------------------------------------------------------
 
     def load(self, descriptions: Sequence[HardwareDescription], make: HardwareFactory) -> None:
-        """Create hardware from descriptions; a mock replaces types that are not supported, with a warning."""
+        """Create hardware from descriptions.
+
+        If a type is not supported, a mock replaces it, and a warning is logged.
+        """
         for description in descriptions:
             self._logger.info(f"Loading hardware '{description.name}' ")
             try:
@@ -223,7 +226,7 @@ class Resources:
         return ""
 
     def perform_switch(self, start: Collection[str], stop: Collection[str]) -> None:
-        """Switch the command interfaces of all hardware; failures are logged."""
+        """Switch the command interfaces of all hardware, and log failures."""
         for hardware in self.components.values():
             failure = _call_hardware(hardware.perform_switch, start, stop)
             if failure:
@@ -243,12 +246,15 @@ class Resources:
                         hardware.read(time_ns, period_s)
                     else:
                         hardware.timings[0].measure(hardware.read, time_ns, period_s)
-                except Exception as error:  # noqa: BLE001 - a fault of hardware must not end the others
+                except Exception as error:  # noqa: BLE001 - an error of hardware must not stop other hardware
                     failed.append(self._fail(hardware, "reading", error))
         return failed
 
     def write(self, time_ns: int, period_s: float) -> list[Hardware]:
-        """Write the commands of all active hardware; see `read` for failures."""
+        """Write the commands of all active hardware.
+
+        Returns the components that failed; their errors are handled as in `read`.
+        """
         failed = []
         for hardware in self.components.values():
             if hardware.state is ACTIVE:
@@ -257,7 +263,7 @@ class Resources:
                         hardware.write(time_ns, period_s)
                     else:
                         hardware.timings[1].measure(hardware.write, time_ns, period_s)
-                except Exception as error:  # noqa: BLE001 - a fault of hardware must not end the others
+                except Exception as error:  # noqa: BLE001 - an error of hardware must not stop other hardware
                     failed.append(self._fail(hardware, "writing", error))
         return failed
 
@@ -278,7 +284,7 @@ def _call_hardware(callback: Callable[..., object], *arguments: object) -> str:
     """Call a function of hardware, and return the message of its error, or an empty string."""
     try:
         callback(*arguments)
-    except Exception as error:  # noqa: BLE001 - a fault of hardware must not end the others
+    except Exception as error:  # noqa: BLE001 - an error of hardware must not stop other hardware
         return _reason(error)
     return ""
 

@@ -27,7 +27,10 @@ class _Statistics:
         self._minimum, self._maximum, self._latest = min(self._minimum, value), max(self._maximum, value), value
 
     def items(self) -> Iterator[tuple[str, float]]:
-        """Iterate over the names and values of the statistics; before the first value, statistics are NaN."""
+        """Iterate over the names and values of the statistics.
+
+        Before the first value, all statistics except the count are NaN.
+        """
         has_values = self._count > 0
         yield "average", self._mean if has_values else nan
         yield "min", self._minimum if has_values else nan

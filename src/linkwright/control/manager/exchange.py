@@ -1,4 +1,4 @@
-"""The exchange for controllers that are updated on the event loop, which needs no queues."""
+"""An exchange without queues, for controllers that are updated on the event loop."""
 
 from __future__ import annotations
 

@@ -72,7 +72,9 @@ class Loaded:
         return [*all_names] if isinstance(requirements, Interfaces) else [*requirements]
 
     def replace_invalid_commands(self) -> str:
-        """Replace position commands that are not finite by their last finite values, and other such commands by 0.
+        """Replace commands that are not finite.
+
+        A position command becomes its last finite value, and any other command becomes 0.
 
         Returns:
             The name of the first replaced interface, or an empty string.

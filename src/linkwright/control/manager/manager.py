@@ -130,7 +130,7 @@ class ControllerManager:
             return controller_type.variant(node.undeclared_overrides())(context)
         except LinkwrightError as error:
             self._log_error(error)
-        except Exception as error:  # noqa: BLE001 - a fault of a controller must not end the others
+        except Exception as error:  # noqa: BLE001 - an error of a controller must not stop other controllers
             self._logger.error(_traced("Exception thrown during init stage with message", error))  # noqa: TRY400 - `_traced` has its place
         if node is not None:
             node.destroy_node()
@@ -420,7 +420,7 @@ class ControllerManager:
         except ControllerError as error:
             logger.error(error.diagnostics[0].message)  # noqa: TRY400 - the message is for users
             return False
-        except Exception as error:  # noqa: BLE001 - a fault of a controller must not end the others
+        except Exception as error:  # noqa: BLE001 - an error of a controller must not stop other controllers
             logger.error(_traced(f"Caught exception in callback for {callback_name}", error))  # noqa: TRY400 - `_traced` has its place
             self._on_error(loaded)
             return False
@@ -429,7 +429,7 @@ class ControllerManager:
     def _on_error(self, loaded: Loaded) -> None:
         try:
             loaded.controller.on_error()
-        except Exception as error:  # noqa: BLE001 - a fault of a controller must not end the others
+        except Exception as error:  # noqa: BLE001 - an error of a controller must not stop other controllers
             logger = loaded.controller.node.logger
             logger.error(_traced("Caught exception in callback for on_error", error))  # noqa: TRY400 - as above
 
@@ -472,7 +472,7 @@ class ControllerManager:
                     loaded.controller.step(time_ns, step_s)
                 else:
                     loaded.timing.measure(loaded.controller.step, time_ns, step_s)
-            except Exception as error:  # noqa: BLE001 - a fault of a controller must not end the others
+            except Exception as error:  # noqa: BLE001 - an error of a controller must not stop other controllers
                 self._fail(loaded, error)  # Safe in the loop: a new list replaces `_active`.
                 continue
             replaced_name = loaded.replace_invalid_commands()

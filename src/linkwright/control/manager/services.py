@@ -177,7 +177,7 @@ class ManagerServices:
 
 
 def _service_name(name: str) -> str:
-    """Return the name of the service with a type, such as ``list_controllers`` for ``ListControllers``."""
+    """Return the name of a service from its type: ``list_controllers`` for ``ListControllers``."""
     return "".join(f"_{letter.lower()}" if letter.isupper() else letter for letter in name).lstrip("_")
 
 

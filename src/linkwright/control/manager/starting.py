@@ -21,7 +21,9 @@ _INITIAL_STATE_PARAMETER = "hardware_components_initial_state"
 
 
 def load_hardware(manager: ControllerManager, text: str, library: DescriptionLibrary, factory: HardwareFactory) -> bool:
-    """Load the hardware of a description, and bring it to the initial states in the manager's parameters.
+    """Load the hardware of a description, and bring it to its initial states.
+
+    The manager's parameters contain the initial states.
 
     Args:
         manager: the manager.

@@ -1,4 +1,4 @@
-"""Planning of a controller switch, which determines the controllers to activate and deactivate.
+"""Planning of a controller switch: the controllers to activate and deactivate.
 
 Source: the controller manager of ros2_control (rules of chains, strictness, messages).
 """
@@ -22,7 +22,10 @@ _ADVICE = (
 
 
 class SwitchRefusedError(Exception):
-    """Raised when a switch is refused; the message gives the reason."""
+    """Raised when a switch is refused.
+
+    The message gives the reason.
+    """
 
 
 @dataclass(slots=True)
@@ -63,7 +66,9 @@ class SwitchPlanner:
         self._switch = Switch()
 
     def plan(self, activate: Sequence[str], deactivate: Sequence[str]) -> Switch:
-        """Plan a switch; impossible parts of the request are left out unless the switch is strict.
+        """Plan a switch.
+
+        Impossible parts of the request are left out unless the switch is strict.
 
         Raises:
             SwitchRefusedError: a part of the request is impossible, and the switch is strict.

@@ -1,1 +1,1 @@
-"""The computations of controllers, which do not depend on ROS."""
+"""The computations of controllers, independent of ROS."""

@@ -1,4 +1,6 @@
-"""Limits of a driven and steered wheel for velocity, steering angle and their derivatives, in both directions.
+"""Limits of a driven and steered wheel: velocity, steering angle and their derivatives.
+
+The limits apply in both directions.
 
 Source: the limiters of tricycle_controller. Deliberate differences: a minimum never moves a wheel that is at rest, and
 the bound of a second difference is not doubled.
@@ -91,7 +93,10 @@ def _limit_second_difference(current: float, previous: float, target: float, bou
 
 
 def _limit_magnitude(bounds: Bounds, value: float, factor: float = 1.0) -> float:
-    """Return a value with its magnitude limited to bounds times a factor; 0 stays 0."""
+    """Return a value with its magnitude limited to bounds times a factor.
+
+    A value of 0 stays 0.
+    """
     if value == 0.0:
         return value
     return copysign(min(max(abs(value), bounds[0] * factor), bounds[1] * factor), value)

@@ -13,7 +13,7 @@ _AT_REST: Velocity = (0.0, 0.0, 0.0)
 
 
 class Odometer:
-    """An integrator of velocities to a pose, which also smooths the velocities.
+    """An integrator of velocities to a pose, with smoothing of the velocities.
 
     Args:
         window: the number of velocities in the rolling mean; at least 1.
@@ -49,7 +49,10 @@ class Odometer:
         self.velocity = forward / count, sideways / count, angular / count
 
     def add_commanded(self, velocity: Velocity, seconds: float) -> None:
-        """Integrate a commanded velocity over a duration, and set the velocity to it without smoothing."""
+        """Integrate a commanded velocity over a duration.
+
+        The odometer's velocity becomes the commanded velocity, without smoothing.
+        """
         self._integrate(velocity, seconds)
         self.velocity = velocity
 

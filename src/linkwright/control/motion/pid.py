@@ -42,7 +42,7 @@ class PidGains:
 
     @property
     def tracking_time(self) -> float:
-        """The time constant of ``back_calculation`` in s; 0 if the gains do not define one."""
+        """The time constant of ``back_calculation`` in s, or 0 if the gains do not define one."""
         if self.tracking_time_constant > 0.0 or not self.i:
             return self.tracking_time_constant
         return sqrt(self.d / self.i) if self.d and self.d / self.i > 0.0 else abs(self.p / self.i)

@@ -1,4 +1,4 @@
-"""The segments of a trajectory, which are splines from one point to the next.
+"""The segments of a trajectory: splines from one point to the next.
 
 Source: joint_trajectory_controller of ros2_controllers. A segment is linear if its points have only positions, cubic if
 they also have velocities, and quintic if they have accelerations as well.
@@ -87,7 +87,7 @@ def _cubic(p0: float, p1: float, v0: float, v1: float, duration: float) -> _Poly
 
 
 def _quintic(p0: float, p1: float, v0: float, v1: float, a0: float, a1: float, duration: float) -> _Polynomial:
-    """Return the quintic polynomial for the positions, velocities and accelerations at both ends."""
+    """Return the quintic polynomial for position, velocity and acceleration at both ends."""
     distance, length = p1 - p0, duration
     return (
         p0,

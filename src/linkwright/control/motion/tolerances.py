@@ -14,7 +14,7 @@ UNSPECIFIED, NO_TOLERANCE = 0.0, -1.0
 
 @dataclass(frozen=True, slots=True)
 class StateTolerance:
-    """The maximum errors of a joint; 0 allows any error.
+    """The maximum errors of a joint, where 0 allows any error.
 
     Attributes:
         position: the maximum position error in rad or m.

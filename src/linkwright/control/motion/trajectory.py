@@ -128,9 +128,9 @@ def shortest_turn(start: float, end: float) -> float:
 
 
 def _with_positions(previous: MotionState, state: MotionState, seconds: float) -> MotionState:
-    """Return a state with positions; missing positions are integrated from velocities or accelerations.
+    """Return a state with positions.
 
-    `previous` is the state `seconds` earlier.
+    Missing positions are integrated from velocities or accelerations. `previous` is the state `seconds` earlier.
     """
     if state.positions:
         return state

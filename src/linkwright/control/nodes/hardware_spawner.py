@@ -1,4 +1,4 @@
-"""hardware_spawner of controller_manager, which configures or activates hardware.
+"""controller_manager's hardware_spawner, which configures or activates hardware.
 
 Source: controller_manager of ros2_control (options, messages).
 """

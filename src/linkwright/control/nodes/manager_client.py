@@ -1,4 +1,4 @@
-"""Calls to the services of a controller manager, for spawner, unspawner and hardware_spawner.
+"""Calls to a controller manager's services, for spawner, unspawner and hardware_spawner.
 
 Source: controller_manager of ros2_control (options, times, messages).
 """
@@ -142,7 +142,7 @@ class ManagerProgram(SingleNode):
 
 
 def _drop_empty_arguments(parser: argparse.ArgumentParser, words: Sequence[str]) -> list[str]:
-    """Return command-line arguments without empty arguments, which launch files can produce.
+    """Return command-line arguments without the empty ones that launch files can produce.
 
     Empty values of options are kept.
     """

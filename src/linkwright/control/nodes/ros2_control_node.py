@@ -1,4 +1,4 @@
-"""ros2_control_node of controller_manager, which runs controllers in real time.
+"""controller_manager's ros2_control_node, which runs controllers in real time.
 
 The node reads, updates and writes at ``update_rate`` on the event loop, so topics and services need no transfer between
 threads. Missed updates are skipped if ``overruns.manage`` is set, and are run later otherwise. The description comes

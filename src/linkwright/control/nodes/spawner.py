@@ -1,4 +1,4 @@
-"""spawner and unspawner of controller_manager, which load and unload controllers.
+"""controller_manager's spawner and unspawner, which load and unload controllers.
 
 As in Jazzy and later, the parameter files of the spawner's own process apply to the controllers, too.
 

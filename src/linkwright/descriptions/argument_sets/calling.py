@@ -86,7 +86,7 @@ def argument_sets(path: str | Path, finder: PackageFinder | None = None) -> tupl
 
 
 class ArgumentSets:
-    """The search for the argument sets of many descriptions, which reads each calling file once.
+    """A search for the argument sets of many descriptions that reads each calling file once.
 
     Args:
         folders: packages to search in addition to those near a file.
@@ -98,7 +98,7 @@ class ArgumentSets:
 
     def of(self, path: Path, finder: PackageFinder | None = None) -> tuple[ArgumentSet, ...]:
         """Return the argument sets of a description; see `argument_sets`."""
-        path = Path(os.path.abspath(path))  # noqa: PTH100 - links stay what they are
+        path = Path(os.path.abspath(path))  # noqa: PTH100 - do not resolve links
         finder = finder or PackageFinder(start=path.parent)
         nearby_files = list(self._files.around(path, self._folders))
         sets = list(_CalledDescription(path, finder, nearby_files).sets())

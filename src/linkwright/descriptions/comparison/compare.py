@@ -28,7 +28,7 @@ from linkwright.xmltree import Element
 Kind = Literal["added", "removed", "renamed", "changed"]
 Subject = Literal["robot", "link", "joint", "extension"]
 _Pair = tuple[Element | None, Element | None]
-"""The element in the old description and the element in the new one; None if there is none."""
+"""The element in the old description and the element in the new one, each None if there is none."""
 _Part = TypeVar("_Part", Link, Joint)
 
 

@@ -100,12 +100,12 @@ class Block:
         )
 
     def number(self, name: str, value: float | None, unit: str, element: Element | None, attribute: str) -> None:
-        """Add a property with one number; None is ignored."""
+        """Add a property with one number, unless it is None."""
         if value is not None:
             self.facts[name] = Fact("", (value,), unit, element, attribute)
 
     def words(self, name: str, value: str, element: Element | None, attribute: str) -> None:
-        """Add a property with a text; an empty text is ignored."""
+        """Add a property with a text, unless it is empty."""
         if value:
             self.facts[name] = Fact(value, (), "", element, attribute)
 
@@ -118,7 +118,10 @@ class Block:
 
 
 def nearest(element: Element | None, *tags: str) -> Element | None:
-    """Return the descendant at the end of a path of tags, or the last one that exists."""
+    """Return the descendant at the end of a path of tags, or the last one that exists.
+
+    Without an element, the result is None.
+    """
     for tag in tags:
         child = None if element is None else element.first(tag)
         if child is None:

@@ -6,7 +6,7 @@ from linkwright.diagnostics import Diagnostic
 
 
 class EditRefusedError(Exception):
-    """Raised when an edit of a description is refused; no file was written.
+    """Raised when an edit of a description is refused and no file was written.
 
     Attributes:
         diagnostic: the finding with the refused text, its location, the reason, and a hint.

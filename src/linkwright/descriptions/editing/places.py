@@ -57,7 +57,7 @@ class Candidate:
 
 
 def words(place: Place) -> list[Place]:
-    """Return the ranges of the words in a text; an expression counts as one word."""
+    """Return the ranges of the words in a text, where an expression counts as one word."""
     return [place.part(*match.span()) for match in _WORD.finditer(place.text)]
 
 
@@ -182,7 +182,7 @@ def _converts_degrees(node: ast.expr) -> bool:
 
 
 def _signed_term(node: ast.BinOp, expression_place: Place) -> Candidate | None:
-    """Return a candidate for the last number of a sum, including its sign, which may change.
+    """Return a candidate for the last number of a sum, including its sign.
 
     The result is None if the last term is not a number, or is in brackets.
     """

@@ -10,16 +10,16 @@ from linkwright.diagnostics.translation import translated
 from linkwright.loading.lean_typing import cast
 
 FORMATS = ("text", "concise", "json", "sarif", "github")
-"""``text`` for people, ``concise`` with one line each, ``json`` and ``sarif`` for programs, ``github`` for its jobs."""
+"""``text`` for people, ``concise`` with one line each, ``json`` and ``sarif`` for programs, ``github`` for Actions."""
 
 _Formatter = Callable[[Iterable[Diagnostic]], str]
 
 
 def format_diagnostics(diagnostics: Iterable[Diagnostic], form: str) -> str:
-    """Return diagnostics as text, which ends with a newline.
+    """Return diagnostics as text that ends with a newline.
 
-    If a format has one line per diagnostic, the text is empty without diagnostics. Messages are in English unless
-    another language was requested by name (`--lang`).
+    The text is empty if there are no diagnostics and the format has one line per diagnostic. Messages are in English
+    unless another language was requested by name (`--lang`).
 
     Args:
         diagnostics: the diagnostics, in the order in which they are shown.

@@ -1,4 +1,4 @@
-"""Write one line per diagnostic: ``FILE:LINE:COLUMN: SEVERITY[CODE] message (hint)``.
+"""The format with one line per diagnostic: ``FILE:LINE:COLUMN: SEVERITY[CODE] message (hint)``.
 
 Editors and ``grep`` expect lines that begin in this way.
 """

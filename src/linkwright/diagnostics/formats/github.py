@@ -1,4 +1,4 @@
-"""Write diagnostics as workflow commands of GitHub Actions.
+"""Diagnostics as workflow commands of GitHub Actions.
 
 GitHub shows each diagnostic next to its line in the pull request.
 """

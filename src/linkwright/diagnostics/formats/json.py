@@ -1,4 +1,4 @@
-"""Write diagnostics as JSON: an object with a list ``diagnostics``.
+"""Diagnostics as JSON: an object with a list ``diagnostics``.
 
 Lines and columns count from 1; a missing position is null.
 """

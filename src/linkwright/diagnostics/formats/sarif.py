@@ -1,4 +1,4 @@
-"""Write diagnostics as SARIF 2.1.0 (OASIS), which code scanning services read."""
+"""Diagnostics as SARIF 2.1.0 (OASIS), the format that code scanning services read."""
 
 from __future__ import annotations
 

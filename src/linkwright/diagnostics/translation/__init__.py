@@ -1,4 +1,4 @@
-"""Translate diagnostics to the user's language.
+"""The translation of diagnostics to the user's language.
 
 The package chooses the language, and contains the catalogues of texts. Messages are written in English where they are
 reported. A catalogue maps their English templates to another language; a template that is not in it stays English.

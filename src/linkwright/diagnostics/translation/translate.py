@@ -21,7 +21,7 @@ TAGS = {ENGLISH: "en", CHINESE: "zh-CN"}
 LANGUAGES = tuple(TAGS)
 
 _LANGUAGE_VARIABLES = ("LINKWRIGHT_LANG", "LC_ALL", "LC_MESSAGES", "LANG")
-"""The environment variables for the language; the first that is set decides. The order of the last three is POSIX's."""
+"""The environment variables for the language. The first that is set decides. POSIX orders the last three."""
 
 _asked: str | None = None
 
@@ -68,9 +68,9 @@ def language_of(locale: str) -> str | None:
 
 @cache
 def wording(language: str) -> NullTranslations:
-    """Return the catalogue of a language; it is read only once.
+    """Return the catalogue of a language.
 
-    It is empty if there is no compiled catalogue, as in a fresh checkout.
+    It is read only once, and is empty if there is no compiled catalogue, as in a fresh checkout.
     """
     from gettext import GNUTranslations, NullTranslations  # imported here, because English does not need it
 
@@ -121,7 +121,7 @@ def translate(diagnostic: Diagnostic, lang: str) -> Diagnostic:
 
 
 def localized(text: str, lang: str | None = None) -> str:
-    """Return a text in a language of `LANGUAGES`; None for the user's.
+    """Return a text in a language of `LANGUAGES`, by default the user's.
 
     A plain string is returned unchanged.
     """

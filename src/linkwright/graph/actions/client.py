@@ -154,7 +154,7 @@ class ActionClient(ActionEndpoint):
         )
 
     def wait_for_server(self, timeout_sec: float | None = None) -> bool:
-        """Block the calling thread until a server is available; see `Client.wait_for_service`."""
+        """Block the calling thread until a server is available. See `Client.wait_for_service`."""
         return self._handle.graph.wait_until(self.server_is_ready, timeout_sec)
 
     def send_goal(self, goal: Any, timeout_sec: float | None = None, **options: Any) -> Any:
@@ -184,8 +184,8 @@ class ActionClient(ActionEndpoint):
 
         Args:
             goal: the goal message.
-            feedback_callback: called with each feedback message for this goal; its ``feedback`` field holds the
-                action's own feedback.
+            feedback_callback: called with each feedback message for this goal; its field ``feedback`` contains the
+                action's feedback.
             goal_uuid: the goal's ID; a random one by default.
 
         Returns:
@@ -209,7 +209,7 @@ class ActionClient(ActionEndpoint):
         return handle_future
 
     def cancel(self, goal: ClientGoalHandle) -> Future[Any]:
-        """Request cancellation of a goal; see `ClientGoalHandle.cancel_goal_async`.
+        """Request cancellation of a goal. See `ClientGoalHandle.cancel_goal_async`.
 
         Raises:
             TypeError: `goal` is not a goal handle.
@@ -220,7 +220,7 @@ class ActionClient(ActionEndpoint):
         return self._cancel_client.call_async(request)
 
     def request_result(self, goal: ClientGoalHandle) -> Future[Any]:
-        """Request the result of a goal; see `ClientGoalHandle.get_result_async`.
+        """Request the result of a goal. See `ClientGoalHandle.get_result_async`.
 
         Raises:
             TypeError: `goal` is not a goal handle.

@@ -51,7 +51,7 @@ ACTIVE = frozenset({GoalStatus.ACCEPTED, GoalStatus.EXECUTING, GoalStatus.CANCEL
 """The states of a goal that has not ended."""
 
 CANCELABLE = frozenset({GoalStatus.ACCEPTED, GoalStatus.EXECUTING})
-"""The states in which a goal can be asked to be canceled."""
+"""The states in which a goal can be canceled."""
 
 _TRANSITIONS = {
     (GoalStatus.ACCEPTED, GoalEvent.EXECUTE): GoalStatus.EXECUTING,
@@ -120,7 +120,7 @@ class ServerGoalHandle:
 
     @property
     def status(self) -> int:
-        """The goal's state; UNKNOWN once the handle has been destroyed."""
+        """The goal's state, or UNKNOWN once the handle has been destroyed."""
         return int(GoalStatus.UNKNOWN if self._destroyed else self._status)
 
     @property
@@ -134,7 +134,7 @@ class ServerGoalHandle:
         return not self._destroyed and self._status is GoalStatus.CANCELING
 
     def execute(self, execute_callback: Callable[[ServerGoalHandle], Any] | None = None) -> None:
-        """Start executing the goal: schedule the given callback, or the server's by default.
+        """Start executing the goal, by scheduling the given callback or else the server's.
 
         The callback also receives a goal that is canceled before it starts, and decides how the goal ends.
         """
@@ -167,11 +167,11 @@ class ServerGoalHandle:
         self._end(GoalEvent.SUCCEED, response)
 
     def abort(self, response: Any = None) -> None:
-        """Mark the goal as aborted; see `succeed`."""
+        """Mark the goal as aborted. See `succeed`."""
         self._end(GoalEvent.ABORT, response)
 
     def canceled(self, response: Any = None) -> None:
-        """Mark the goal as canceled, after a cancel request; see `succeed`."""
+        """Mark the goal as canceled, after a cancel request. See `succeed`."""
         self._end(GoalEvent.CANCELED, response)
 
     def update(self, event: GoalEvent) -> None:

@@ -140,17 +140,20 @@ class ActionServer(ActionEndpoint):
         self._execute_callback = execute_callback
 
     def register_goal_callback(self, goal_callback: Callable[[Any], Any] | None) -> None:
-        """Set the callback that decides which goals are accepted; None accepts all."""
+        """Set the callback that decides which goals are accepted. None accepts all goals."""
         self._goal_callback = goal_callback or default_goal_callback
 
     def register_handle_accepted_callback(
         self, handle_accepted_callback: Callable[[ServerGoalHandle], Any] | None
     ) -> None:
-        """Set the callback that starts the execution of accepted goals; None starts it immediately."""
+        """Set the callback that starts the execution of accepted goals.
+
+        None starts the execution immediately.
+        """
         self._handle_accepted_callback = handle_accepted_callback or default_handle_accepted_callback
 
     def register_cancel_callback(self, cancel_callback: Callable[[ServerGoalHandle], Any] | None) -> None:
-        """Set the callback that decides which goals may be canceled; None refuses all."""
+        """Set the callback that decides which goals may be canceled. None refuses all requests."""
         self._cancel_callback = cancel_callback or default_cancel_callback
 
     def destroy(self) -> None:
@@ -185,7 +188,10 @@ class ActionServer(ActionEndpoint):
             self._feedback_publisher.publish(message)
 
     def state_changed(self, goal: ServerGoalHandle) -> None:
-        """Publish the states of all goals; if the goal ended, start the timeout of its result."""
+        """Publish the states of all goals.
+
+        If the goal has ended, start the timeout of its result.
+        """
         if GoalStatus(goal.status) not in ACTIVE:
             goal.ended_ns = self._node.get_clock().now_ns()
             self._watch_expiry()
@@ -300,11 +306,11 @@ class ActionServer(ActionEndpoint):
             goal.abort()
         elif result is None and not goal.result.ended():
             self._handle.logger.warning(
-                f"the execute callback of action '{self._action_name}' returned no result: an empty one is sent"
+                f"the execute callback of action '{self._action_name}' returned no result: an empty result is sent"
             )
         if result is not None and not isinstance(result, result_class):
             self._handle.logger.error(
-                f"the execute callback of action '{self._action_name}' gave {type(result)}, not {result_class}: "
+                f"the execute callback of action '{self._action_name}' returned {type(result)}, not {result_class}: "
                 "an empty result is sent"
             )
             result = None
@@ -378,5 +384,5 @@ class _Executions(Entity):
         return bool(self._waiting)
 
     def take(self) -> Callable[[], object] | None:
-        """Remove the oldest call from the queue and return it; None if the queue is empty."""
+        """Remove the oldest call from the queue and return it, or None if the queue is empty."""
         return self._take_from(self._waiting)

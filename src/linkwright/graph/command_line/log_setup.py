@@ -1,4 +1,4 @@
-"""The logging setup of a process, as its ROS arguments specify: levels, console, log file."""
+"""The logging setup that the ROS arguments of a process specify: levels, console, log file."""
 
 from __future__ import annotations
 

@@ -82,8 +82,8 @@ def parse(arguments: Sequence[str]) -> RosArguments:
     """Parse a command line, given without the program's name.
 
     Raises:
-        LinkwrightError: GRAPH221, a ROS argument is unknown, lacks its value or has a malformed one; or the code of a
-            mistake in a parameter file.
+        LinkwrightError: GRAPH221, a ROS argument is unknown, has no value or a malformed value; or the code of an error
+            in a parameter file.
     """
     ros = RosArguments()
     in_ros_arguments = False

@@ -216,7 +216,7 @@ class Endpoint(Part):
         )
 
     def begin(self) -> None:
-        """Add the endpoint to the graph, which connects matching endpoints."""
+        """Add the endpoint to the graph, and connect it to matching endpoints."""
         super().begin()
         self.node.graph.add(self)
 

@@ -245,7 +245,7 @@ def match(publisher: Publisher[Any], subscription: Subscription[Any]) -> None:
 
 
 def report_to_subscription(subscription: Subscription[Any], policy: str, sides: str) -> None:
-    """Report incompatible QoS to a subscription, which requests more than a publisher offers.
+    """Report incompatible QoS to a subscription that requests more than a publisher offers.
 
     The subscription's event callback receives the report; without such a callback, the report is logged.
 
@@ -263,7 +263,7 @@ def report_to_subscription(subscription: Subscription[Any], policy: str, sides: 
 
 
 def report_to_publisher(publisher: Publisher[Any], policy: str, sides: str) -> None:
-    """Report incompatible QoS to a publisher, which offers less than a subscription requests.
+    """Report incompatible QoS to a publisher that offers less than a subscription requests.
 
     See `report_to_subscription`.
     """

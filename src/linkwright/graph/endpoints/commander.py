@@ -1,4 +1,4 @@
-"""Revocation of the last command when its publisher is lost, for example to stop a drive."""
+"""Revokes the last command when its publisher is lost, for example to stop a drive."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ class Commander:
 
 
 def describe_lost_publisher(publisher: EndpointInfo) -> Any:
-    """Return a message that a publisher is lost, with its node and topic, for the log."""
+    """Return a log message about a lost publisher, with its node and topic."""
     node = publisher.node.full_name if publisher.node is not None else ""
     if not node:
         return phrase(

@@ -86,7 +86,7 @@ class _Token:
 
     @property
     def word(self) -> str:
-        """The keyword in upper case; empty for any other token."""
+        """The keyword in upper case, or an empty string for any other token."""
         return self.text.upper() if self.kind == "name" and self.text.upper() in _KEYWORDS else ""
 
 

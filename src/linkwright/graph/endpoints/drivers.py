@@ -1,4 +1,4 @@
-"""Detection and logging of several publishers that command one robot at the same time."""
+"""Detects and logs several publishers that command one robot at the same time."""
 
 from __future__ import annotations
 
@@ -14,25 +14,25 @@ from linkwright.graph.time.clock import Clock
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 _GAP_S = 2.5
-"""A dispute ends after this many seconds without a takeover.
+"""The seconds without a takeover after which a dispute ends.
 
 If two publishers each send once a second, each of them takes over twice in this time.
 """
 _QUIET_S = 10.0
-"""After this many seconds without a takeover, a dispute of the same parties is reported again."""
+"""The seconds without a takeover after which a dispute of the same parties is reported again."""
 
 
 class Dispute:
     """Detects publishers whose commands repeatedly replace each other.
 
-    A publisher takes over when its command differs from the previous one and another publisher sent that one. When
-    several publishers take over repeatedly for a while, this is a dispute. The following are not disputes: a handover;
-    a stop command from another publisher at the end; and the second for which nav2's velocity smoother continues to
-    publish after another server has begun to drive.
+    A publisher takes over when its command differs from the previous command, which another publisher sent. In a
+    dispute, several publishers take over repeatedly for a while. A handover is not a dispute. Neither is a final stop
+    command from another publisher, nor the second for which nav2's velocity smoother continues to publish after another
+    server has begun to drive.
 
     Args:
         lasting_s: how long the parties must contradict each other, in seconds.
-        times: how often each party must take over. The party that is in command at the start has one takeover already.
+        times: how often each party must take over. The party that commands at the start already has one takeover.
 
     Attributes:
         parties: the parties of the current or last dispute.
@@ -51,7 +51,7 @@ class Dispute:
 
         Args:
             publisher: the publisher of the command.
-            command: the content of the command; two commands that demand the same must compare equal.
+            command: the content of the command; commands with the same effect must compare equal.
             now_s: when the command arrived, in seconds.
 
         Returns:
@@ -104,13 +104,13 @@ class CommandedNode(Protocol):
 class DriverWatch:
     """Warns when several nodes command the same robot at the same time, and names the nodes.
 
-    There is one warning whenever the set of these nodes changes. As in ROS and Gazebo, each message takes effect as it
-    arrives: a dispute is reported, not prevented.
+    There is one warning whenever the set of these nodes changes. As in ROS and Gazebo, each message takes effect when
+    it arrives. A dispute is reported, not prevented.
 
     Args:
         logger: logs the warnings.
         graph: finds the node that a publisher belongs to.
-        now_ns: returns the time of the clock by which commands are timed, in nanoseconds.
+        now_ns: returns the current time of the clock that times commands, in nanoseconds.
     """
 
     def __init__(self, logger: Logger, graph: KnownEndpoints, now_ns: Callable[[], int]) -> None:

@@ -56,7 +56,7 @@ class _Watchdog:
             self._arm()
 
     def stop(self) -> None:
-        """Stop the watchdog until the next sign of life."""
+        """Stop the watchdog until the next call of `restart` or `resume`."""
         with self._lock:
             if self._alarm is not None:
                 self._alarm.cancel()
@@ -80,7 +80,7 @@ class _Watchdog:
 
 
 class EndpointEvents(Entity):
-    """The QoS events of an endpoint, which are queued for their callbacks as messages are."""
+    """The QoS events of an endpoint, queued for their callbacks like messages."""
 
     _deadline_info: type[EventCount]
 
@@ -103,13 +103,13 @@ class EndpointEvents(Entity):
         return f"event callback of topic '{self._name}'"
 
     def matched(self, change: int) -> None:
-        """Count a change in the number of matching endpoints, and notify the callback."""
+        """Count a change in the number of matching endpoints, and queue the callback."""
         self._match_count += change
         total = self._count("matched", max(change, 0))
         self._notify(self._callbacks.matched, QoSMatchedInfo(total, max(change, 0), self._match_count, change))
 
     def report_incompatible(self, policy: str) -> bool:
-        """Count an endpoint with incompatible QoS, and queue the callback for it, if there is one.
+        """Count an endpoint with incompatible QoS, and queue the callback, if any.
 
         Returns:
             Whether the warning in the log is omitted, because there is a callback or the user disabled the default.
@@ -183,16 +183,16 @@ class SubscriptionEvents(EndpointEvents):
             self._deadline.restart()
 
     def count_lost(self, count: int) -> None:
-        """Count lost messages, and notify the callback."""
+        """Count lost messages, and queue the callback."""
         self._notify(self._message_lost, QoSMessageLostInfo(self._count("lost", count), count))
 
     def set_outside_liveliness(self, alive: int, not_alive: int) -> None:
-        """Set the numbers of alive and not alive publishers in other processes."""
+        """Set the numbers of publishers in other processes that are alive and not alive."""
         (previous_alive, previous_not_alive), self._outside_counts = self._outside_counts, (alive, not_alive)
         self.liveliness(alive - previous_alive, not_alive - previous_not_alive)
 
     def liveliness(self, alive_change: int, not_alive_change: int) -> None:
-        """Update the numbers of publishers that are alive and not alive, and notify the callback."""
+        """Update the numbers of publishers that are alive and not alive, and queue the callback."""
         if not alive_change and not not_alive_change:
             return
         self._alive += alive_change

@@ -1,4 +1,4 @@
-"""Publishers, which pass messages to subscriptions of this process and to the transport."""
+"""Publishers. They pass messages to subscriptions of this process and to the transport."""
 
 from __future__ import annotations
 
@@ -188,8 +188,9 @@ class Publisher(TopicEndpoint[M]):
     def hold_for_outside(self, wait_until_sent: Callable[[float | None], bool]) -> None:
         """Hold messages until `set_outside` is called. The transport calls both, in this order.
 
-        Under ROS 2 a subscription that has been discovered receives every message of a publisher, from the first. Here
-        the transport creates the writer in its own thread, a moment after the publisher, so earlier messages are held.
+        In ROS 2, a discovered subscription receives all messages of a publisher, including the first. The transport
+        creates the writer in its own thread, shortly after the publisher is created. Messages that are published before
+        are therefore held.
 
         Args:
             wait_until_sent: waits until `set_outside` was called, for at most the given seconds (None for no limit);
@@ -208,7 +209,7 @@ class Publisher(TopicEndpoint[M]):
     ) -> None:
         """Set or clear the function that sends messages to other processes. Called by the transport.
 
-        Messages that are held, or stored for late joiners, are sent first. No message is lost or sent twice.
+        Messages that are held or stored for late joiners are sent first. No message is lost or sent twice.
 
         Args:
             send: called in the publishing thread with each message, or its CDR bytes if those were published; None

@@ -30,7 +30,7 @@ EVENT_TOPIC_SUFFIX = "/_service_event"
 
 
 class ServiceIntrospectionState(IntEnum):
-    """Which parts of requests are published for introspection, with rclpy's numbers and names."""
+    """The parts of requests that are published for introspection, with rclpy's numbers and names."""
 
     OFF = 0
     METADATA = 1
@@ -153,7 +153,9 @@ _NO_REQUESTS: deque[Any] = deque(maxlen=0)
 
 
 class Service(IntrospectedEndpoint, Entity, Generic[Request, Response]):
-    """Answers the requests to a service (rclpy ``Service``); created by ``Node.create_service``.
+    """Answers the requests to a service (rclpy ``Service``).
+
+    ``Node.create_service`` creates services.
 
     Args:
         callback: a function or coroutine function that is called with the request and an empty response, and returns
@@ -289,11 +291,13 @@ class OutsideService(Protocol):
 
 
 class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
-    """Calls a service (rclpy ``Client``); created by ``Node.create_client``.
+    """Calls a service (rclpy ``Client``).
+
+    ``Node.create_client`` creates clients.
 
     Requests that are made before a server is available are queued; the QoS depth limits their number. If several
-    servers have the name, the oldest one of this process is called. A server of another process is called only if
-    this process has none.
+    servers have the same name, the oldest server of this process is called. A server of another process is called only
+    if this process has no such server.
     """
 
     kind = EndpointKind.CLIENT
@@ -383,7 +387,7 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
 
         Raises:
             TypeError: the request is not of the service's type.
-            RuntimeError: the calling thread runs the event loop that would have to receive the response.
+            RuntimeError: the calling thread runs the event loop that must receive the response.
         """
         is_own_thread = getattr(self.dispatcher, "is_own_thread", None)
         if is_own_thread is not None and is_own_thread():
@@ -398,7 +402,7 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
         return future.result()
 
     def remove_pending_request(self, future: Future[Any]) -> None:
-        """Cancel a request: its future will not receive a response."""
+        """Cancel a request. Its future will not receive a response."""
         with self._lock:
             cancel = self._pending.pop(future, None)
             self._unsent = deque(
@@ -436,12 +440,14 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
     # --- called by the bus and the transport ---------------------------------------------------------------------
 
     def set_server(self, server: Service[Request, Response] | None) -> None:
-        """Set the service of this process that receives the requests; None if there is none."""
+        """Set the service of this process that receives the requests, or None if there is none."""
         self._server = server
         self._send_queued()
 
     def set_outside(self, outside: OutsideService | None) -> None:
-        """Set the server in another process; None if there is none. Called by the transport.
+        """Set the server in another process, or None if there is none.
+
+        The transport calls this method.
 
         The client uses this server only if this process has none.
         """
@@ -496,4 +502,4 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
 
 
 def _ignore_cancellation() -> None:
-    """Do nothing: a request to a service of this process cannot be cancelled."""
+    """Do nothing, because a request to a service of this process cannot be cancelled."""

@@ -1,4 +1,4 @@
-"""Subscriptions, whose messages are queued until a dispatcher runs the callback."""
+"""Subscriptions. Their messages are queued until a dispatcher runs the callback."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class QueuedMessage:
 
 
 class CallbackType(Enum):
-    """Which arguments a callback takes (rclpy ``Subscription.CallbackType``)."""
+    """The arguments that a callback accepts (rclpy ``Subscription.CallbackType``)."""
 
     MessageOnly = 0
     WithMessageInfo = 1
@@ -75,7 +75,7 @@ class Subscription(TopicEndpoint[M], Entity):
         self._describe(node, msg_type, topic_name, qos_profile)
         self.raw = raw
         self.malformed = 0
-        """How many messages could not be deserialized."""
+        """The number of messages that could not be deserialized."""
         self._waiting: deque[Any] = deque(maxlen=qos_profile.queue_length)
         self._plain_type: type | None = None
         self._wants_info = False
@@ -99,10 +99,12 @@ class Subscription(TopicEndpoint[M], Entity):
 
     @property
     def callback(self) -> Callable[..., object]:
-        """The callback, called with the message, and with a `MessageInfo` if it takes two arguments.
+        """The callback.
+
+        It is called with the message, and with a `MessageInfo` if it accepts two arguments.
 
         Raises:
-            RuntimeError: the callback takes neither one nor two arguments.
+            RuntimeError: the callback accepts neither one nor two arguments.
         """
         return self._callback
 
@@ -141,7 +143,10 @@ class Subscription(TopicEndpoint[M], Entity):
         return self._filter is not None
 
     def get_content_filter(self) -> ContentFilterOptions:
-        """Return the current content filter; if there is none, one with an empty expression."""
+        """Return the current content filter.
+
+        Without a filter, the result has an empty expression.
+        """
         from linkwright.graph.endpoints.content_filter import ContentFilterOptions
 
         return ContentFilterOptions("") if self._filter is None else self._filter.options
@@ -183,13 +188,13 @@ class Subscription(TopicEndpoint[M], Entity):
         """Pass all queued messages to the callback in a single dispatched call, from now on.
 
         The callback is still called once per message. Batches are meant for short callbacks that receive many messages,
-        such as transforms: with one message per dispatched call, a loop that has other work would lag behind by the
-        length of the queue.
+        such as transforms: with one message per dispatched call, a busy loop would lag behind by the length of the
+        queue.
         """
         self._is_batched = True
 
     def set_outside_liveliness(self, alive: int, not_alive: int) -> None:
-        """Set how many matching publishers in other processes are alive, and how many are not.
+        """Set the numbers of matching publishers in other processes that are alive and not alive.
 
         The transport calls this.
         """
@@ -213,7 +218,7 @@ class Subscription(TopicEndpoint[M], Entity):
             self.enqueue(message, info)
 
     def enqueue(self, message: M | bytes | QueuedMessage, info: MessageInfo | None = None) -> None:
-        """Queue a message for the callback, bypassing the node's `message_filter`; see `receive`."""
+        """Queue a message for the callback, bypassing the node's `message_filter`. See `receive`."""
         if self._filter is not None and not self._passes_filter(message, self._filter):
             return
         if self.events is not None:

@@ -35,7 +35,7 @@ _MAX_POSTPONEMENTS = 2
 
 
 class Context(Protocol):
-    """A context, whose shutdown ends spinning (rclpy ``Context``)."""
+    """A context. Its shutdown ends spinning (rclpy ``Context``)."""
 
     def ok(self) -> bool:
         """Return whether the context is initialized and not shut down."""
@@ -63,7 +63,9 @@ def deadline_after(timeout_sec: float | None) -> int | None:
 
 
 class Executor:
-    """Runs the callbacks of nodes; the base class of all executors, including users' own.
+    """Runs the callbacks of nodes.
+
+    This is the base class of all executors, including users' own.
 
     A user's executor defines `spin_once`, which gets its work from `wait_for_ready_callbacks`. As in rclpy the class is
     not abstract, and may be instantiated.
@@ -190,12 +192,12 @@ class Executor:
                 return
 
     def spin_once_until_future_complete(self, future: Future[Any], timeout_sec: float | None = None) -> None:
-        """Do the same as `spin_once`, but stop waiting when the future is done."""
+        """Wait like `spin_once`, but at most until the future is done."""
         future.add_waiter(self.wake)
         self.spin_once(timeout_sec)
 
     def shutdown(self, timeout_sec: float | None = None) -> bool:
-        """Stop running callbacks, and wait for those that are running in other threads.
+        """Stop running callbacks, and wait for callbacks that are running in other threads.
 
         Args:
             timeout_sec: the maximum wait, in seconds; None or a negative number for no limit.
@@ -243,11 +245,11 @@ class Executor:
         return next(self._wait_for_ready_callbacks(timeout_sec, nodes, condition))
 
     def ready(self, entity: Entity) -> None:
-        """Queue an entity that has work; see ``Dispatcher.ready``."""
+        """Queue an entity that has work. See ``Dispatcher.ready``."""
         self._work.add(entity)
 
     def call_at(self, steady_ns: int, callback: Callable[[], None]) -> ScheduledCall:
-        """Schedule a callback for a value of ``time.monotonic_ns``; see ``Dispatcher.call_at``."""
+        """Schedule a callback for a value of ``time.monotonic_ns``. See ``Dispatcher.call_at``."""
         return self._work.call_at(steady_ns, callback)
 
     def run_again(self, task: Task[Any]) -> None:
@@ -314,6 +316,8 @@ class Executor:
 
     def _admit(self, item: Any, *, begin: bool = True) -> bool:
         """Return whether work that was taken from the queue can run now.
+
+        If `begin` is true, the callback group of an entity is notified that the entity begins to run.
 
         An entity that its callback group does not allow to run yet is set aside.
         """
@@ -435,7 +439,10 @@ def _raise_fault(task: Task[Any]) -> None:
 
 
 class SpinningExecutor(Executor):
-    """An executor that spins in a loop; subclasses define one iteration of the loop."""
+    """The base class of executors that spin in a loop.
+
+    Subclasses define one iteration of the loop.
+    """
 
     def spin(self) -> None:
         """Run callbacks until the executor or the context is shut down."""
@@ -447,11 +454,11 @@ class SpinningExecutor(Executor):
             self._end_spinning()
 
     def spin_once(self, timeout_sec: float | None = None) -> None:
-        """Wait for a callback, then run it or have it run; see ``Executor.spin_once``."""
+        """Wait for a callback, then run it or have it run. See ``Executor.spin_once``."""
         self._spin_single(timeout_sec, None)
 
     def spin_once_until_future_complete(self, future: Future[Any], timeout_sec: float | None = None) -> None:
-        """Do the same as `spin_once`, but stop waiting when the future is done."""
+        """Wait like `spin_once`, but at most until the future is done."""
         future.add_waiter(self.wake)
         self._spin_single(timeout_sec, future.ended)
 

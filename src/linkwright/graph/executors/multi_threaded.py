@@ -57,7 +57,7 @@ class MultiThreadedExecutor(SpinningExecutor):
             self._is_spinning = False
 
     def shutdown(self, timeout_sec: float | None = None, *, wait_for_threads: bool = True) -> bool:
-        """Stop running callbacks; wait for running callbacks and for the threads to end.
+        """Stop running callbacks, and wait for the running callbacks and the threads to end.
 
         Args:
             timeout_sec: the maximum wait, in seconds; None or a negative number for no limit.
@@ -147,7 +147,7 @@ class Workers:
         return self._unfinished_count < self._limit
 
     def submit(self, job: Callable[[], None]) -> None:
-        """Run a job in a thread of the pool; the job must not raise."""
+        """Run a job in a thread of the pool. The job must not raise an exception."""
         with self._lock:
             self._unfinished_count += 1
             if self._unfinished_count > len(self._threads) and len(self._threads) < self._limit:

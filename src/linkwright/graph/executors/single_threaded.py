@@ -12,12 +12,15 @@ from linkwright.graph.faults import ConditionReachedException, ShutdownException
 class SingleThreadedExecutor(SpinningExecutor):
     """Runs callbacks one by one in the spinning thread (rclpy ``SingleThreadedExecutor``).
 
-    If a callback raises an exception, ``spin`` raises it, too. If the context is shut down from outside during the
-    wait, ``spin`` raises ``ExternalShutdownException``.
+    If a callback raises an exception, ``spin`` raises it, too. If the context is shut down during the wait, ``spin``
+    raises ``ExternalShutdownException``.
     """
 
     def is_own_thread(self) -> bool:
-        """Return whether the calling thread spins this executor, and so must not block on callbacks."""
+        """Return whether the calling thread spins this executor.
+
+        If it does, it must not block on callbacks.
+        """
         return set(self._spinners) == {threading.get_ident()}
 
     def _turn(self, deadline_ns: int | None, condition: Callable[[], bool] | None) -> None:

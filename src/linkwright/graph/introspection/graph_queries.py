@@ -18,14 +18,13 @@ from linkwright.graph.names.rules import NodeIdentity, split
 from linkwright.graph.qos.profile import UNKNOWN_QOS, HistoryPolicy, QoSProfile
 
 OnNamesakes = Callable[[frozenset[str]], object]
-"""Receives the full names of the nodes of this process whose names other processes use now.
-
+"""Receives the full names of the nodes of this process whose names other processes also use.
 It may be called from any thread, but never by two threads at the same time.
 """
 
 
 class Namesakes:
-    """Tracks node names of this process that other processes use too, and reports changes.
+    """Tracks node names of this process that other processes also use, and reports changes.
 
     Args:
         notify: receives the shared names when they change. None logs a warning for each name when it becomes shared.
@@ -174,7 +173,7 @@ _SERVICE, _CLIENT = EndpointKind.SERVICE, EndpointKind.CLIENT
 
 
 class GraphQueries:
-    """The queries that a graph answers, named as in rclpy; base class of `Graph`."""
+    """The queries that a graph answers, named as in rclpy. This is the base class of `Graph`."""
 
     bus: Bus
     _nodes: dict[NodeHandle, None]
@@ -185,7 +184,7 @@ class GraphQueries:
     _logger: Logger
 
     def identities(self) -> list[NodeIdentity]:
-        """Return the nodes of this process, and those discovered so far in other processes."""
+        """Return the nodes of this process, and the nodes discovered so far in other processes."""
         remote_nodes: Sequence[NodeIdentity] = ()
         if self._transport is not None:
             self._transport.look_around()
@@ -240,11 +239,11 @@ class GraphQueries:
         return action_names_and_types(self.endpoints(), _PUBLISHER, _SUBSCRIPTION)
 
     def get_action_server_names_and_types_by_node(self, node_name: str, node_namespace: str) -> NamesAndTypes:
-        """Return the actions that a node serves; see `get_publisher_names_and_types_by_node`."""
+        """Return the actions that a node serves. See `get_publisher_names_and_types_by_node`."""
         return action_names_and_types(self._endpoints_of_node(node_name, node_namespace), _PUBLISHER)
 
     def get_action_client_names_and_types_by_node(self, node_name: str, node_namespace: str) -> NamesAndTypes:
-        """Return the actions of a node's clients; see `get_publisher_names_and_types_by_node`."""
+        """Return the actions of a node's clients. See `get_publisher_names_and_types_by_node`."""
         return action_names_and_types(self._endpoints_of_node(node_name, node_namespace), _SUBSCRIPTION)
 
     def get_publisher_names_and_types_by_node(
@@ -265,15 +264,18 @@ class GraphQueries:
     def get_subscriber_names_and_types_by_node(
         self, node_name: str, node_namespace: str, no_demangle: bool = False
     ) -> NamesAndTypes:
-        """Return the topics that a node subscribes to; see `get_publisher_names_and_types_by_node`."""
+        """Return the topics that a node subscribes to.
+
+        See `get_publisher_names_and_types_by_node`.
+        """
         return _mangle(names_and_types(self._endpoints_of_node(node_name, node_namespace), _SUBSCRIPTION), no_demangle)
 
     def get_service_names_and_types_by_node(self, node_name: str, node_namespace: str) -> NamesAndTypes:
-        """Return the services that a node serves; see `get_publisher_names_and_types_by_node`."""
+        """Return the services that a node serves. See `get_publisher_names_and_types_by_node`."""
         return names_and_types(self._endpoints_of_node(node_name, node_namespace), _SERVICE)
 
     def get_client_names_and_types_by_node(self, node_name: str, node_namespace: str) -> NamesAndTypes:
-        """Return the services of a node's clients; see `get_publisher_names_and_types_by_node`."""
+        """Return the services of a node's clients. See `get_publisher_names_and_types_by_node`."""
         return names_and_types(self._endpoints_of_node(node_name, node_namespace), _CLIENT)
 
     def get_publishers_info_by_topic(self, topic: str) -> list[TopicEndpointInfo]:
@@ -307,7 +309,7 @@ class GraphQueries:
     # --- waiting -----------------------------------------------------------------------------------------------------
 
     def notify_change(self) -> None:
-        """Wake the threads blocked in `wait_until`, which check their conditions again.
+        """Wake the threads that are blocked in `wait_until`. They check their conditions again.
 
         Any thread may call this.
         """
@@ -335,7 +337,7 @@ class GraphQueries:
             timeout_sec: the maximum wait, in seconds; None or a negative number for no limit.
 
         Returns:
-            Whether the condition holds at the end of the wait, which closing the graph ends as well.
+            Whether the condition holds at the end of the wait. Closing the graph also ends the wait.
         """
         deadline = None if timeout_sec is None or timeout_sec < 0 else time.monotonic() + timeout_sec
         while True:
@@ -349,7 +351,7 @@ class GraphQueries:
                 self._changed.wait(_MAX_WAIT_S if remaining_s is None else min(remaining_s, _MAX_WAIT_S))
 
     def wait_for_node(self, fully_qualified_node_name: str, timeout: float | None = None) -> bool:
-        """Block the calling thread until a node exists; return whether it exists.
+        """Block the calling thread until a node exists, and return whether it exists.
 
         Args:
             fully_qualified_node_name: the node's full name, with or without the leading slash.
@@ -383,7 +385,10 @@ _MAX_WAIT_S = 0.1
 
 
 def _add_type_hash(endpoint: EndpointInfo) -> EndpointInfo:
-    """Return the description with the type hash added, which is computed only when needed."""
+    """Return the description with the type hash added.
+
+    The hash is computed only when it is needed.
+    """
     if endpoint.type_hash or not endpoint.local:
         return endpoint
     from linkwright.messages import get_interface, type_hash

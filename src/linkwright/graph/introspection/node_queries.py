@@ -24,7 +24,7 @@ _HASH = re.compile(r"RIHS01_[0-9a-f]{64}")
 def has_type_descriptions_by_default(variables: Mapping[str, str] = os.environ) -> bool:
     """Return whether nodes of the distribution ``ROS_DISTRO`` describe their types.
 
-    This means that they have the type description service. If ``ROS_DISTRO`` is not set, Humble is assumed.
+    Such nodes offer the type description service. If ``ROS_DISTRO`` is not set, Humble is assumed.
     """
     return not is_before_iron(variables)
 
@@ -116,7 +116,7 @@ R = TypeVar("R")
 
 
 class NodeQueries:
-    """A node's queries to the graph; base class of `Node`.
+    """A node's queries to the graph. This is the base class of `Node`.
 
     Names in queries are expanded relative to the node, and remapped.
     """
@@ -128,7 +128,7 @@ class NodeQueries:
 
     @staticmethod
     def _graph_query(query: Callable[Concatenate[GraphQueries, P], R]) -> Callable[Concatenate[NodeQueries, P], R]:
-        """Wrap a graph query as a method of the node; used only in the class body."""
+        """Wrap a graph query as a method of the node. Used only in the class body."""
 
         @wraps(query)
         def ask(node: NodeQueries, /, *args: P.args, **kwargs: P.kwargs) -> R:
@@ -145,7 +145,7 @@ class NodeQueries:
         return self.__handle.resolve_topic_name(topic, only_expand=only_expand)
 
     def resolve_service_name(self, service: str, *, only_expand: bool = False) -> str:
-        """Return the absolute name of a service or action; see `resolve_topic_name`.
+        """Return the absolute name of a service or action. See `resolve_topic_name`.
 
         Raises:
             InvalidServiceNameError: the service name is not valid.
@@ -182,7 +182,7 @@ class NodeQueries:
         )
 
     def get_subscriptions_info_by_topic(self, topic_name: str, no_mangle: bool = False) -> list[TopicEndpointInfo]:
-        """Return the subscriptions to a topic; see `get_publishers_info_by_topic`."""
+        """Return the subscriptions to a topic. See `get_publishers_info_by_topic`."""
         name = topic_name if no_mangle else _resolve_for_query(self.__handle.resolve_topic_name, topic_name)
         return self.__graph.get_subscriptions_info_by_topic(name)
 

@@ -49,7 +49,7 @@ class TrafficWindow:
         self._messages.append((now_ns, size))
 
     def traffic(self, now_ns: int) -> Traffic | None:
-        """Return the statistics; None while there are fewer than two messages.
+        """Return the statistics, or None while there are fewer than two messages.
 
         As in ``ros2 topic bw``, the bandwidth is averaged from the first message until now, so it decreases when no
         more messages arrive. The rate is averaged from the first message to the last one, or until now if the

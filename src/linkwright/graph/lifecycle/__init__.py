@@ -1,1 +1,1 @@
-"""Managed nodes, which have lifecycle states."""
+"""Managed nodes. They have lifecycle states."""

@@ -57,7 +57,7 @@ class LifecycleTransitionError(LinkwrightError, RclError):
 
 
 class LifecycleNodeMixin(ManagedEntity):
-    """Turns a node class into a managed node class; to be initialized after the node.
+    """Turns a node class into a managed node class. It must be initialized after the node.
 
     The callbacks ``on_configure``, ``on_activate``, ``on_deactivate``, ``on_cleanup``, ``on_shutdown`` and ``on_error``
     receive the state in which the transition starts, and return a `TransitionCallbackReturn`. Unless overridden, each
@@ -106,19 +106,19 @@ class LifecycleNodeMixin(ManagedEntity):
         return self._change_by_label("configure")
 
     def trigger_cleanup(self) -> TransitionCallbackReturn:
-        """Clean the node up; see `trigger_configure`."""
+        """Clean the node up. See `trigger_configure`."""
         return self._change_by_label("cleanup")
 
     def trigger_activate(self) -> TransitionCallbackReturn:
-        """Activate the node; see `trigger_configure`."""
+        """Activate the node. See `trigger_configure`."""
         return self._change_by_label("activate")
 
     def trigger_deactivate(self) -> TransitionCallbackReturn:
-        """Deactivate the node; see `trigger_configure`."""
+        """Deactivate the node. See `trigger_configure`."""
         return self._change_by_label("deactivate")
 
     def trigger_shutdown(self) -> TransitionCallbackReturn:
-        """Shut the node down; see `trigger_configure`."""
+        """Shut the node down. See `trigger_configure`."""
         return self._change_by_label("shutdown")
 
     def add_managed_entity(self, entity: ManagedEntity) -> None:

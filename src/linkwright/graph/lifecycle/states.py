@@ -133,9 +133,9 @@ class StateMachine:
         return [transition for transition in TRANSITIONS if transition.start == self.state]
 
     def by_id(self, transition_id: int) -> Transition | None:
-        """Return the available transition with an ID; None if there is none."""
+        """Return the available transition with an ID, or None if there is none."""
         return next((transition for transition in self.available() if transition.transition_id == transition_id), None)
 
     def by_label(self, label: str) -> Transition | None:
-        """Return the available transition with a label; None if there is none."""
+        """Return the available transition with a label, or None if there is none."""
         return next((transition for transition in self.available() if transition.label == label), None)

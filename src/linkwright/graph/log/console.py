@@ -98,7 +98,7 @@ _COLOURS = {
 
 
 def print_to_console(record: LogRecord) -> None:
-    """Write a record to standard error; to standard output if RCUTILS_LOGGING_USE_STDOUT is 1.
+    """Write a record to standard error, or to standard output if RCUTILS_LOGGING_USE_STDOUT is 1.
 
     Records are coloured on terminals. RCUTILS_COLORIZED_OUTPUT (0 or 1) overrides this; if it is not set, NO_COLOR
     turns colours off. Each record is flushed immediately, regardless of RCUTILS_LOGGING_BUFFERED_STREAM, so that no

@@ -14,7 +14,7 @@ from linkwright.graph.log.logger import LogLevel, LogRecord
 
 
 def log_folder(environment: Mapping[str, str] | None = None) -> Path:
-    """Return the log folder: ROS_LOG_DIR, else ``log`` in ROS_HOME, else ``~/.ros/log``."""
+    """Return the log folder: ROS_LOG_DIR, or ``log`` in ROS_HOME, or ``~/.ros/log``."""
     environment = os.environ if environment is None else environment
     if environment.get("ROS_LOG_DIR"):
         return Path(environment["ROS_LOG_DIR"]).expanduser()

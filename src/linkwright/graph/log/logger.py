@@ -29,7 +29,7 @@ class LogLevel(IntEnum):
 
 
 def level_from_name(name: str) -> LogLevel | None:
-    """Return the severity with a name, in any case; None if the name is unknown."""
+    """Return the severity with a name, regardless of case, or None if the name is unknown."""
     return LogLevel.__members__.get(name.upper())
 
 
@@ -49,7 +49,7 @@ class LogLevels:
         self.revision = 0
 
     def set(self, name: str, level: LogLevel) -> None:
-        """Set the level of a logger; UNSET removes the level.
+        """Set the level of a logger. UNSET removes the level.
 
         With an empty name, set the default level.
         """
@@ -66,7 +66,7 @@ class LogLevels:
         self.revision += 1
 
     def own_level(self, name: str) -> LogLevel:
-        """Return the level that was set for a logger itself; UNSET if none was set.
+        """Return the level that was set for a logger itself, or UNSET if none was set.
 
         For an empty name, return the default level.
         """
@@ -113,7 +113,7 @@ class Logger:
     """Logs under one name, with the methods of rclpy's loggers.
 
     The methods ``debug`` to ``fatal`` and `log` accept the filters ``once=True``, ``skip_first=True`` and
-    ``throttle_duration_sec=SECONDS``; the latter may be combined with ``throttle_time_source_type=CLOCK``. A filter
+    ``throttle_duration_sec=SECONDS``. ``throttle_time_source_type=CLOCK`` sets the clock of the throttle. A filter
     applies to one call site. The methods return whether the record was logged.
 
     Args:
@@ -125,7 +125,7 @@ class Logger:
 
     Attributes:
         name: the name in the records.
-        rosout: receives the records, too, to publish them on ``/rosout``; None for no topic. Children inherit it.
+        rosout: publishes the records on ``/rosout``; None to publish nothing. Children inherit it.
     """
 
     __slots__ = ("_calls", "_effective", "_levels", "_now_ns", "_revision", "_sink", "_steady_ns", "name", "rosout")
@@ -158,14 +158,17 @@ class Logger:
         self.set_level(level)
 
     def set_level(self, level: int) -> None:
-        """Set the logger's level, which its children inherit.
+        """Set the level of the logger. Its children inherit the level.
 
         With UNSET the logger inherits its level again.
         """
         self._levels.set(self.name, LogLevel(level))
 
     def get_effective_level(self) -> LogLevel:
-        """Return the level in force: the level of the logger or of its nearest ancestor, or the default."""
+        """Return the level in force for this logger.
+
+        It is the level of the logger or of its nearest ancestor, or the default level.
+        """
         if self._revision != self._levels.revision:
             self._effective = self._levels.effective_level(self.name)
             self._revision = self._levels.revision
@@ -232,7 +235,7 @@ class Logger:
         return self.log(message, LogLevel.WARN, **filters)
 
     def warn(self, message: object, **filters: Any) -> bool:
-        """Log with severity WARN; rclpy prefers `warning`."""
+        """Log with severity WARN. `warning` is rclpy's preferred name."""
         return self.log(message, LogLevel.WARN, **filters)
 
     def error(self, message: object, **filters: Any) -> bool:
@@ -337,7 +340,7 @@ class CallFilter:
             raise ValueError("Logging filter parameters cannot be changed between calls.")
 
     def should_log(self) -> bool:
-        """Count a call, and return whether it is to be logged."""
+        """Count a call, and return whether it must be logged."""
         if self._duration_s:
             now_s = self._now_s()
             # If the clock jumped back, the throttle starts again.

@@ -27,7 +27,7 @@ T = TypeVar("T")
 
 
 class Entity(Part, ABC):
-    """A source of callbacks, from which a dispatcher takes calls.
+    """A source of callbacks. A dispatcher takes calls from it.
 
     Attributes:
         callback_group: decides which entities may run at the same time; the node's default group unless another is
@@ -46,14 +46,14 @@ class Entity(Part, ABC):
         self.callback_group = node.default_callback_group if callback_group is None else callback_group
         self.dispatcher: Dispatcher | None = None
         self._announced = False
-        # A user's own group need not have rclpy's methods.
+        # A user's group may lack rclpy's methods.
         add_entity = getattr(self.callback_group, "add_entity", None)
         if add_entity is not None:
             add_entity(self)
 
     @abstractmethod
     def take(self) -> Callable[[], object] | None:
-        """Remove the next call from the entity's queue and return it; None if there is none.
+        """Remove the next call from the entity's queue and return it, or None if there is none.
 
         The call may raise any exception of the user's code. It may return a coroutine, which the dispatcher runs to
         completion.
@@ -84,7 +84,9 @@ class Entity(Part, ABC):
                 dispatcher.ready(self)
 
     def _take_from(self, queue: deque[T]) -> T | None:
-        """Remove the oldest item from one of the entity's queues and return it; None if it is empty.
+        """Remove the oldest item from one of the entity's queues and return it.
+
+        Return None if the queue is empty.
 
         If items remain in the queue, the entity announces itself again.
         """
@@ -140,7 +142,7 @@ class GuardCondition(Entity):
         return self._triggered
 
     def take(self) -> Callable[[], object] | None:
-        """Return the callback if the guard condition was triggered; otherwise None."""
+        """Return the callback if the guard condition was triggered, otherwise None."""
         self._announced = False
         if not self._triggered or self.destroyed:
             return None
@@ -170,7 +172,7 @@ def accepts(callback: Callable[..., object], count: int, *, unknown: bool) -> bo
 _MAX_CALLS_PER_TURN = 256
 _MAX_TURN_SECONDS = 0.002
 _MAX_TURNS = 1000
-"""How many turns without a call `settle` waits for coroutines to become idle."""
+"""The maximum number of loop iterations without a call for which `settle` waits for idle coroutines."""
 
 
 class LoopDispatcher:
@@ -192,7 +194,7 @@ class LoopDispatcher:
         self._is_wake_scheduled = False
         self._closed = False
         self.on_error: Callable[[Entity, Exception], None] = Entity.report
-        """Handles the error of a callback; it is logged unless this is changed."""
+        """Handles the error of a callback. By default, the error is logged."""
         self._tasks: dict[asyncio.Task[None], NodeHandle] = {}
         self._group_states: dict[CallbackGroup, _GroupState] = {}
         timebase.attach(self)
@@ -207,7 +209,7 @@ class LoopDispatcher:
         return threading.get_ident() == self._thread
 
     def ready(self, entity: Entity) -> None:
-        """Queue an entity, whose next call then runs in the loop. Callable from any thread."""
+        """Queue an entity. Its next call then runs in the loop. Callable from any thread."""
         self._ready.append(entity)
         if self._is_scheduled:
             return
@@ -224,7 +226,10 @@ class LoopDispatcher:
         return _ThreadsafeAlarm(self, steady_ns, callback)
 
     def call_threadsafe(self, callback: Callable[[], None]) -> None:
-        """Schedule a callback on the loop, from any thread. Does nothing if the loop has ended."""
+        """Schedule a callback on the loop, from any thread.
+
+        This has no effect if the loop has ended.
+        """
         self._call_threadsafe(callback)
 
     def forget(self, node: NodeHandle) -> None:
@@ -236,8 +241,8 @@ class LoopDispatcher:
     async def settle(self) -> None:
         """Wait until no work is ready, including calls that other calls make ready.
 
-        Other coroutines on the loop run, too, until they wait for something. The number of iterations that are granted
-        to them is limited, in case a coroutine never waits.
+        Other coroutines on the loop also run until they wait. The number of loop iterations for them is limited, in
+        case a coroutine never waits.
         """
         await asyncio.sleep(0)
         turns = 0

@@ -75,14 +75,14 @@ def report_self_wait(future: WaitableFuture) -> None:
     _reported.add((callback, location))
     client.node.logger.error(
         f"callback '{callback.co_name}' ({callback.co_filename}:{callback.co_firstlineno}) waits at {location} for the "
-        f"{client.what}, which is in the same mutually exclusive callback group: on a robot it waits for ever. Give "
+        f"{client.what}, which is in the same mutually exclusive callback group: on a robot it waits forever. Give "
         "the client a callback group of its own and use a MultiThreadedExecutor, or continue in a done callback of "
         "call_async()"
     )
 
 
 def _running_entity(frame: FrameType) -> Any:
-    """Return the entity whose callback an executor's frame runs; None for any other frame."""
+    """Return the entity whose callback an executor's frame runs, or None for any other frame."""
     return frame.f_locals.get(RUNNER) if RUNNER in frame.f_code.co_varnames else None
 
 
@@ -116,7 +116,7 @@ class StepsByExecutor:
 
 
 class Future(Generic[T]):
-    """A future result, which can be awaited in coroutines of asyncio and of an executor.
+    """A future result. Coroutines of asyncio and of an executor can await it.
 
     Args:
         executor: runs the done callbacks (through ``create_task(callback, future)``). Without an executor they are
@@ -167,7 +167,7 @@ class Future(Generic[T]):
         self._notify()
 
     def result(self) -> T | None:
-        """Return the result; None while the future has none.
+        """Return the result, or None while the future has none.
 
         Raises:
             Exception: the exception that the future was completed with.
@@ -178,7 +178,7 @@ class Future(Generic[T]):
         return self._result
 
     def exception(self) -> BaseException | None:
-        """Return the exception that the future was completed with; None if there is none."""
+        """Return the exception that the future was completed with, or None if there is none."""
         self._exception_fetched = True
         return self._exception
 
@@ -211,7 +211,7 @@ class Future(Generic[T]):
         self._call(callback)
 
     def remove_done_callback(self, callback: Callable[[Any], object]) -> int:
-        """Unregister a callback; return how many times the callback was registered."""
+        """Unregister a callback, and return how many times it was registered."""
         with self._lock:
             remaining_callbacks = [registered for registered in self._callbacks if registered != callback]
             removed_count = len(self._callbacks) - len(remaining_callbacks)
@@ -234,7 +234,7 @@ class Future(Generic[T]):
             self.set_result(result)
 
     def fail(self, exception: BaseException, dispatcher: Any) -> None:
-        """Complete the future with an exception, unless it is done or cancelled; see `hand_over`."""
+        """Complete the future with an exception, unless it is done or cancelled. See `hand_over`."""
         if not self.ended():
             self._run_callbacks_by(dispatcher)
             self.set_exception(exception)

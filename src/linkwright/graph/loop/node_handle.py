@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 class CallbackGroup:
-    """Decides which of its entities may run; a base class for users' own groups.
+    """Decides which of its entities may run. This is the base class for users' own groups.
 
     An executor calls `can_execute`, then `beginning_execution`, which may still refuse, and finally `ending_execution`.
     When a callback has ended, the executor calls `can_execute` again for the entities that were refused.
@@ -38,7 +38,7 @@ class CallbackGroup:
         self._forget = self.entities.discard
 
     def add_entity(self, entity: Any) -> None:
-        """Add an entity to the group, which from now on decides when the entity's callbacks run."""
+        """Add an entity to the group. The group then decides when the entity's callbacks run."""
         self.entities.add(weakref.ref(entity, self._forget))
 
     def has_entity(self, entity: Any) -> bool:
@@ -50,7 +50,7 @@ class CallbackGroup:
         raise NotImplementedError
 
     def beginning_execution(self, entity: Any) -> bool:
-        """Record that a member is about to run; return False if the member may not run."""
+        """Record that a member is about to run, and return False if it may not run."""
         raise NotImplementedError
 
     def ending_execution(self, entity: Any) -> None:
@@ -62,15 +62,15 @@ class ReentrantCallbackGroup(CallbackGroup):
     """A group whose callbacks may run at any time, even several times in parallel."""
 
     def can_execute(self, entity: Any) -> bool:
-        """Return True: any member may run."""
+        """Return True, because any member may run."""
         return True
 
     def beginning_execution(self, entity: Any) -> bool:
-        """Return True: any member may run."""
+        """Return True, because any member may run."""
         return True
 
     def ending_execution(self, entity: Any) -> None:
-        """Do nothing: there is no state to update."""
+        """Do nothing, because there is no state to update."""
 
 
 class MutuallyExclusiveCallbackGroup(CallbackGroup):
@@ -89,7 +89,7 @@ class MutuallyExclusiveCallbackGroup(CallbackGroup):
         return self._active is None
 
     def beginning_execution(self, entity: Any) -> bool:
-        """Let a member run if no other member is running; return whether it may run."""
+        """Let a member run if no other member is running, and return whether it may run."""
         try:
             self._tokens.pop()
         except IndexError:
@@ -105,10 +105,10 @@ class MutuallyExclusiveCallbackGroup(CallbackGroup):
 
 
 class _FreeGroup(ReentrantCallbackGroup):
-    """A reentrant group that all nodes of the process share; it keeps no list of members."""
+    """A reentrant group that all nodes of the process share. It keeps no list of its members."""
 
     def add_entity(self, entity: Any) -> None:
-        """Do nothing: the group keeps no members."""
+        """Do nothing, because the group keeps no list of its members."""
 
 
 FREE_GROUP: CallbackGroup = _FreeGroup()
@@ -176,9 +176,9 @@ class Dispatcher(AlarmSetter, Protocol):
     def ready(self, entity: Any) -> None:
         """Queue an `Entity` that has at least one call.
 
-        An entity announces itself when its queue was empty before, and again from within `Entity.take` while more calls
-        remain, so the dispatcher's queue does not grow during a flood of messages. An entity whose ``dispatcher`` has
-        changed before it is served is skipped.
+        An entity calls this method when its queue was empty before, and again from `Entity.take` while more calls
+        remain. The dispatcher's queue therefore does not grow during a flood of messages. An entity whose
+        ``dispatcher`` has changed before it is served is skipped.
         """
 
 
@@ -197,10 +197,13 @@ class HomeGraph(Protocol):
         """Remove a node that was destroyed."""
 
     def notify_change(self) -> None:
-        """Wake the threads blocked in `wait_until`, which check their conditions again."""
+        """Wake the threads that are blocked in `wait_until`. They check their conditions again."""
 
     def wait_until(self, condition: Callable[[], bool], timeout_sec: float | None = None) -> bool:
-        """Block the calling thread until a condition of the graph holds; return whether it holds."""
+        """Block the calling thread until a condition of the graph holds.
+
+        Return whether the condition holds.
+        """
 
     def watch_lost(self) -> None:
         """Start notifying subscriptions of lost publishers of their topics."""
@@ -231,7 +234,7 @@ class Part(HasHandle):
         """Set the dispatcher that runs the part's callbacks."""
 
     def destroy(self) -> None:
-        """Remove the part from the graph and the node; the part's callbacks are not called again."""
+        """Remove the part from the graph and the node. Its callbacks are not called again."""
         self.node.remove(self)
 
     def check_alive(self) -> None:
@@ -300,16 +303,19 @@ class NodeHandle(Handle):
             raise InvalidHandleError
 
     def set_dispatcher(self, dispatcher: Dispatcher | None) -> None:
-        """Set the dispatcher that runs the node's callbacks; None for no dispatcher.
+        """Set the dispatcher that runs the node's callbacks, or None for no dispatcher.
 
-        Without a dispatcher, calls stay queued as far as their QoS allows. The next dispatcher is notified of them.
+        Without a dispatcher, calls remain queued within the limits of their QoS. The next dispatcher is notified of
+        them.
         """
         self.dispatcher = dispatcher
         for part in tuple(self._parts):
             part.set_dispatcher(dispatcher)
 
     def add(self, part: P) -> P:
-        """Add a part to the node and return the part; the node's dispatcher runs its callbacks.
+        """Add a part to the node, and return the part.
+
+        The node's dispatcher runs the part's callbacks.
 
         Raises:
             InvalidHandleError: the node was destroyed.
@@ -320,7 +326,10 @@ class NodeHandle(Handle):
         return part
 
     def remove(self, part: Part) -> bool:
-        """Remove a part from the node permanently; return whether the part belonged to this node."""
+        """Remove a part from the node permanently.
+
+        Return whether the part belonged to this node.
+        """
         if part not in self._parts:
             return False
         del self._parts[part]
@@ -342,7 +351,7 @@ class NodeHandle(Handle):
         return full_name if only_expand else self.remappings.topic(full_name, name, namespace)
 
     def resolve_service_name(self, service: str, *, only_expand: bool = False) -> str:
-        """Return the absolute name of a service or action; see `resolve_topic_name`.
+        """Return the absolute name of a service or action. See `resolve_topic_name`.
 
         Raises:
             InvalidServiceNameError: the service name is not valid.
@@ -363,7 +372,9 @@ class NodeHandle(Handle):
         self._cleanups.pop(callback, None)
 
     def destroy(self) -> bool:
-        """Remove the node and all its parts from the graph; return whether this was the first call.
+        """Remove the node and all its parts from the graph.
+
+        Return whether this was the first call.
 
         A second call does nothing.
         """

@@ -1,4 +1,4 @@
-"""Timers, which call back at a fixed period, and rates, which sleep until the next tick."""
+"""Timers call back at a fixed period. Rates sleep until the next tick."""
 
 from __future__ import annotations
 
@@ -49,8 +49,8 @@ class Timer(Entity):
 
     Args:
         node: the node that owns the timer.
-        callback: called without arguments, or with a `TimerInfo` if it takes one.
-        period_ns: the period in nanoseconds; 0 calls whenever there is nothing else to do.
+        callback: called with a `TimerInfo` if it requires one argument, otherwise without arguments.
+        period_ns: the period in nanoseconds; 0 to call as often as possible.
         clock: the clock that measures the period.
         callback_group: decides which entities may run at the same time.
         autostart: whether the timer runs from the start; otherwise `reset` starts it.
@@ -85,7 +85,7 @@ class Timer(Entity):
 
     @property
     def timer_period_ns(self) -> int:
-        """The period in nanoseconds; a new period takes effect with the next `reset` or call."""
+        """The period in nanoseconds. A new period takes effect with the next `reset` or call."""
         return self._period_ns
 
     @timer_period_ns.setter
@@ -95,7 +95,7 @@ class Timer(Entity):
 
     @property
     def callback(self) -> Callable[..., object] | None:
-        """The callback; None for a timer without one."""
+        """The callback, or None for a timer without a callback."""
         return self._callback
 
     @callback.setter
@@ -119,12 +119,12 @@ class Timer(Entity):
         return self._running and self.clock.timer_ns() >= self._due_ns
 
     def cancel(self) -> None:
-        """Stop the timer; `reset` starts it again."""
+        """Stop the timer. `reset` starts it again."""
         self._running = False
         self._disarm()
 
     def reset(self) -> None:
-        """Restart the period: the next call is due one period from now.
+        """Restart the period, so that the next call is due one period from now.
 
         Raises:
             InvalidHandleError: the timer was destroyed.
@@ -146,7 +146,7 @@ class Timer(Entity):
         return self.clock.timer_ns() - self._last_ns
 
     def time_until_next_call(self) -> int | None:
-        """Return the nanoseconds until the next call; negative if the call is late.
+        """Return the nanoseconds until the next call. The number is negative if the call is late.
 
         Returns None if the timer is stopped.
         """
@@ -177,7 +177,7 @@ class Timer(Entity):
         return self._due
 
     def take(self) -> Callable[[], object] | None:
-        """Return the call of the callback that is due; None if there is none."""
+        """Return the call of the callback that is due, or None if there is none."""
         self._announced = False
         if not self._due:
             return None
@@ -260,8 +260,8 @@ def _check_period(period_ns: int) -> None:
 class Rate:
     """Lets a loop run at a fixed rate: each `sleep` ends with the next tick of a timer.
 
-    Another thread than the sleeping one must run the timer's callbacks. A coroutine calls `wait` instead of `sleep`. A
-    late tick does not shift the ticks after it.
+    A thread other than the sleeping thread must run the timer's callbacks. A coroutine calls `wait` instead of `sleep`.
+    A late tick does not shift the ticks after it.
 
     Args:
         timer: the timer that ticks; the rate replaces its callback.

@@ -79,7 +79,10 @@ class InvalidServiceNameError(InvalidNameError):
 
 
 def node_name_problem(name: str) -> Problem | None:
-    """Return why a node name is not valid, and the index of the mistake; None if it is valid."""
+    """Return the reason why a node name is not valid, and the index of the mistake.
+
+    Return None if the name is valid.
+    """
     if not name:
         return phrase("node name must not be empty"), 0
     if invalid_character := re.search(r"[^A-Za-z0-9_]", name):
@@ -103,7 +106,7 @@ def check_node_name(name: str) -> None:
 
 
 def namespace_problem(namespace: str) -> Problem | None:
-    """Return why an absolute namespace is not valid, and the index of the mistake.
+    """Return the reason why an absolute namespace is not valid, and the index of the mistake.
 
     Returns None if the namespace is valid.
     """
@@ -131,7 +134,9 @@ def namespace_problem(namespace: str) -> Problem | None:
 
 
 def absolute_namespace(namespace: str) -> str:
-    """Return a namespace, to which a missing leading slash is added; ``/`` for an empty one.
+    """Return the absolute form of a namespace.
+
+    A missing leading slash is added, and an empty namespace becomes ``/``.
 
     Raises:
         InvalidNamespaceError: the namespace is not valid.
@@ -155,13 +160,18 @@ def split(full_name: str) -> tuple[str, str]:
 
 
 def is_hidden(name: str) -> bool:
-    """Return whether a name is hidden by default, because one of its parts starts with ``_``."""
+    """Return whether a name is hidden by default.
+
+    A name is hidden if one of its parts starts with ``_``.
+    """
     return any(token.startswith("_") for token in name.split("/"))
 
 
 @lru_cache(maxsize=4096)
 def topic_name_problem(name: str) -> Problem | None:
-    """Return why a topic or service name is not valid before expansion, and the mistake's index.
+    """Return the reason why a topic or service name is not valid before expansion.
+
+    The second value is the index of the mistake.
 
     Returns None if the name is valid.
     """
@@ -308,17 +318,17 @@ class Remappings:
         self._rules = tuple(_parse_rule(source, target) for source, target in rules)
 
     def node_name(self, name: str) -> str:
-        """Return the remapped name of a node; the given name if no rule applies."""
+        """Return the remapped name of a node, or the given name if no rule applies."""
         return next((r.target for r in self._rules if r.source in _NODE_NAMES and r.node in (None, name)), name)
 
     def namespace(self, namespace: str, node_name: str) -> str:
-        """Return the remapped namespace of a node; the given namespace if no rule applies."""
+        """Return the remapped namespace of a node, or the given namespace if no rule applies."""
         return next(
             (r.target for r in self._rules if r.source == _NAMESPACE and r.node in (None, node_name)), namespace
         )
 
     def topic(self, full_name: str, node_name: str, namespace: str) -> str:
-        """Return the remapped absolute name of a topic; `full_name` if no rule applies.
+        """Return the remapped absolute name of a topic, or `full_name` if no rule applies.
 
         Both sides of a rule are expanded in the same way as the node's own names.
 
@@ -333,7 +343,7 @@ class Remappings:
         return full_name
 
     def service(self, full_name: str, node_name: str, namespace: str) -> str:
-        """Return the remapped absolute name of a service; `full_name` if no rule applies.
+        """Return the remapped absolute name of a service, or `full_name` if no rule applies.
 
         Raises:
             InvalidServiceNameError: a side of a rule is not a valid name.

@@ -90,7 +90,7 @@ class AsyncParameterClient:
     def list_parameters(
         self, prefixes: list[str] | None = None, depth: int | None = None, callback: Done | None = None
     ) -> Future[Any]:
-        """Request the names of parameters; see `NodeParameters.list_parameters`."""
+        """Request the names of parameters. See `NodeParameters.list_parameters`."""
         return self._send_request("list_parameters", callback, prefixes=prefixes or [], depth=depth or 0)
 
     def get_parameters(self, names: list[str], callback: Done | None = None) -> Future[Any]:
@@ -114,13 +114,13 @@ class AsyncParameterClient:
         return self._send_request("set_parameters_atomically", callback, parameters=_messages(parameters))
 
     def delete_parameters(self, names: list[str], callback: Done | None = None) -> Future[Any]:
-        """Undeclare parameters, whose descriptors must allow dynamic typing."""
+        """Undeclare parameters. Their descriptors must allow dynamic typing."""
         return self.set_parameters([Parameter(name) for name in names], callback)
 
     def load_parameter_file(
         self, parameter_file: str, use_wildcard: bool = False, callback: Done | None = None
     ) -> Future[Any]:
-        """Set the parameters that a file contains; see `parameter_dict_from_yaml_file`."""
+        """Set the parameters that a file contains. See `parameter_dict_from_yaml_file`."""
         return self.set_parameters(list(parameter_dict_from_yaml_file(parameter_file, use_wildcard).values()), callback)
 
     def load_parameter_file_atomically(

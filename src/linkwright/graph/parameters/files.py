@@ -3,7 +3,7 @@
 Files are read as by rcl_yaml_param_parser: nested names of namespaces and nodes, nested parameter names, its rules for
 scalars (see `scalar_value`), lists of a single type, no anchors. A file that rcl_yaml_param_parser would refuse is
 refused here, too, with the position of the mistake. There is one exception: a parameter whose list contains lists or
-mappings is left out, because the files of real robots have such lists.
+mappings is omitted, because the files of real robots have such lists.
 
 `parameter_file_text` returns the content of a file, as ``ros2 param dump`` writes it.
 """
@@ -98,7 +98,7 @@ class _NestedListError(LinkwrightError):
 
 
 class _Reader:
-    """Reads the YAML events of a parameter file; `_event` is the current event."""
+    """Reads the YAML events of a parameter file. `_event` is the current event."""
 
     def __init__(self, source: SourceText) -> None:
         self._source = source
@@ -411,7 +411,7 @@ def plain_value(value: Any) -> Any:
 def _insert(tree: dict[str, Any], path: list[str], value: Any) -> None:
     """Insert a value into nested mappings, below the parts of its name.
 
-    If a part already has a value that is not a mapping, the rest of the name stays dotted.
+    If a part already has a value that is not a mapping, the rest of the name keeps its dots.
     """
     for index, key in enumerate(path[:-1]):
         subtree = tree.setdefault(key, {})

@@ -30,7 +30,7 @@ from linkwright.graph.time.clock import Clock
 
 
 class NodeParameters:
-    """The parameter methods of a node; base class of `Node`.
+    """The parameter methods of a node. This is the base class of `Node`.
 
     Descriptors, results and parameter values are accepted as Linkwright's own small classes and as messages of
     rcl_interfaces. Return values are messages, as in rclpy.
@@ -58,7 +58,7 @@ class NodeParameters:
             TypeError: the name is not a string, or the descriptor is not a descriptor.
             ParameterAlreadyDeclaredException: the parameter is declared already.
             InvalidParameterException: the name is empty.
-            InvalidParameterTypeException: the override has another type than the default.
+            InvalidParameterTypeException: the override and the default have different types.
             InvalidParameterValueException: a callback or the descriptor refuses the value.
         """
         declaration = (name,) if value is None and descriptor is None else (name, value, descriptor)
@@ -159,7 +159,7 @@ class NodeParameters:
         return self.__parameters.get(name)
 
     def get_parameters(self, names: Sequence[str]) -> list[Parameter]:
-        """Return several declared parameters; see `get_parameter`."""
+        """Return several declared parameters. See `get_parameter`."""
         _check_names(names)
         return [self.__parameters.get(name) for name in names]
 
@@ -174,7 +174,10 @@ class NodeParameters:
         return Parameter(name) if alternative_value is None else alternative_value
 
     def get_parameters_by_prefix(self, prefix: str) -> dict[str, Parameter]:
-        """Return the parameters ``prefix.rest``, with ``rest`` as the key; all for an empty prefix."""
+        """Return the parameters named ``prefix.rest``, with ``rest`` as the key.
+
+        An empty prefix returns all parameters.
+        """
         return self.__parameters.with_prefix(prefix)
 
     def get_parameter_type(self, name: str) -> int:
@@ -186,7 +189,7 @@ class NodeParameters:
         return self.__parameters.type_of(name).value
 
     def get_parameter_types(self, names: Sequence[str]) -> list[int]:
-        """Return the types of several parameters; see `get_parameter_type`."""
+        """Return the types of several parameters. See `get_parameter_type`."""
         _check_names(names)
         return [self.get_parameter_type(name) for name in names]
 
@@ -201,7 +204,7 @@ class NodeParameters:
         return [self.set_parameters_atomically([parameter]) for parameter in parameter_list]
 
     def set_parameters_atomically(self, parameter_list: Sequence[Parameter]) -> Any:
-        """Set either all parameters or none; return an rcl_interfaces/msg/SetParametersResult.
+        """Set either all parameters or none, and return an rcl_interfaces/msg/SetParametersResult.
 
         Raises:
             ParameterNotDeclaredException: a parameter is not declared; none is set.
@@ -253,7 +256,7 @@ class NodeParameters:
         return message
 
     def describe_parameters(self, names: Sequence[str]) -> list[Any]:
-        """Return the descriptors of several parameters; see `describe_parameter`."""
+        """Return the descriptors of several parameters. See `describe_parameter`."""
         return [self.describe_parameter(name) for name in names]
 
     def set_descriptor(self, name: str, descriptor: Any, alternative_value: Any = None) -> Any:
@@ -443,7 +446,10 @@ class ParameterEvents:
         self._node_name = node_name
 
     def publish(self, change: ParameterChange) -> None:
-        """Publish a change if a subscription matches; late joiners never receive earlier changes."""
+        """Publish a change if a subscription matches.
+
+        Late joiners never receive earlier changes.
+        """
         if not self._publisher.get_subscription_count():
             return
         event: Any = self._publisher.msg_type()

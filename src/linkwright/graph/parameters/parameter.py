@@ -1,4 +1,4 @@
-"""The types, values and exceptions of ``rclpy.parameter``; parameter values by node name."""
+"""The types, values and exceptions of ``rclpy.parameter``, and parameter values by node name."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class ParameterRules:
     """Parameter values by node name pattern.
 
     A pattern is a node's full name, in which ``*`` matches one part and ``**`` any number of parts. As in rcl, patterns
-    are ordered by their first appearance. If two patterns match a node, the later one wins.
+    are ordered by their first appearance. If two patterns match a node, the later one applies.
 
     Attributes:
         files: the paths of the parameter files from which the values were read.
@@ -51,7 +51,7 @@ class ParameterRules:
         return self._values.setdefault(pattern if pattern.startswith("/") else f"/{pattern}", {})
 
     def add(self, other: ParameterRules) -> None:
-        """Add the values of other rules, which override earlier values for the same pattern."""
+        """Add the values of other rules. They override earlier values for the same pattern."""
         for pattern, values in other:
             self.section(pattern).update(values)
         self.files += other.files
@@ -230,7 +230,7 @@ class ParameterType(Enum):
 
     @classmethod
     def from_parameter_value(cls, parameter_value: Any) -> ParameterType:
-        """Return the type of a Python value; an empty list counts as a byte array, as in rclpy.
+        """Return the type of a Python value. An empty list counts as a byte array, as in rclpy.
 
         Raises:
             TypeError: the value is not a valid parameter value.
@@ -358,7 +358,7 @@ class Parameter:
 
     @property
     def value(self) -> Any:
-        """The parameter's value; None if it is not set."""
+        """The parameter's value, or None if it is not set."""
         return self._value
 
     def get_parameter_value(self) -> Any:
@@ -394,7 +394,9 @@ class Parameter:
 
 
 def parameter_value_to_python(parameter_value: Any) -> Any:
-    """Return the Python value of an rcl_interfaces/msg/ParameterValue; None if it is not set.
+    """Return the Python value of an rcl_interfaces/msg/ParameterValue.
+
+    Return None if the value is not set.
 
     Raises:
         RuntimeError: the ``type`` of the message is not known (as in rclpy).
@@ -431,7 +433,7 @@ class ParameterDescriptor:
         name: the parameter's name; filled in when the parameter is declared.
         type: the number of the parameter's type; filled in from the default value, except for an empty list, whose type
             cannot be determined.
-        description: what the parameter is for.
+        description: the purpose of the parameter.
         additional_constraints: further constraints on the values, in plain words.
         read_only: whether the parameter keeps the value that it was declared with.
         dynamic_typing: whether values of any type may be set, and setting no value undeclares the parameter.

@@ -206,7 +206,7 @@ class ParameterStore:
         return self._parameters[name]
 
     def undeclare(self, name: str) -> None:
-        """Undeclare a parameter; see ``Node.undeclare_parameter``."""
+        """Undeclare a parameter. See ``Node.undeclare_parameter``."""
         if name not in self._parameters:
             raise ParameterNotDeclaredException(name, self._parameters)
         if self._descriptors[name].read_only:
@@ -214,7 +214,7 @@ class ParameterStore:
         del self._parameters[name], self._descriptors[name]
 
     def get(self, name: str) -> Parameter:
-        """Return a parameter; see ``Node.get_parameter``."""
+        """Return a parameter. See ``Node.get_parameter``."""
         parameter = self._parameters.get(name)
         if parameter is not None:
             if parameter.type_ is ParameterType.NOT_SET and not self._descriptors[name].dynamic_typing:
@@ -268,7 +268,10 @@ class ParameterStore:
         self._descriptors[name] = descriptor
 
     def set_descriptor(self, name: str, descriptor: Any, alternative: Any) -> Parameter | None:
-        """Replace the descriptor of a parameter; see ``Node.set_descriptor``."""
+        """Replace the descriptor of a parameter. See ``Node.set_descriptor``.
+
+        Return the resulting parameter, or None if the parameter is not declared but undeclared parameters are allowed.
+        """
         if name not in self._parameters:
             if self.allow_undeclared:
                 return None
@@ -287,7 +290,7 @@ class ParameterStore:
         raise InvalidParameterValueException(name, fallback.value, reason or "")
 
     def set_atomically(self, parameters: Sequence[Parameter]) -> Any:
-        """Set either all parameters or none; see ``Node.set_parameters_atomically``."""
+        """Set either all parameters or none. See ``Node.set_parameters_atomically``."""
         new_parameters = list(parameters)
         if self.pre_set:
             new_parameters = [parameter for callback in tuple(self.pre_set) for parameter in callback(list(parameters))]
@@ -312,7 +315,9 @@ class ParameterStore:
         return Parameter(parameter.name, declared_type, []) if declared_type.is_array else parameter
 
     def _determine_type(self, name: str, default: Any, descriptor: Any) -> Any:
-        """Set the descriptor's type, and return the default value; None if only a type is given.
+        """Set the descriptor's type, and return the default value.
+
+        Return None if only a type is given.
 
         Raises:
             ValueError: the type is NOT_SET, or conflicts with dynamic typing.

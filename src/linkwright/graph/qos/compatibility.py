@@ -28,7 +28,7 @@ V = TypeVar("V", bound=QoSPolicyEnum)
 
 
 class QoSCompatibility(IntEnum):
-    """Whether two profiles are compatible (rmw ``rmw_qos_compatibility_type_t``)."""
+    """The compatibility of two profiles (rmw ``rmw_qos_compatibility_type_t``)."""
 
     OK = 0
     WARNING = 1
@@ -36,7 +36,7 @@ class QoSCompatibility(IntEnum):
 
 
 def limit_ns(duration: Duration) -> int | None:
-    """Return a deadline, lifespan or lease in nanoseconds; None if it is unlimited."""
+    """Return a deadline, lifespan or lease in nanoseconds, or None if it is unlimited."""
     nanoseconds = duration.nanoseconds
     return None if nanoseconds <= 0 or nanoseconds >= BEST_AVAILABLE_DURATION.nanoseconds else nanoseconds
 

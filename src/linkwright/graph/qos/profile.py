@@ -94,7 +94,7 @@ class DurabilityPolicy(QoSPolicyEnum):
 
 
 class LivelinessPolicy(QoSPolicyEnum):
-    """How a publisher asserts that it is alive."""
+    """The ways in which a publisher asserts that it is alive."""
 
     SYSTEM_DEFAULT = 0
     AUTOMATIC = 1
@@ -121,10 +121,10 @@ class QoSProfile:
         reliability: RELIABLE or BEST_EFFORT.
         durability: TRANSIENT_LOCAL or VOLATILE.
         history: KEEP_LAST or KEEP_ALL.
-        lifespan: how long after publication a message is still delivered.
+        lifespan: the time after publication for which a message is delivered.
         deadline: the maximum time between two messages.
         liveliness: how the publisher asserts that it is alive.
-        liveliness_lease_duration: how long the publisher counts as alive after its last assertion.
+        liveliness_lease_duration: the time for which the publisher counts as alive after its last assertion.
         avoid_ros_namespace_conventions: whether the topic's name on the wire has no ROS prefix.
 
     Raises:
@@ -174,7 +174,9 @@ class QoSProfile:
 
     @classmethod
     def of(cls, qos: QoSProfile | int) -> QoSProfile:
-        """Return a profile unchanged; for a number, as in rclpy, a default profile of that depth.
+        """Return a profile unchanged, or convert a number to a profile of that depth.
+
+        As in rclpy, the other policies of the converted profile have their defaults.
 
         Raises:
             ValueError: the number is negative.
@@ -188,7 +190,7 @@ class QoSProfile:
 
     @property
     def queue_length(self) -> int | None:
-        """The maximum number of messages in a queue; None for no limit.
+        """The maximum number of messages in a queue, or None for no limit.
 
         A depth of 0 counts as 1, as in Cyclone DDS.
         """
@@ -196,7 +198,7 @@ class QoSProfile:
 
     @property
     def history(self) -> HistoryPolicy:
-        """Whether only the last `depth` messages are stored, or all of them."""
+        """The history policy: whether only the last `depth` messages are stored, or all of them."""
         return self._history
 
     @history.setter
@@ -223,7 +225,7 @@ class QoSProfile:
 
     @property
     def reliability(self) -> ReliabilityPolicy:
-        """Whether every message arrives."""
+        """The reliability policy: whether every message arrives."""
         return self._reliability
 
     @reliability.setter
@@ -232,7 +234,7 @@ class QoSProfile:
 
     @property
     def durability(self) -> DurabilityPolicy:
-        """Whether late joiners receive earlier messages."""
+        """The durability policy: whether late joiners receive earlier messages."""
         return self._durability
 
     @durability.setter
@@ -241,7 +243,7 @@ class QoSProfile:
 
     @property
     def lifespan(self) -> Duration:
-        """How long after publication a message is still delivered."""
+        """The time after publication for which a message is delivered."""
         return self._lifespan
 
     @lifespan.setter
@@ -261,7 +263,7 @@ class QoSProfile:
 
     @property
     def liveliness(self) -> LivelinessPolicy:
-        """How the publisher asserts that it is alive."""
+        """The way in which the publisher asserts that it is alive."""
         return self._liveliness
 
     @liveliness.setter
@@ -270,7 +272,7 @@ class QoSProfile:
 
     @property
     def liveliness_lease_duration(self) -> Duration:
-        """How long the publisher counts as alive after its last assertion."""
+        """The time for which the publisher counts as alive after its last assertion."""
         return self._liveliness_lease_duration
 
     @liveliness_lease_duration.setter
@@ -379,7 +381,7 @@ STATIC_TF_SUBSCRIPTION_QOS = QoSProfile(depth=100, durability=DurabilityPolicy.T
 """For subscriptions to ``/tf_static`` (tf2_ros StaticListenerQoS)."""
 
 LATCHED_QOS = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-"""For maps, states and other data whose last message late subscriptions receive, both sides."""
+"""For publishers and subscriptions of maps, states and other data whose last message reaches late subscriptions."""
 
 DESCRIPTION_QOS = LATCHED_QOS
 """For publishers of and subscriptions to ``robot_description``."""

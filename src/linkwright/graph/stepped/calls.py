@@ -20,8 +20,8 @@ class Calls:
         on_failure: called with the exception of a function; may call `close`.
 
     Attributes:
-        number: the number of the current call, counted from 1; 0 between calls. It lets state that may change at any
-            time, such as the subscriptions of a topic, be read once per call (`Output.is_wanted`).
+        number: the number of the current call, counted from 1; 0 between calls. State that may change at any time, such
+            as the subscriptions of a topic, is read only once per call (`Output.is_wanted`).
         is_closed: whether further calls are ignored.
     """
 

@@ -41,7 +41,10 @@ class _Outlet:
         self._make = make
 
     def publish(self, message: Any) -> None:
-        """Publish a message; with `make`, the message that it creates from the values in `message`."""
+        """Publish a message.
+
+        With `make`, `message` contains the values from which `make` creates the message.
+        """
         output, make = self._output, self._make
         try:
             outgoing_message = message if make is None else make(*message)
@@ -90,11 +93,11 @@ class Output:
         return False
 
     def publish(self, message: Any) -> None:
-        """Publish a message, which must not change afterwards."""
+        """Publish a message. The message must not change afterwards."""
         self.exchange.send(self._outlet, message)
 
     def deferred_publisher(self, make: Callable[..., Any]) -> Callable[..., None]:
-        """Return a function that publishes the message that `make` creates from its arguments.
+        """Return a function that publishes the message created by `make` from its arguments.
 
         The message is created where it is published, so a simulation with its own thread need not wait for it.
 
@@ -186,7 +189,8 @@ class SteppedNode:
             topic: relative, absolute or private name.
             callback: called with each message.
             qos: the QoS; a number is a depth.
-            commander: for commands that hold until the next one, an object returned by the method `commander`.
+            commander: for commands that remain in effect until the next one, an object returned by the method
+                `commander`.
             rest: called instead of the callback, with a warning, if a message contains NaN or an infinite number, which
                 would make the world unstable. None to accept such messages.
         """
@@ -195,8 +199,8 @@ class SteppedNode:
     def commander(self, rest: Callable[[], bool]) -> Commander:
         """Return an object that revokes the last command when its publisher is lost.
 
-        Such an object is for commands that hold until the next one. It also warns if several nodes send commands at the
-        same time.
+        Such an object is for commands that remain in effect until the next one. It also warns if several nodes send
+        commands at the same time.
 
         Args:
             rest: stops the motion of the last command; returns whether there was any motion, which is logged.
@@ -227,7 +231,7 @@ class SteppedNode:
         self._exchange.post(partial(self.calls.call, command))
 
     def parameter(self, name: str, default: Any) -> Any:
-        """Return the value of a parameter of the node, which is declared if necessary.
+        """Return the value of a parameter of the node. The parameter is declared if necessary.
 
         Args:
             name: the parameter's name.
@@ -286,7 +290,7 @@ class SteppedNode:
             self._listen(self._node.handle.resolve_topic_name(name), listen)
 
     def _listen(self, topic: str, listen: Callable[[str], Endpoint]) -> None:
-        """Call `listen`, which subscribes to the topic with the given name."""
+        """Call `listen`. It subscribes to the topic with the given name."""
         listen(topic)
 
     def _profile(self, topic: str, side: str, qos: QoSProfile | int) -> QoSProfile:

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 _MAX_PRECISE_WAIT_NS = 20_000_000
-"""Waits of up to this length are precise to some microseconds; longer waits may end a millisecond late."""
+"""The maximum length of waits that are precise to some microseconds. Longer waits may end a millisecond late."""
 
 
 class Alarm(Protocol):
@@ -116,7 +116,7 @@ class JumpClock(Timebase):
         return self._now_ns
 
     def steady_ns(self) -> int:
-        """Return how far the clock was advanced, in nanoseconds."""
+        """Return the time by which the clock was advanced, in nanoseconds."""
         return self._steady_ns
 
     def call_at(self, loop: AbstractEventLoop, steady_ns: int, callback: Callable[[], None]) -> Alarm:
@@ -126,7 +126,7 @@ class JumpClock(Timebase):
         return alarm
 
     def attach(self, dispatcher: SettlingDispatcher) -> None:
-        """Add a dispatcher, which finishes its work before each step of the clock."""
+        """Add a dispatcher. It finishes its work before each step of the clock."""
         self._dispatchers.append(dispatcher)
 
     async def advance(self, seconds: float, *, is_settled: bool = False) -> None:
@@ -135,7 +135,7 @@ class JumpClock(Timebase):
         Each timer is called when it becomes due, and all resulting work is completed before the next one.
 
         Args:
-            seconds: how far to advance, in seconds.
+            seconds: the time to advance, in seconds.
             is_settled: whether all ready work is already done, so that there is nothing to wait for at the start.
         """
         end_ns = self._steady_ns + round(seconds * NANOSECONDS_PER_SECOND)
@@ -155,7 +155,7 @@ class JumpClock(Timebase):
         Steady time does not change, and no timers are called.
 
         Args:
-            seconds: how far to move, in seconds; negative to move back.
+            seconds: the time to move forward, in seconds; negative to move back.
         """
         self._now_ns += round(seconds * NANOSECONDS_PER_SECOND)
 
@@ -224,7 +224,7 @@ class TimeJump:
 
 
 class JumpHandle:
-    """The handle of callbacks for the time jumps of a clock; see `Clock.create_jump_callback`."""
+    """The handle of callbacks for the time jumps of a clock. See `Clock.create_jump_callback`."""
 
     def __init__(
         self,
@@ -259,7 +259,7 @@ class JumpHandle:
 
 
 class Clock:
-    """A clock (rclpy ``Clock``); a clock of type ROS_TIME is a `ROSClock`.
+    """A clock (rclpy ``Clock``). A clock of type ROS_TIME is a `ROSClock`.
 
     Args:
         clock_type: system, steady or ROS time.
@@ -317,7 +317,7 @@ class Clock:
         return handle
 
     def forget_jump_callback(self, handle: JumpHandle) -> None:
-        """Remove a handle; see `JumpHandle.unregister`."""
+        """Remove a handle. See `JumpHandle.unregister`."""
         with self._change_condition:
             if handle in self._jump_handles:
                 self._jump_handles.remove(handle)
@@ -375,7 +375,7 @@ class Clock:
         return True
 
     def sleep_for(self, rel_time: Duration, context: Any = None) -> bool:
-        """Block the calling thread for a duration of this clock; see `sleep_until`."""
+        """Block the calling thread for a duration of this clock. See `sleep_until`."""
         return self.sleep_until(self.now() + rel_time, context)
 
     def _longest_wait_s(self, remaining_ns: int) -> float:
@@ -453,7 +453,10 @@ class ROSClock(Clock):
         return self._override_ns if self._active else self.timebase.steady_ns()
 
     def call_at(self, dispatcher: AlarmSetter, timer_ns: int, callback: Callable[[], None]) -> Alarm:
-        """Schedule a call for a value of `timer_ns`; simulated time triggers it while active."""
+        """Schedule a call for a value of `timer_ns`.
+
+        Simulated time triggers the call while it is active.
+        """
         with self._lock:  # Faster than locking the condition; timers often call this.
             if not self._active:
                 return dispatcher.call_at(timer_ns, callback)
@@ -495,7 +498,7 @@ class ROSClock(Clock):
     """rclpy's name of this method."""
 
     def set_ros_time_override(self, time: Time) -> None:
-        """Set simulated time, which takes effect once simulated time is active.
+        """Set simulated time. It takes effect once simulated time is active.
 
         Raises:
             TypeError: `time` is not a Time.
@@ -538,7 +541,7 @@ class ROSClock(Clock):
         self._notify_after(handles, jump)
 
     def interrupt(self) -> None:
-        """Wake sleeping threads, which check their contexts."""
+        """Wake sleeping threads, so that they check their contexts."""
         with self._change_condition:
             self._change_condition.notify_all()
 

@@ -29,7 +29,9 @@ _ABSOLUTE = 1
 
 
 def fine_alarms(loop: AbstractEventLoop) -> FineAlarms | None:
-    """Return the fine alarms of an event loop; None if only the loop's own alarms are available.
+    """Return the fine alarms of an event loop.
+
+    Return None if only the loop's own alarms are available.
 
     This function must be called in the loop's thread.
     """
@@ -44,7 +46,7 @@ def fine_alarms(loop: AbstractEventLoop) -> FineAlarms | None:
 def _create_alarms(loop: AbstractEventLoop) -> FineAlarms | None:
     if sys.platform != "linux":
         return None
-    import ctypes  # imported here: few programs need it, and it is slow to import
+    import ctypes  # imported here because few programs need it, and its import is slow
 
     if ctypes.sizeof(ctypes.c_long) != 8:  # The layout below requires 64-bit fields.
         return None
@@ -144,4 +146,4 @@ class FineAlarms:
 
 
 _alarms_by_loop: dict[int, FineAlarms | None] = {}
-"""By the identity of the loop; the entry is removed with the loop."""
+"""The alarms by the ``id`` of their loop. An entry is removed with its loop."""

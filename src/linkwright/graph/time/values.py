@@ -240,7 +240,9 @@ class Time:
 
 
 def _compare_other_type(kind: str, other: object) -> bool:
-    """Return NotImplemented for a comparison with an object of another type; raise before Iron.
+    """Return NotImplemented for a comparison with an object of another type.
+
+    ROS 2 distributions before Iron raise an error instead.
 
     The error reveals mistakes such as ``duration == 5``.
 

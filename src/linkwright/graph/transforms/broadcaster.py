@@ -1,4 +1,4 @@
-"""Transform broadcasters, which publish to ``/tf`` and ``/tf_static``, as in ``tf2_ros``."""
+"""Transform broadcasters, as in ``tf2_ros``. They publish to ``/tf`` and ``/tf_static``."""
 
 from __future__ import annotations
 

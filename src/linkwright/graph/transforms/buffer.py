@@ -1,4 +1,4 @@
-"""A tf buffer without history, which stores only the latest transform of each frame.
+"""A tf buffer without history. It stores only the latest transform of each frame.
 
 A robot may be a chain of hundreds of links, so composing poses level by level would take hundreds of small steps.
 Instead, each round composes the pose of every frame with the pose of its current reference frame. This doubles the
@@ -66,7 +66,7 @@ class FrameTree:
 
 
 _QUATERNION_TOLERANCE = 0.01
-"""How far the squared length of a quaternion may be from 1 (tf2 QUATERNION_NORMALIZATION_TOLERANCE)."""
+"""The maximum deviation of a quaternion's squared length from 1 (tf2 QUATERNION_NORMALIZATION_TOLERANCE)."""
 
 _MAX_PLANS = 64
 """The maximum number of plans. Publishers usually send the same lists of frames, so few plans are needed."""
@@ -138,7 +138,7 @@ class TransformBuffer:
         Args:
             message: the transforms.
             static: whether they were received on ``/tf_static``.
-            now_ns: the current time, in nanoseconds since the epoch, from which ages are counted.
+            now_ns: the current time, in nanoseconds since the epoch, for the ages of transforms.
         """
         batch = message.batch
         plan = self._plan_for(batch)
@@ -207,7 +207,7 @@ class TransformBuffer:
     def remove(self, names: Iterable[str]) -> None:
         """Remove the transforms of some frames, such as those of a robot that was replaced.
 
-        A frame that is the parent of others stays, but without a parent of its own.
+        A frame that is the parent of other frames remains, but without a parent.
         """
         for row in (self._rows[name] for name in names if name in self._rows):
             self._parents[row] = -1

@@ -16,7 +16,10 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 _MAX_EXPIRED = 256
-"""How many expired transforms stay in the list before they are deleted. A deletion moves all remaining entries."""
+"""The maximum number of expired transforms in the list.
+
+They are deleted together, because a deletion moves all remaining entries.
+"""
 
 
 class Sample(NamedTuple):
@@ -56,7 +59,7 @@ class FrameCache(ABC):
 
     @abstractmethod
     def add(self, stamp_ns: int, sample: Sample) -> bool:
-        """Store a transform; return False if it is too old to be stored."""
+        """Store a transform. Return False if it is too old to be stored."""
 
     @abstractmethod
     def at(self, time_ns: int) -> tuple[int, Transform]:
@@ -116,28 +119,28 @@ class StaticCache(FrameCache):
         return True
 
     def at(self, time_ns: int) -> tuple[int, Transform]:
-        """Return the number of the parent and the pose, which are the same at all times."""
+        """Return the number of the parent and the pose. Both are the same at all times."""
         return self.parent_at(time_ns), cast("Sample", self._sample).pose()
 
     def parent_at(self, time_ns: int) -> int:
-        """Return the number of the parent, which is the same at all times."""
+        """Return the number of the parent. It is the same at all times."""
         if self._sample is None:
             raise NoDataError
         return self._sample.parent
 
     def latest(self) -> tuple[int, int] | None:
-        """Return the stamp 0 and the number of the parent; None if there is no transform."""
+        """Return the stamp 0 and the number of the parent, or None if there is no transform."""
         return None if self._sample is None else (0, self._sample.parent)
 
     def oldest_ns(self) -> int:
-        """Return 0: a static transform has no stamp."""
+        """Return 0, because a static transform has no stamp."""
         return 0
 
     def __len__(self) -> int:
         return 1
 
     def clear(self) -> None:
-        """Do nothing: static transforms stay, as in tf2."""
+        """Do nothing. As in tf2, static transforms are kept."""
 
 
 class MovingCache(FrameCache):
@@ -156,7 +159,7 @@ class MovingCache(FrameCache):
         self._first = 0
 
     def add(self, stamp_ns: int, sample: Sample) -> bool:
-        """Insert a transform by its stamp; return False if it is too old.
+        """Insert a transform by its stamp. Return False if it is too old.
 
         A transform that equals a stored one with the same stamp is not stored again.
         """
@@ -204,13 +207,16 @@ class MovingCache(FrameCache):
         return self._samples[self._index_at(time_ns)].parent
 
     def latest(self) -> tuple[int, int] | None:
-        """Return the stamp and the parent's number of the latest transform; None if there is none."""
+        """Return the stamp and the parent's number of the latest transform.
+
+        Return None if there is no transform.
+        """
         if len(self._stamps) == self._first:
             return None
         return self._stamps[-1], self._samples[-1].parent
 
     def oldest_ns(self) -> int:
-        """Return the stamp of the oldest transform, in nanoseconds; 0 if there is none."""
+        """Return the stamp of the oldest transform in nanoseconds, or 0 if there is none."""
         return self._stamps[self._first] if len(self) else 0
 
     def __len__(self) -> int:
@@ -221,7 +227,9 @@ class MovingCache(FrameCache):
         self._stamps, self._samples, self._first = [], [], 0
 
     def _index_at(self, time_ns: int) -> int:
-        """Return the index of the last transform at or before a time; of the latest one for 0.
+        """Return the index of the last transform at or before a time.
+
+        For the time 0, return the index of the latest transform.
 
         Raises:
             NoDataError: the time is outside the stored range.

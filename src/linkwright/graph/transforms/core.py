@@ -1,4 +1,4 @@
-"""The tf buffer with history, which allows lookups at any time in the last seconds.
+"""The tf buffer with history. It allows lookups at any time in the last seconds.
 
 The methods are those of ``tf2_py.BufferCore``. Behaviour and messages are those of tf2. Displays, which need the
 current poses of all frames, use `TransformBuffer` instead.
@@ -81,7 +81,7 @@ class BufferCore:
         self._set_message(transform, authority, static=False)
 
     def set_transform_static(self, transform: Any, authority: str) -> None:
-        """Store a static transform; see `set_transform`."""
+        """Store a static transform. See `set_transform`."""
         self._set_message(transform, authority, static=True)
 
     def update(self, message: Any, *, static: bool, now_ns: int = 0, authority: str = "default_authority") -> None:
@@ -216,7 +216,7 @@ class BufferCore:
         time: Any,
         averaging_interval: Any,
     ) -> tuple[Vector3, Vector3]:
-        """Return the linear and angular velocity of a frame; see `velocity`.
+        """Return the linear and angular velocity of a frame. See `velocity`.
 
         Raises:
             TransformException: as for `lookup_transform_core`.
@@ -351,7 +351,10 @@ class BufferCore:
         return plan
 
     def _cache(self, number: int, static: bool) -> FrameCache:
-        """Return the cache of a frame; a new one if the frame changes between static and moving."""
+        """Return the cache of a frame.
+
+        A frame that changes between static and moving gets a new cache.
+        """
         cache = self._caches[number]
         if cache is None or isinstance(cache, StaticCache) is not static:
             cache = self._caches[number] = StaticCache() if static else MovingCache(self._span_ns)
@@ -444,7 +447,7 @@ def to_nanoseconds(time: Any) -> int:
 
 
 def _refusal_reason(parent: str, child: str, pose: Transform, authority: str) -> str | None:
-    """Return why a transform is refused, with tf2's wording; None if it is accepted."""
+    """Return the reason for refusing a transform, with tf2's wording, or None."""
     x, y, z, w = pose[3:]
     # The comparison is false for NaN and infinite numbers, too, so this single test covers the usual case.
     is_unit = abs(x * x + y * y + z * z + w * w - 1.0) < _QUATERNION_TOLERANCE

@@ -69,7 +69,7 @@ def unknown_frame_error(argument: str, frame: str, frame_names: Iterable[str]) -
 
 
 def frame_name_error(argument: str, frame: str) -> InvalidArgumentException | None:
-    """Return the error for a frame name that is not valid; None if the name is valid.
+    """Return the error for a frame name that is not valid, or None if the name is valid.
 
     Args:
         argument: the name of the argument, for the message.
@@ -86,7 +86,7 @@ def frame_name_error(argument: str, frame: str) -> InvalidArgumentException | No
 
 
 def frame_name_problem(frame: str) -> Phrase | None:
-    """Return the reason why a frame name is not valid; None if the name is valid."""
+    """Return the reason why a frame name is not valid, or None if the name is valid."""
     if not frame:
         return phrase("in tf2 frame_ids cannot be empty")
     if frame.startswith("/"):

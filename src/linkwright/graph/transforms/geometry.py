@@ -63,7 +63,7 @@ def do_transform_pose_stamped(pose: Any, transform: Any) -> Any:
 
 
 def do_transform_pose_with_covariance_stamped(pose: Any, transform: Any) -> Any:
-    """Return a PoseWithCovarianceStamped in the target frame; its covariance is rotated, too."""
+    """Return a PoseWithCovarianceStamped in the target frame. The covariance is rotated, too."""
     result = _new_message("PoseWithCovarianceStamped", transform)
     result.pose.pose = do_transform_pose(pose.pose.pose, transform)
     result.pose.covariance = transform_covariance(pose.pose.covariance, transform)

@@ -50,7 +50,10 @@ def frames_as_text(frames: Sequence[FrameFacts]) -> str:
 
 
 def frames_as_yaml(frames: Sequence[FrameFacts], now_ns: int) -> str:
-    """Return the frames as a YAML mapping; with delays relative to `now_ns` unless it is 0."""
+    """Return the frames as a YAML mapping.
+
+    Delays relative to `now_ns` are included unless it is 0.
+    """
     if not frames:
         return "[]"
     lines = []
@@ -70,7 +73,10 @@ def frames_as_yaml(frames: Sequence[FrameFacts], now_ns: int) -> str:
 
 
 def frames_as_dot(frames: Sequence[FrameFacts], now_ns: int) -> str:
-    """Return the frames as a Graphviz graph; with ages relative to `now_ns` unless it is 0."""
+    """Return the frames as a Graphviz graph.
+
+    Ages relative to `now_ns` are included unless it is 0.
+    """
     lines = ["digraph G {"]
     if not frames:
         lines.append('"no tf data recieved"')  # the spelling is tf2's

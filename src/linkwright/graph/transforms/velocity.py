@@ -1,7 +1,7 @@
 """The velocity of a frame, computed with the formulas of tf2's ``lookupVelocity``.
 
-The formulas are tf2's, so that programs receive the same numbers. They are used even when the reference frame rotates
-relative to the other frames, although they are not correct then.
+With tf2's formulas, programs receive the same numbers. The formulas are not correct if the reference frame rotates
+relative to the other frames, but they are used even then.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The tf buffer that nodes use, whose lookups can wait: by blocking, or as futures.
+"""The tf buffer that nodes use. Its lookups can block or return futures.
 
 The methods are those of ``tf2_ros.Buffer``.
 """
@@ -16,7 +16,7 @@ from linkwright.graph.time.values import Duration
 from linkwright.graph.transforms.core import BufferCore
 
 _CHECK_INTERVAL_S = 0.1
-"""How often a wait checks again without new data, in seconds, because a step of the clock may change the result."""
+"""The interval, in seconds, at which a wait checks again, because a step of the clock may change the result."""
 
 NO_TIME = Duration()
 
@@ -44,7 +44,7 @@ class Buffer(BufferCore):
             )
 
     def set_transform(self, transform: Any, authority: str) -> None:
-        """Store a transform, and complete the pending lookups that it satisfies; see `BufferCore`."""
+        """Store a transform, and complete the pending lookups that it satisfies. See `BufferCore`."""
         super().set_transform(transform, authority)
         self._call_new_data_callbacks()
 
@@ -82,7 +82,10 @@ class Buffer(BufferCore):
         return self.lookup_transform_core(target_frame, source_frame, time)
 
     async def lookup_transform_async(self, target_frame: str, source_frame: str, time: Any) -> Any:
-        """Wait in a coroutine until a transform is available and return it; see `lookup_transform`."""
+        """Wait in a coroutine until a transform is available, and return it.
+
+        See `lookup_transform`.
+        """
         await self.wait_for_transform_async(target_frame, source_frame, time)
         return self.lookup_transform_core(target_frame, source_frame, time)
 
@@ -137,7 +140,7 @@ class Buffer(BufferCore):
         timeout: Any = NO_TIME,
         return_debug_tuple: bool = False,
     ) -> Any:
-        """Return whether a lookup with a fixed frame succeeds in time; see `can_transform`."""
+        """Return whether a lookup with a fixed frame succeeds in time. See `can_transform`."""
         result = self._wait(
             lambda: self.can_transform_full_core(target_frame, target_time, source_frame, source_time, fixed_frame),
             timeout,
@@ -154,7 +157,7 @@ class Buffer(BufferCore):
     def wait_for_transform_full_async(
         self, target_frame: str, target_time: Any, source_frame: str, source_time: Any, fixed_frame: str
     ) -> Future[Any]:
-        """Return a future that gets a transform via a fixed frame as soon as it is available."""
+        """Return a future that gets a transform through a fixed frame as soon as it is available."""
         arguments = (target_frame, target_time, source_frame, source_time, fixed_frame)
         return self._future(
             lambda: self.can_transform_full_core(*arguments)[0], lambda: self.lookup_transform_full_core(*arguments)

@@ -65,10 +65,10 @@ class Walker:
         describe_frames: returns a text that lists all frames, for error messages.
     """
 
-    def __init__(self, caches: list[FrameCache | None], names: list[str], shape: Callable[[], str]) -> None:
+    def __init__(self, caches: list[FrameCache | None], names: list[str], describe_frames: Callable[[], str]) -> None:
         self._caches = caches
         self._names = names
-        self._describe_frames = shape
+        self._describe_frames = describe_frames
 
     def find_path(self, target: int, source: int, time_ns: int, *, poses: bool = True) -> FramePath:
         """Find the path from a source frame to a target frame.

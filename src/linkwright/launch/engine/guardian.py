@@ -1,4 +1,4 @@
-"""The guardian, which ends the processes of a launch if its launcher is killed.
+"""The guardian: a helper program that ends the processes of a launch if its launcher is killed.
 
 A launcher that is killed with SIGKILL cannot end its processes. A small helper program, the guardian, is therefore
 started together with the first process. The guardian reads the process groups of the launch from a pipe that the
@@ -19,7 +19,10 @@ _EXIT_TIMEOUT_SECONDS = 2.0
 
 
 class Guardian:
-    """The launcher's interface to the guardian, without effect on systems without process groups."""
+    """The launcher's interface to the guardian.
+
+    It has no effect on systems without process groups.
+    """
 
     def __init__(self) -> None:
         self._mark_value = os.urandom(16).hex()
@@ -28,7 +31,7 @@ class Guardian:
         self._folder: Path | None = None
 
     def start_and_mark(self, environment: dict[str, str]) -> dict[str, str]:
-        """Start the guardian if needed, and return an environment that contains the mark of the launch.
+        """Start the guardian if needed, and return an environment with the mark of the launch.
 
         The guardian recognises the processes of the launch by this mark.
         """
@@ -36,11 +39,11 @@ class Guardian:
         return {**environment, _MARK_VARIABLE: self._mark_value}
 
     def watch(self, pid: int) -> None:
-        """Register the process group with the given leader, so that it is ended if the launcher is killed."""
+        """Register the process group of a leader, to be ended if the launcher is killed."""
         self._send(f"+{pid}\n")
 
     def register_folder(self, folder: Path) -> None:
-        """Register a folder of temporary files, so that it is deleted if the launcher is killed."""
+        """Register a folder of temporary files, to be deleted if the launcher is killed."""
         self._folder = folder
         self._send(f"={folder}\n")
 
@@ -49,7 +52,7 @@ class Guardian:
         self._send(f"-{pid}\n")
 
     def close(self) -> None:
-        """Tell the guardian that the launch ended normally, and wait for the guardian to exit."""
+        """Notify the guardian of the normal end of the launch, and wait for the guardian to exit."""
         self._closed = True
         process = self._process
         if process is None:

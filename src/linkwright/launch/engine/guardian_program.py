@@ -1,4 +1,4 @@
-"""The program of the guardian, which ends the remaining processes of a killed launcher.
+"""The program of the guardian: ends the remaining processes of a killed launcher.
 
 The launcher runs this file in a bare interpreter. The file imports little, so that it adds almost no time to a launch.
 Its standard input is a pipe from the launcher, with one line per event: ``+PID`` when a process group was started,
@@ -50,7 +50,7 @@ def marked_groups(mark: bytes) -> set[int]:
     empty on systems without ``/proc``.
     """
     try:
-        entries = os.listdir("/proc")  # noqa: PTH208 - importing pathlib would take longer than all the rest
+        entries = os.listdir("/proc")  # noqa: PTH208 - pathlib is slow to import
     except OSError:  # only Linux has /proc
         return set()
     pids = [int(entry) for entry in entries if entry.isdigit() and int(entry) != os.getpid()]
@@ -73,7 +73,7 @@ def _group_id(pid: int) -> int:
 
 
 def end_groups(groups: set[int]) -> None:
-    """End process groups with SIGINT, then with SIGTERM, and then with SIGKILL, as far as they still exist."""
+    """End process groups with SIGINT, then SIGTERM, then SIGKILL, as long as they exist."""
     for signal_number, seconds in _SIGNAL_STAGES:
         groups = {group for group in groups if send_signal(group, signal_number)}
         deadline = time.monotonic() + seconds

@@ -14,7 +14,7 @@ _MISSING_SOFTWARE_CODES = frozenset({"LAUNCH101", "LAUNCH124", "LAUNCH131", "LAU
 """The codes of findings that report missing software."""
 
 _UNSET_VALUE_CODES = frozenset({"LAUNCH121", "LAUNCH123", "LAUNCH137"})
-"""The codes of findings that report unset values, which skipped parts may have been meant to set."""
+"""The codes of findings about unset values. Skipped parts of the launch may have set such a value."""
 
 
 class Omissions:
@@ -38,7 +38,7 @@ class Omissions:
         self._unreported: list[Note] = []
 
     def skip(self, error: LinkwrightError) -> bool:
-        """Return whether to skip the part of the launch that raised an error, and record the skipped part.
+        """Return whether to skip the part of the launch that raised an error, and record it if so.
 
         A part is skipped if missing software is the cause. After that, a part with an unset value is skipped too.
 
@@ -55,7 +55,7 @@ class Omissions:
         return True
 
     def report(self) -> None:
-        """Log a warning that lists the parts that were skipped since the last call, if any."""
+        """Log a warning that lists the parts skipped since the last call."""
         if not self._unreported:
             return
         message = counted(
@@ -69,9 +69,9 @@ class Omissions:
         self._unreported.clear()
 
     def with_skip_command(self, error: LinkwrightError) -> tuple[Diagnostic, ...]:
-        """Return the findings of a fatal error, with a note on how to skip the part if that is possible.
+        """Return the findings of a fatal error, with a note about skipping the part if possible.
 
-        The note gives the command, and belongs to the last finding.
+        The note contains the command, and is attached to the last finding.
         """
         *other_diagnostics, last_diagnostic = error.diagnostics
         if self._command is None or not _is_missing(error):
@@ -81,7 +81,7 @@ class Omissions:
 
 
 def add_no_skip_note(error: LinkwrightError) -> None:
-    """Add a note to an error which says that no part of the launch can be skipped.
+    """Add a note that no part of the launch can be skipped.
 
     The note is added only to an error about missing software that has a location.
     """

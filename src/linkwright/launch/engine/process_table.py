@@ -79,7 +79,7 @@ class ProcessTable:
         return sorted(process.name for process in self._running)
 
     def seconds_to_end(self) -> float:
-        """Return the maximum seconds that the running processes may take to end after `stop_all`."""
+        """Return the maximum time in seconds until the running processes end after `stop_all`."""
         plans = [process.plan for process in tuple(self._running)]
         return max((plan.seconds_to_sigterm + plan.seconds_to_sigkill for plan in plans), default=0.0)
 
@@ -92,7 +92,7 @@ class ProcessTable:
             process.signal_group(getattr(signal, "SIGKILL", signal.SIGTERM))
 
     def register_folder(self, folder: Path) -> None:
-        """Register a folder, so that it is deleted if the launcher is killed."""
+        """Register a folder, to be deleted if the launcher is killed."""
         self._guardian.register_folder(folder)
 
     def close(self) -> None:

@@ -134,7 +134,7 @@ class RunningProcess:
             self.signal_group(_KILL if next_signal == "SIGKILL" else signal.SIGTERM)
 
     def escalate(self) -> None:
-        """Shorten the delays before the next signals, because the user is impatient."""
+        """Shorten the delays before the next signals, because the user repeated the interrupt."""
         self._is_hurried = True
         self._change.set()
 
@@ -326,7 +326,7 @@ class _LineSplitter:
         return [line.rstrip("\r") for line in complete_lines]
 
     def end(self) -> list[str]:
-        """Return a list with the unterminated last line, which is empty if there is none."""
+        """Return a list with the unterminated last line, or an empty list if there is none."""
         remaining_text = "".join(self._chunks) + self._decode(b"", final=True)
         return [remaining_text.rstrip("\r")] if remaining_text else []
 

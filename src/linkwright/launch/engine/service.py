@@ -71,14 +71,14 @@ class LaunchService:
         return self.__task
 
     def include_launch_description(self, launch_description: LaunchDescription) -> None:
-        """Queue a description, which is then visited.
+        """Queue a description to be visited.
 
         This method may be called from any thread.
         """
         self.emit_event(events.IncludeLaunchDescription(launch_description))
 
     def emit_event(self, event: Any) -> None:
-        """Queue an event, which is then handled.
+        """Queue an event to be handled.
 
         This method may be called from any thread, also before the run.
         """
@@ -131,7 +131,7 @@ class LaunchService:
             _end_tasks(loop)
 
     async def run_async(self, *, shutdown_when_idle: bool = True) -> int:
-        """Run the launch as a coroutine on the running event loop; see `run`."""
+        """Run the launch as a coroutine on the running event loop. See `run`."""
         from linkwright.hosting.launch_log import LaunchLog
         from linkwright.hosting.signals import SignalWatch
         from linkwright.hosting.xacro_calls import Descriptions, use_descriptions
@@ -182,6 +182,9 @@ class ProcessLaunchService(LaunchService):
 
 
 def _starting_folders() -> list[Path]:
-    """Return the folders where the search for packages starts: the program's folder and the current one."""
+    """Return the folders where the search for packages starts.
+
+    These are the folder of the program and the current folder.
+    """
     program = Path(sys.argv[0]).absolute().parent if sys.argv and sys.argv[0] else Path.cwd()
-    return [program, Path(os.getcwd())]  # noqa: PTH109 - the folder may not exist any more
+    return [program, Path(os.getcwd())]  # noqa: PTH109 - the folder may no longer exist

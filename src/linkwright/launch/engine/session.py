@@ -103,7 +103,7 @@ class LaunchSession:
 
     @property
     def visiting(self) -> bool:
-        """Whether code of the launch file is running, which blocks the event loop."""
+        """Whether code of the launch file is running. It blocks the event loop."""
         return self._is_visiting
 
     @property
@@ -120,7 +120,7 @@ class LaunchSession:
         return Path(self._scratch.name)
 
     def include(self, description: LaunchDescriptionEntity) -> None:
-        """Queue a description, which is then visited.
+        """Queue a description to be visited.
 
         This method may be called from any thread, also before the run.
         """
@@ -154,7 +154,10 @@ class LaunchSession:
             self._omissions.report()
 
     def could_not_start(self, subject: object, error: LinkwrightError) -> None:
-        """Report why a process or node could not be started; the launch continues without it."""
+        """Report why a process or node could not be started.
+
+        The launch continues without it.
+        """
         if self._omissions.skip(error):
             self._omissions.report()
             return
@@ -162,7 +165,10 @@ class LaunchSession:
         self.fail(subject)
 
     def fail(self, failure: object) -> None:
-        """Record a failure, which makes the launch exit with status 1 unless the failure is cleared."""
+        """Record a failure.
+
+        The launch exits with status 1 unless the failure is cleared.
+        """
         self._failures.add(failure)
 
     def clear_failure(self, failure: object) -> None:
@@ -192,7 +198,7 @@ class LaunchSession:
         self.reload.report(description, findings)
 
     def number_process(self, base_name: str) -> str:
-        """Return the name of a process in the log, which is its base name with the next number."""
+        """Return the name of a process in the log: its base name with the next number."""
         return f"{base_name}-{next(self._process_numbers)}"
 
     def call_later(
@@ -250,7 +256,10 @@ class LaunchSession:
         self.emit(events.ProcessStarted(action=plan.owner, **plan.details))
 
     def node_ended(self, plan: HostedPlan, status: int) -> None:
-        """Report the exit status of a node in the launcher's process that has ended or could not start."""
+        """Report the exit status of a node in the launcher's process.
+
+        The node has ended or could not start.
+        """
         self.emit(events.ProcessExited(action=plan.owner, returncode=status, **plan.details))
 
     # --- shutdown -------------------------------------------------------------------------------------------
@@ -273,7 +282,7 @@ class LaunchSession:
             self.loop.call_later(_REPORT_DELAY_SECONDS, self._log_running_processes)
 
     def seconds_to_end(self) -> float:
-        """Return the maximum seconds that the processes may take to end."""
+        """Return the maximum time in seconds until the processes end."""
         return self.processes.seconds_to_end()
 
     def kill_all(self) -> None:

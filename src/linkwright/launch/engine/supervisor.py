@@ -41,4 +41,7 @@ class Supervisor(RunningLaunch, Protocol):
         """Return whether any handler accepts an event."""
 
     def could_not_start(self, subject: object, error: LinkwrightError) -> None:
-        """Report why a process or node could not be started; the launch continues without it."""
+        """Report why a process or node could not be started.
+
+        The launch continues without it.
+        """

@@ -67,7 +67,7 @@ def as_ros_error(ros_error: Exception | None, *diagnostics: Diagnostic) -> Linkw
 
 
 def _constructible_base(kind: type[Exception]) -> type[Exception]:
-    """Return an exception class, or its nearest base class whose constructor accepts a single string."""
+    """Return an exception class or its nearest base class that accepts a single string."""
     candidates: list[type[Any]] = [
         candidate for candidate in kind.__mro__ if not issubclass(candidate, LinkwrightError)
     ]

@@ -35,10 +35,10 @@ class Place(ABC):
 
     @staticmethod
     def of_caller() -> Place | None:
-        """Return the place in the markup that is being read, or the place of the nearest frame of user code.
+        """Return the place in the markup that is being read, or the caller's place in user code.
 
         Returns:
-            The place; None if no user code called, but Linkwright's command line or the event loop.
+            The place; None if the call did not come from user code.
         """
         if _markup_places:
             return _markup_places[-1]
@@ -63,7 +63,7 @@ class Place(ABC):
 
     @abstractmethod
     def span(self, source: SourceText | None = None) -> Span:
-        """Return the lines and columns of the place, which are computed only on request."""
+        """Return the lines and columns of the place. They are computed on request."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,7 +127,10 @@ _markup_places: list[Place | None] = []
 
 @contextmanager
 def reading_markup_at(place: Place | None) -> Iterator[None]:
-    """Record a place in markup for the objects that are created in this context; None if it is unknown."""
+    """Record a place in markup for the objects that are created in this context.
+
+    The place is None if it is unknown.
+    """
     _markup_places.append(place)
     try:
         yield
@@ -137,9 +140,9 @@ def reading_markup_at(place: Place | None) -> Iterator[None]:
 
 @contextmanager
 def outside_markup() -> Iterator[None]:
-    """Record the place of the caller in Python code for the objects that are created in this context.
+    """Record the caller's place in Python code for the objects that are created in this context.
 
-    Without this context, the objects would get the place in the markup that is being read.
+    Without this context, the place in the markup that is being read would be recorded.
     """
     saved_places = _markup_places[:]
     _markup_places.clear()

@@ -45,7 +45,7 @@ def explain(error: BaseException, subject: str, fallback: Place | None = None) -
     """Return an error that reports an exception at the user's own line of code.
 
     Args:
-        error: the exception, which may also come from ``sys.exit``.
+        error: the exception; it may also come from ``sys.exit``.
         subject: the code that raised the exception, for the message, such as "launch file 'x.launch.py'".
         fallback: the place to report if no line of user code was running.
 
@@ -101,7 +101,7 @@ def _user_places(traceback: TracebackType | None) -> Iterable[Place]:
 
 
 def _hint(error: BaseException, source: SourceText | None, span: Span | None) -> Phrase | None:
-    """Return a hint on what the user may have meant, or None if nothing is similar."""
+    """Return a hint with the name that the user may have meant, or None if no name is similar."""
     if isinstance(error, ImportError):
         return _import_hint(error)
     if isinstance(error, NameError):
@@ -190,7 +190,7 @@ def _missing_hint(error: TypeError, source: SourceText | None, span: Span | None
 
 
 def _called_objects(frame: FrameType, class_name: str) -> list[Any]:
-    """Return the functions and classes in the scope of a frame that a failed call may have called.
+    """Return the functions and classes in a frame's scope that a failed call may refer to.
 
     These are the functions with the given name, and the classes with this name or with a base class of this name.
     """

@@ -30,7 +30,7 @@ from linkwright.packages.readers.entry_points import (
 ACTIONS = "launch.frontend.launch_extension"
 """The entry point group of modules that expose actions and substitutions when they are imported."""
 PARSERS = "launch.frontend.parser"
-"""The entry point group of parsers; the names are the languages."""
+"""The entry point group of parsers. The names are the languages."""
 _GROUP_NAMES = {ACTIONS: "launch extension", PARSERS: "parser extension"}
 _BUILTIN_ENTRY_POINTS = {
     ACTIONS: {

@@ -69,8 +69,7 @@ class IncludeLaunchDescription(Action):
         if not isinstance(launch_description_source, LaunchDescriptionSource):
             launch_description_source = AnyLaunchDescriptionSource(launch_description_source)
         self._source = launch_description_source
-        # As in ROS, a value that is not a string, such as None, is an error only when the file is included. That may
-        # never happen.
+        # As in ROS, a value that is not a string, such as None, is an error only if the file is actually included.
         self._arguments = [
             (normalize_to_list_of_substitutions(name), _normalize_if_possible(value))
             for name, value in launch_arguments or ()
@@ -78,7 +77,7 @@ class IncludeLaunchDescription(Action):
 
     @classmethod
     def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
-        """Return the class and keyword arguments for the tag, with the ``arg`` (or ``let``) tags inside."""
+        """Return the class and keyword arguments for the tag, including ``arg`` and ``let`` tags."""
         _, kwargs = super().parse(entity, parser)
         kwargs["launch_description_source"] = parser.parse_substitution(entity.get_attr("file"))
         arguments = []
@@ -126,9 +125,10 @@ class IncludeLaunchDescription(Action):
         return tuple(name.text for name in names if isinstance(name, TextSubstitution))
 
     def execute(self, context: LaunchContext) -> list[LaunchDescriptionEntity]:
-        """Return the entities to visit next: actions that set the arguments, the description, and a closing action.
+        """Return the entities to visit next.
 
-        The closing action restores the locals of the including file.
+        These are actions that set the arguments, the description, and a closing action that restores the locals of the
+        including file.
 
         Raises:
             RuntimeError: LAUNCH114, a required argument is missing.
@@ -159,7 +159,7 @@ class IncludeLaunchDescription(Action):
         ]
 
     def explain_inside(self, error: LinkwrightError) -> LinkwrightError:
-        """Add a note to an error in the included description that says where the file was included.
+        """Add a note with the place of the include to an error in the included description.
 
         Returns:
             The same error.
@@ -178,7 +178,10 @@ class IncludeLaunchDescription(Action):
         return path is not None and not path.exists() and any(is_substitute(folder) for folder in path.parents)
 
     def _file_values(self) -> dict[str, str]:
-        """Return the locals for the path and folder of the included file, or an empty dictionary without a file."""
+        """Return the locals for the path and folder of the included file.
+
+        A description without a file has none.
+        """
         path = self._source.location_path
         if path is None:
             return {}
@@ -226,7 +229,7 @@ class IncludeLaunchDescription(Action):
                 raise error_at(self.place, "LAUNCH114", message, hint, ros_error=ros_error)
 
     def _argument_hint(self, name: str) -> Phrase:
-        """Return a hint on how to pass an argument in the language of the including file."""
+        """Return a hint that shows the argument in the language of the including file."""
         if not isinstance(self.place, MarkupPlace):
             return phrase("add ('{name}', VALUE) to launch_arguments", name=name)
         if self.place.text.text.lstrip().startswith("<"):

@@ -121,7 +121,7 @@ def get_launch_description_from_any_launch_file(
     for load in (load_python, load_markup) if path.suffix == ".py" else (load_markup, load_python):
         try:
             return load(launch_file_path)  # type: ignore[no-any-return]  # may be a user's function
-        except Exception as error:  # noqa: BLE001, PERF203 - launch files are programs, and there are two tries
+        except Exception as error:  # noqa: BLE001, PERF203 - launch files are programs; there are two attempts
             errors.append(error)
     ros_error = InvalidLaunchFileError(path.suffix[1:], likely_errors=errors, launch_file_path=launch_file_path)
     message = phrase("launch file '{path}' cannot be read", path=display_path(path))

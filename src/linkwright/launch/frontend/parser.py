@@ -33,7 +33,7 @@ class Parser:
 
     @classmethod
     def load_launch_extensions(cls) -> None:
-        """Import all modules of Linkwright and of installed packages that expose actions and substitutions."""
+        """Import all modules of Linkwright and of installed packages with actions and substitutions."""
         if Parser.extensions_loaded:
             return
         for _ in extensions.load(extensions.ACTIONS):
@@ -180,7 +180,7 @@ class Parser:
                 return parser.load(file_copy)
             except RecursionError:  # no other parser can read a text that is nested too deeply
                 raise
-            except Exception as error:  # noqa: BLE001 - parsers of packages may raise anything
+            except Exception as error:  # noqa: BLE001 - third-party parsers may raise any exception
                 errors.append(error)
         extension = os.path.splitext(name)[1][1:] if cls.is_filename_valid(name) else ""  # noqa: PTH122
         ros_error = InvalidFrontendLaunchFileError(extension, likely_errors=errors)

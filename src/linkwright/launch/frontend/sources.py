@@ -20,7 +20,7 @@ from linkwright.launch.model.substitution import (
 
 
 class LaunchDescriptionSource(Placed):
-    """Provides a launch description, which exists already or is loaded from a file.
+    """A source of a launch description: an existing description, or a file to load it from.
 
     Args:
         launch_description: the description, if it already exists.
@@ -41,23 +41,28 @@ class LaunchDescriptionSource(Placed):
 
     @property
     def location(self) -> str:
-        """The evaluated path; before the evaluation, a text with its substitutions."""
+        """The evaluated path, or a text with the substitutions before the evaluation."""
         if self._evaluated_location is not None:
             return self._evaluated_location
         return " + ".join(map(repr, self._location))
 
     @property
     def location_path(self) -> Path | None:
-        """The absolute path; None if it is not evaluated yet, or the description has no file."""
+        """The absolute path, or None.
+
+        None means that the path is not evaluated yet, or that there is no file.
+        """
         return Path.cwd() / self._evaluated_location if self._evaluated_location else None
 
     @property
     def method(self) -> str:
-        """A text for listings that describes how the description is loaded."""
+        """A text for listings that names the source of the description."""
         return self._method
 
     def get_launch_description(self, context: LaunchContext) -> LaunchDescription:
-        """Return the description, which is loaded from its file on the first call.
+        """Return the description.
+
+        The first call loads it from its file.
 
         Raises:
             LinkwrightError: the file has errors.
@@ -67,7 +72,10 @@ class LaunchDescriptionSource(Placed):
         return self._get()
 
     def try_get_launch_description_without_context(self) -> LaunchDescription | None:
-        """Return the description, or None if its path contains substitutions that need a launch context."""
+        """Return the description, or None if its path contains substitutions.
+
+        Those need a launch context.
+        """
         if self._description is None and all(
             isinstance(substitution, TextSubstitution) for substitution in self._location
         ):

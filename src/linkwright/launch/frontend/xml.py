@@ -31,7 +31,7 @@ class Entity(MarkupEntity):
 
     @property
     def children(self) -> list[AnyEntity]:
-        """The child elements, all of which count as read after an access.
+        """The child elements.
 
         Reading this property marks all child elements as read.
         """

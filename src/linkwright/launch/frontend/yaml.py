@@ -23,7 +23,7 @@ _SINGLE_VALUE_ATTRIBUTES = {"include": "file"}
 
 
 class Entity(MarkupEntity):
-    """An action in a YAML launch file, which is a mapping of attributes or a list of actions.
+    """An action in a YAML launch file: a mapping of attributes, or a list of actions.
 
     Args:
         element: the mapping or list.
@@ -38,7 +38,7 @@ class Entity(MarkupEntity):
 
     @property
     def children(self) -> list[AnyEntity]:
-        """The child entities, which are the items of the list, or of the mapping's ``children``.
+        """The child entities: the items of the list, or of the mapping's ``children``.
 
         Raises:
             TypeError: LAUNCH118, the element is neither a list nor a mapping.
@@ -190,12 +190,15 @@ class _Loader(yaml.SafeLoader):
         self._open_anchors: list[str | None] = []
 
     def compose_node(self, parent: yaml.Node | None, index: Any) -> yaml.Node | None:
-        """Compose a node, and raise an error for an alias to an enclosing node, which would recurse endlessly."""
+        """Compose a node, and reject an alias to an enclosing node.
+
+        Such an alias would cause an endless recursion.
+        """
         event: Any = self.peek_event()  # type: ignore[no-untyped-call]  # of PyYAML
         anchor = getattr(event, "anchor", None)
         if isinstance(event, yaml.AliasEvent) and anchor in self._open_anchors:
             mark: Any = event.start_mark
-            raise yaml.composer.ComposerError(None, None, f"alias '{anchor}' is inside of itself", mark)
+            raise yaml.composer.ComposerError(None, None, f"alias '{anchor}' refers to a node that contains it", mark)
         self._open_anchors.append(anchor)
         try:
             return super().compose_node(parent, index)

@@ -1,4 +1,4 @@
-"""Handlers of `logging` with separate formats for individual loggers (``launch.logging.handlers``)."""
+"""Handlers with separate formats for individual loggers (``launch.logging.handlers``)."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class ForEachLogger:
         formatter = self._formatters.get(record.name)
         if formatter is not None:
             return formatter.format(record)
-        return str(super().format(record))  # type: ignore[misc]  # the class that it is mixed into defines it
+        return str(super().format(record))  # type: ignore[misc]  # defined by the other base class
 
 
 class Handler(ForEachLogger, logging.Handler):
@@ -46,7 +46,7 @@ class FileHandler(ForEachLogger, logging.FileHandler):
 
 
 class WatchedFileHandler(ForEachLogger, logging.handlers.WatchedFileHandler):
-    """Writes lines to a file, which is reopened if another program moves it."""
+    """Writes lines to a file, and reopens the file if another program moves it."""
 
 
 def handler_class(name: str) -> type[Any]:

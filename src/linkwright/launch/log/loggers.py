@@ -1,4 +1,4 @@
-"""The loggers of ``launch.logging``, which are Python's loggers with the format of launch lines.
+"""The loggers of ``launch.logging``: Python's loggers with the format of launch lines.
 
 These loggers are separate from the launcher's own log (`linkwright.hosting.launch_log`). They have the same format,
 and use the same environment variables. A log file is opened when its first line is written.
@@ -44,10 +44,13 @@ class _ScreenHandler(StreamHandler):
 
 
 class _MainFileHandler(Handler):
-    """Writes lines to the main log file, which is opened when the first line is written."""
+    """Writes lines to the main log file.
+
+    The file is opened when the first line is written.
+    """
 
     def emit(self, record: logging.LogRecord) -> None:
-        """Write the line of a log record, unless the logger has its own handler for the main log file."""
+        """Write a log record, unless its logger has its own handler for the main log file."""
         handler = launch_config.get_log_file_handler(launch_config.log_file_name)
         if handler not in logging.getLogger(record.name).handlers:
             handler.handle(record)
@@ -97,7 +100,7 @@ class LaunchConfig:
 
     @property
     def log_dir(self) -> str:
-        """The folder that contains the log files of the launch; it is created on first access."""
+        """The folder of the launch's log files, created on first access."""
         if self._log_dir is None:
             module = _public_module()
             self._log_dir = module._make_unique_log_dir(base_path=_get_logging_directory())
@@ -125,7 +128,10 @@ class LaunchConfig:
 
     @property
     def log_handler_factory(self) -> Callable[..., logging.Handler]:
-        """The factory of file handlers, which is called with a path and the keyword argument ``encoding``."""
+        """The factory of file handlers.
+
+        It is called with a path and the keyword argument ``encoding``.
+        """
         return self._log_handler_factory or (FileHandler if os.name == "nt" else WatchedFileHandler)
 
     @log_handler_factory.setter

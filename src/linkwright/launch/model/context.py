@@ -94,7 +94,7 @@ class Locals:
 
 
 class LaunchContext:
-    """The state of a launch, which actions and substitutions read and change.
+    """The state of a launch, read and changed by actions and substitutions.
 
     Attributes:
         argv: the command-line arguments with which the launch was started.
@@ -139,7 +139,10 @@ class LaunchContext:
         return Locals(self.get_locals_as_dict())
 
     def get_locals_as_dict(self) -> dict[str, Any]:
-        """Return the globals and the locals of all scopes as a dictionary; inner scopes take precedence."""
+        """Return the globals and the locals of all scopes as a dictionary.
+
+        Inner scopes take precedence.
+        """
         merged = dict(self._globals)
         for scope in self._locals:
             merged.update(scope)
@@ -160,7 +163,7 @@ class LaunchContext:
         self._globals.update(extensions)
 
     def push_locals(self) -> None:
-        """Open a scope of locals, which `pop_locals` closes."""
+        """Open a scope of locals, to be closed with `pop_locals`."""
         self._locals.append({})
 
     def pop_locals(self) -> None:
@@ -214,7 +217,7 @@ class LaunchContext:
         self.environment.update(environment)
 
     def snapshot(self) -> LaunchContext:
-        """Return a context with the current configurations and locals, for a later retry of an action.
+        """Return a copy with the current configurations and locals, for a later retry of an action.
 
         The copy shares the event queue and event handlers with this context.
         """
@@ -263,7 +266,7 @@ class LaunchContext:
             RuntimeError: no launch is running in this context.
         """
         if self._session is None:
-            raise RuntimeError("no launch runs in this context")
+            raise RuntimeError("no launch is running in this context")
         return self._session
 
     @property

@@ -27,7 +27,7 @@ def declared_arguments(
 
 
 def undeclared_names(entities: Iterable[LaunchDescriptionEntity], names: Iterable[str]) -> list[str]:
-    """Return those of the given names that a launch description does not declare as arguments.
+    """Return the given names that a launch description does not declare as arguments.
 
     The result is empty if the declarations of some included descriptions are unknown before the launch.
     """

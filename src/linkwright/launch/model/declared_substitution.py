@@ -1,4 +1,4 @@
-"""A base class that generates a substitution from its name, its declared arguments and a function.
+"""A base class that generates a substitution from its declaration and a function.
 
 A class declares its tag ``$(tag ...)``, its text in listings, and its arguments::
 
@@ -32,7 +32,7 @@ else:
     C = TypeVar("C")
 
     def dataclass_transform(**_: Any) -> Callable[[C], C]:
-        """Tell type checkers that the constructor is generated from the fields.
+        """Mark a class for type checkers: its constructor is generated from the fields.
 
         This decorator has no effect at run time.
         """
@@ -96,16 +96,16 @@ class OptionalTexts(Texts):
             ...
 
     def __set__(self, owner: Any, value: SomeSubstitutionsType | Path | None) -> None:
-        """Normalize a value to substitutions, and store it; None is stored unchanged."""
+        """Normalize a value to substitutions, and store it. None is stored unchanged."""
         owner.__dict__[self.name] = None if value is None else self.read(value)
 
     def describe(self, value: Any) -> str:
-        """Return the text of a value in listings, which is empty for None."""
+        """Return the text of a value in listings. The text for None is empty."""
         return describe(value or [])
 
 
 class AnyTexts(Texts):
-    """A `Texts` argument that also accepts other values, which `read` converts."""
+    """A `Texts` argument that also accepts other values. They are converted with `read`."""
 
     def __set__(self, owner: Any, value: Any) -> None:
         """Convert a value to substitutions, and store it."""
@@ -116,7 +116,7 @@ class AnyOptionalTexts(OptionalTexts):
     """An `AnyTexts` argument that may be None."""
 
     def __set__(self, owner: Any, value: Any) -> None:
-        """Convert a value to substitutions, and store it; None is stored unchanged."""
+        """Convert a value to substitutions, and store it. None is stored unchanged."""
         super().__set__(owner, value)
 
 

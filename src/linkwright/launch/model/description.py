@@ -1,4 +1,4 @@
-"""The launch description, which a launch file returns."""
+"""The launch description that a launch file returns."""
 
 from __future__ import annotations
 

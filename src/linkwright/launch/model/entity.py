@@ -32,7 +32,7 @@ class LaunchDescriptionEntity(Placed):
         return []
 
     def describe_conditional_sub_entities(self) -> list[tuple[str, Iterable[LaunchDescriptionEntity]]]:
-        """Return pairs of a text that describes a condition and the entities that are visited under it."""
+        """Return pairs of a text about a condition, and the entities visited under that condition."""
         return []
 
     def arguments_given_inside(self) -> tuple[str, ...]:
@@ -50,7 +50,7 @@ class LaunchDescriptionEntity(Placed):
         return False
 
     def explain_inside(self, error: LinkwrightError) -> LinkwrightError:
-        """Add notes to an error of a child entity that explain how the launch reached the child.
+        """Add notes to an error of a child entity that show the path of the launch to the child.
 
         Returns:
             The same error.

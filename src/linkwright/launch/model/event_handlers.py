@@ -1,4 +1,4 @@
-"""Event handlers, which visit entities when an event occurs."""
+"""Event handlers: they visit entities when an event occurs."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ class BaseEventHandler:
 
     @property
     def entities(self) -> Any:
-        """The entities that the handler visits; None if they are unknown before the event."""
+        """The entities that the handler visits, or None if they are unknown before the event."""
         return None
 
     def matches(self, event: Any) -> bool:
@@ -62,7 +62,7 @@ class BaseEventHandler:
         return text, list(_as_iterable(self.entities))
 
     def handle(self, event: Any, context: LaunchContext) -> Any:
-        """Set the event as a local of the context, and unregister the handler if it handles only one event.
+        """Set the event as a local of the context, and unregister a handler for a single event.
 
         Subclasses extend this method to return the entities to visit.
         """
@@ -119,7 +119,7 @@ class _ReactionHandler(BaseEventHandler):
 
     @property
     def entities(self) -> list[LaunchDescriptionEntity]:
-        """The given entities to visit; empty if a function returns them."""
+        """The given entities to visit. The list is empty if a function returns the entities."""
         return self._entities
 
     @property

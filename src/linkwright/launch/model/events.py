@@ -31,7 +31,10 @@ ProcessMatcher = Callable[[ProcessAction], bool]
 
 
 class Event:
-    """The base class of events, which report that something happened or request an action."""
+    """The base class of events.
+
+    An event reports a change, or requests an action.
+    """
 
     name = "launch.Event"
 

@@ -18,7 +18,7 @@ FilePath = str | bytes | os.PathLike[Any]
 
 
 def isclassinstance(obj: object) -> bool:
-    """Return whether an object has a class, which is always true in Python 3."""
+    """Return whether an object has a class. In Python 3, the result is always true."""
     return hasattr(obj, "__class__")
 
 
@@ -62,7 +62,10 @@ def create_future(loop: asyncio.AbstractEventLoop | None) -> asyncio.Future[Any]
 
 
 def get_loop() -> asyncio.AbstractEventLoop:
-    """Return the running event loop, or the loop of an earlier call if it is open, or a new loop."""
+    """Return the running event loop, or else the loop of an earlier call.
+
+    If that loop is closed, or there is none, a new loop is created.
+    """
     try:
         return asyncio.get_running_loop()
     except RuntimeError:
@@ -73,7 +76,7 @@ def get_loop() -> asyncio.AbstractEventLoop:
 
 
 _loops: list[asyncio.AbstractEventLoop] = []
-"""The event loop that `get_loop` created last, if any."""
+"""The event loop that `get_loop` created last, or empty."""
 
 
 def visit_all_entities_and_collect_futures(

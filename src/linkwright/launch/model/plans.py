@@ -1,4 +1,4 @@
-"""The plans of processes, which actions create and the engine executes.
+"""Plans of processes: actions create them, and the engine executes them.
 
 `linkwright.hosting.plans.HostedPlan` is the corresponding plan of one of Linkwright's own nodes.
 """
@@ -13,7 +13,7 @@ from linkwright.launch.model.events import ProcessAction
 
 @dataclass(frozen=True)
 class ProcessPlan:
-    """The evaluated options with which the engine starts a process; see `ExecuteLocal`."""
+    """The evaluated options of a process to start. See `ExecuteLocal`."""
 
     action: ProcessAction
     name: str

@@ -48,6 +48,10 @@ def replacing_node(words: Sequence[str], environment: Mapping[str, str]) -> Node
         parse_command: CommandParser = entry_point.load()
     except Exception as error:
         message = phrase("the node that replaces '{program}' cannot be imported", program=entry_point.name)
-        hint = phrase("it is part of '{place}': {problem}", place=entry_point.distribution, problem=foreign(error))
+        hint = phrase(
+            "the Python package '{place}' provides it, but its import fails: {problem}",
+            place=entry_point.distribution,
+            problem=foreign(error),
+        )
         raise LinkwrightError(Diagnostic("NODE002", message, hint=hint)) from error
     return parse_command(words)

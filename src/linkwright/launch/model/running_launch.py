@@ -41,7 +41,7 @@ class NodeHosting(Protocol):
 
     @property
     def launcher_node(self) -> Node:
-        """The launcher's own node for services and topics, which is created on first use."""
+        """The launcher's own node for services and topics, created on first use."""
 
     def plan(self, plan: HostedPlan) -> None:
         """Schedule the start of a node that is described by a plan.
@@ -90,13 +90,13 @@ class RunningLaunch(Protocol):
 
     @property
     def scratch_folder(self) -> Path:
-        """A folder for files that the processes of this launch read, which is deleted after the launch.
+        """A folder for files that the processes of this launch read.
 
         The folder is deleted after the launch.
         """
 
     def number_process(self, base_name: str) -> str:
-        """Return the name of a process in the log, which is its base name with the next number."""
+        """Return the name of a process in the log: its base name with the next number."""
 
     def start_process(self, plan: ProcessPlan, name: str) -> None:
         """Start a process, monitor it until it ends, and restart it if the plan requests a respawn."""
@@ -125,10 +125,16 @@ class RunningLaunch(Protocol):
         """
 
     def could_not_start(self, subject: object, error: LinkwrightError) -> None:
-        """Report why a process or node could not be started; the launch continues without it."""
+        """Report why a process or node could not be started.
+
+        The launch continues without it.
+        """
 
     def fail(self, failure: object) -> None:
-        """Record a failure, which makes the launch exit with status 1 unless the failure is cleared."""
+        """Record a failure.
+
+        The launch exits with status 1 unless the failure is cleared.
+        """
 
     def report(self, description: object, findings: Sequence[Diagnostic]) -> None:
         """Report findings about a robot description in the log and the viewer."""

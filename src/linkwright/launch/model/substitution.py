@@ -1,4 +1,4 @@
-"""Substitutions, which evaluate to text when the launch runs."""
+"""Substitutions: objects that evaluate to text when the launch runs."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Builders for the parameters of a package (``moveit_configs_utils``, ``launch_param_builder``)."""
+"""Builders of parameters (``moveit_configs_utils``, ``launch_param_builder``)."""
 
 from __future__ import annotations
 
@@ -84,7 +84,7 @@ class ParameterBuilder:
 class MoveItConfigsBuilder(ParameterBuilder):
     """Collects parameters from the files of a MoveIt configuration package.
 
-    The methods read a file from the path that they are given, or from the usual path in the package.
+    Each method reads a file from the given path, or by default from the usual path in the package.
 
     Args:
         robot_name: the name of the robot.
@@ -132,7 +132,7 @@ class MoveItConfigsBuilder(ParameterBuilder):
         return self
 
     def joint_limits(self, file_path: _Path = None) -> MoveItConfigsBuilder:
-        """Read the joint limits that replace those in the URDF."""
+        """Read the joint limits. They replace the limits in the URDF."""
         self.__moveit_configs.joint_limits = self.__below("_planning", file_path, "joint_limits.yaml")
         return self
 
@@ -349,7 +349,7 @@ def _expand_description(path: Path, mappings: _Mappings) -> Any:
 
 
 def _find_stems(folders: Sequence[Path], suffix: str) -> list[str]:
-    """Return the file names with a suffix in some folders, without the suffix and without duplicates."""
+    """Return the stems of the files with a suffix in some folders, without duplicates."""
     stems = (path.name.removesuffix(suffix) for folder in folders for path in sorted(folder.glob(f"*{suffix}")))
     return list(dict.fromkeys(stems))
 

@@ -34,7 +34,7 @@ class ParameterBuilderFileNotFoundError(KeyError):
 
 
 def load_file(file_path: str | Path, mappings: Mapping[str, Any] | None = None) -> str:
-    """Return the text of a file, which is rendered as a jinja2 template if mappings are given.
+    """Return the text of a file, rendered as a jinja2 template if mappings are given.
 
     Raises:
         ParameterBuilderFileNotFoundError: LAUNCH153, the file does not exist.
@@ -45,7 +45,7 @@ def load_file(file_path: str | Path, mappings: Mapping[str, Any] | None = None) 
 
 
 def load_yaml(file_path: str | Path, mappings: Mapping[str, Any] | None = None) -> Any:
-    """Return the content of a YAML file, which may be a jinja2 template.
+    """Return the content of a YAML file. The file may be a jinja2 template.
 
     Raises:
         ParameterBuilderFileNotFoundError: LAUNCH153, the file does not exist.

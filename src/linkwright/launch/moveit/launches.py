@@ -67,7 +67,7 @@ def generate_setup_assistant_launch(moveit_config: MoveItConfigs) -> LaunchDescr
 
 
 def generate_static_virtual_joint_tfs_launch(moveit_config: MoveItConfigs) -> LaunchDescription:
-    """Return a launch description that publishes static transforms for the virtual joints of the SRDF."""
+    """Return a launch description for static transforms of the virtual joints in the SRDF."""
     frames = [pair for text in moveit_config.robot_description_semantic.values() for pair in _read_virtual_joints(text)]
     return LaunchDescription(
         [
@@ -218,7 +218,7 @@ def _read_virtual_joints(text: Any) -> Iterator[tuple[str, str]]:
     """
     if not isinstance(text, str):
         return
-    for joint in ET.fromstring(text).iter("virtual_joint"):  # noqa: S314 - expanded by us
+    for joint in ET.fromstring(text).iter("virtual_joint"):  # noqa: S314 - the output of Linkwright's expansion
         yield joint.get("parent_frame", "world"), joint.get("child_link", "")
 
 
@@ -245,13 +245,15 @@ def add_debuggable_node(
     extra_debug_args: list[Any] | None = None,
     **kwargs: Any,
 ) -> None:
-    """Add a node to a launch description; the node runs in gdb if a launch argument is true.
+    """Add a node to a launch description.
+
+    The node runs in gdb if a launch argument is true.
 
     Args:
         ld: the launch description.
         package: the package of the node.
         executable: the executable of the node.
-        condition_name: the launch argument that tells whether to use gdb.
+        condition_name: the launch argument that determines whether to use gdb.
         commands_file: the path of a file with commands for gdb, or None.
         extra_debug_args: further arguments of the node in gdb, which have an effect only if `arguments` is given.
         kwargs: see `Node`.

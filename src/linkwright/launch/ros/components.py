@@ -107,7 +107,7 @@ class ComposableNode(Placed):
 
     @property
     def node_name(self) -> Any:
-        """The name of the node, as substitutions; None if the node's code sets the name."""
+        """The name of the node as substitutions, or None if the node's code sets the name."""
         return self.__node_name
 
     @property
@@ -157,7 +157,7 @@ class ComposableLifecycleNode(ComposableNode):
 
     @property
     def node_name(self) -> Any:
-        """The name of the node, as substitutions; its full name after it was loaded."""
+        """The name of the node as substitutions, or its full name once it is loaded."""
         return super().node_name if self.__full_name is None else self.__full_name
 
     def record_full_name(self, full_name: str) -> None:
@@ -166,7 +166,7 @@ class ComposableLifecycleNode(ComposableNode):
 
 
 def get_composable_node_load_request(description: ComposableNode, context: LaunchContext) -> Any:
-    """Return the request to load a node into a container, or None if the node's condition does not hold.
+    """Return the request to load a node into a container.
 
     The result is None if the node's condition does not hold.
 
@@ -213,7 +213,7 @@ def to_parameters_list(
 ) -> list[Any]:
     """Return evaluated parameters as ``rclpy.parameter.Parameter`` objects.
 
-    A parameter file may have values for several nodes; the full name of the node selects its own.
+    A parameter file may have values for several nodes. The full name of the node selects its values.
     """
     full_name = f"{(namespace or '').rstrip('/')}/{node_name.lstrip('/')}"
     full_name = full_name if full_name.startswith("/") else f"/{full_name}"

@@ -67,14 +67,14 @@ class LoadComposableNodes(Action):
 
     @classmethod
     def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
-        """Return the class and keyword arguments for the tag, with the ``composable_node`` tags inside."""
+        """Return the class and keyword arguments for the tag and its ``composable_node`` tags."""
         _, kwargs = super().parse(entity, parser)
         kwargs["target_container"] = parser.parse_substitution(entity.get_attr("target", data_type=str))
         kwargs["composable_node_descriptions"] = _parse_descriptions(entity, parser)
         return cls, kwargs
 
     def execute(self, context: LaunchContext) -> None:
-        """Start to load the nodes in the background.
+        """Start loading the nodes in the background.
 
         Raises:
             LinkwrightError: the parameters of a node have errors.
@@ -168,13 +168,13 @@ class ComposableNodeContainer(Node):
     def parse(
         cls, entity: Entity, parser: Parser, ignore: Sequence[str] | None = None
     ) -> tuple[type[Action], dict[str, Any]]:
-        """Return the class and keyword arguments for the tag, with the ``composable_node`` tags inside."""
+        """Return the class and keyword arguments for the tag and its ``composable_node`` tags."""
         _, kwargs = super().parse(entity, parser, ignore)
         kwargs["composable_node_descriptions"] = _parse_descriptions(entity, parser, optional=True)
         return cls, kwargs
 
     def execute(self, context: LaunchContext) -> list[Any] | None:
-        """Start the container, and return the action that loads the nodes, which is visited next.
+        """Start the container, and return the action that loads the nodes.
 
         Raises:
             LinkwrightError: see `Node.execute`.
@@ -225,7 +225,7 @@ class ComposableNodeContainer(Node):
 
 
 def _is_third_party(finder: PackageFinder, package: str, plugin: str) -> bool:
-    """Return whether a component comes from third-party software that is not built here.
+    """Return whether a component belongs to third-party software that is not built here.
 
     A name that is a misspelling of one of Linkwright's components is not third-party.
     """

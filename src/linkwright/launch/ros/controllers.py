@@ -21,8 +21,8 @@ def generate_controllers_spawner_launch_description(
 ) -> LaunchDescription:
     """Return a launch description that spawns controllers.
 
-    The description declares an argument for the name of the controller manager, and one that tells whether the
-    controllers are unloaded at the end.
+    The description declares an argument for the name of the controller manager, and an argument that determines whether
+    the controllers are unloaded at the end.
 
     Args:
         controller_names: the names of the controllers.
@@ -49,7 +49,7 @@ def generate_controllers_spawner_launch_description(
             DeclareLaunchArgument(
                 _UNLOAD_ARGUMENT, default_value="false", description="Unload the controllers at the end"
             ),
-            Node(  # noqa: S604 - an argument may be empty, which only a shell drops
+            Node(  # noqa: S604 - only a shell drops empty arguments
                 package=_MANAGER,
                 executable="spawner",
                 arguments=[*spawner_arguments, *extra_spawner_args],

@@ -23,7 +23,7 @@ def with_deprecated_arguments(**present: str) -> Callable[[_Class], _Class]:
     """
 
     def extend(kind: _Class) -> _Class:
-        initialize = kind.__init__  # type: ignore[misc]  # of the class itself, not of an instance
+        initialize = kind.__init__  # type: ignore[misc]  # the class itself is decorated
 
         @functools.wraps(initialize)
         def __init__(self: Any, *args: Any, **kwargs: Any) -> None:  # noqa: N807 - becomes the method of that name
@@ -32,15 +32,15 @@ def with_deprecated_arguments(**present: str) -> Callable[[_Class], _Class]:
                     continue
                 if current_name in kwargs:
                     raise TypeError(
-                        f"{kind.__name__} is given both '{former_name}' and '{current_name}', which is its name now"
+                        f"{kind.__name__} received '{former_name}' and '{current_name}': use '{current_name}' only"
                     )
                 warnings.warn(
-                    f"'{former_name}' of {kind.__name__} is called '{current_name}' now", UserWarning, stacklevel=2
+                    f"'{former_name}' of {kind.__name__} is deprecated: use '{current_name}'", UserWarning, stacklevel=2
                 )
                 kwargs[current_name] = kwargs.pop(former_name)
             initialize(self, *args, **kwargs)
 
-        kind.__init__ = __init__  # type: ignore[misc]  # on purpose
+        kind.__init__ = __init__  # type: ignore[misc]  # the decorator replaces it
         return kind
 
     return extend

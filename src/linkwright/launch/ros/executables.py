@@ -1,4 +1,4 @@
-"""Executables of packages: Linkwright's own, those in installed packages, and those in sources."""
+"""Executables of packages: Linkwright's, installed ones, and ones in sources."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ BUILT_IN = "built into Linkwright"
 
 
 class Origin(Enum):
-    """Where an executable comes from: Linkwright, an installed package, or the sources of a package."""
+    """The origin of an executable: Linkwright, an installed package, or a package's sources."""
 
     LINKWRIGHT = "ours"
     INSTALLED = "installed"
@@ -51,7 +51,7 @@ class Executable:
     Attributes:
         package: the name of the package.
         name: the name of the program in the package.
-        origin: where the program comes from.
+        origin: the origin of the program.
         path: the path of the program; None for Linkwright's own programs, and for an entry point without a script.
         entry_point: the entry point in sources; None for other programs.
     """
@@ -81,7 +81,10 @@ class Executable:
 
 
 def is_hosted(package: str | None, executable: str) -> bool:
-    """Return whether an executable is one of Linkwright's nodes, which can run in the launcher's process."""
+    """Return whether an executable is one of Linkwright's nodes.
+
+    Such a node can run in the launcher's process.
+    """
     if is_viewer(package, executable):
         return True
     from linkwright.nodes import EXECUTABLES
@@ -104,7 +107,8 @@ def builtin_packages() -> set[str]:
 def executables_of(finder: PackageFinder, package: str) -> dict[str, Executable]:
     """Return the programs of a package, by name.
 
-    Of programs with the same name, Linkwright's own comes first, then the installed one, then the one in sources.
+    If several programs have the same name, Linkwright's takes precedence, then the installed one, then the one in
+    sources.
 
     Raises:
         PackageNotFoundError: PKG101, there is no such package.
@@ -309,7 +313,7 @@ def _missing_in_sources_error(package: str, name: str, share: Path) -> Linkwrigh
 
 
 def _unknown_program_error(package: str, name: str, share: Path) -> LinkwrightError:
-    """Return the error for a program that the package may build, although its sources do not show it."""
+    """Return the error for a program that the package may build, but not visibly in its sources."""
     message = phrase("executable '{name}' of package '{package}' is not available", name=name, package=package)
     note = Note(phrase("the files in {share} do not show which programs it builds", share=display_path(share)))
     build_hint = phrase(

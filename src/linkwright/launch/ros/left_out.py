@@ -20,7 +20,10 @@ def record_skipped_node(context: LaunchContext, name: str) -> None:
 
 
 def without_skipped_nodes(context: LaunchContext, package: str, parameters: dict[str, Any]) -> dict[str, Any]:
-    """Return the parameters of a node; if it is a lifecycle manager, skipped nodes are removed from them."""
+    """Return the parameters of a node.
+
+    From the parameters of a lifecycle manager, skipped nodes are removed.
+    """
     if package != _MANAGER_PACKAGE or not isinstance(parameters.get(_NODES_PARAMETER), Iterable):
         return parameters
     return {**parameters, _NODES_PARAMETER: _without_skipped(context, parameters[_NODES_PARAMETER])}

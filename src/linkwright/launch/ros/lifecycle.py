@@ -54,7 +54,7 @@ class LifecycleEventManager:
         return str(self._node.node_name)
 
     def setup_lifecycle_manager(self, context: LaunchContext) -> None:
-        """Start to monitor the node, and to handle requests for its transitions."""
+        """Start monitoring the node and handling requests for its transitions."""
         launcher = context.session.host.launcher_node
         launcher.create_subscription(
             "lifecycle_msgs/msg/TransitionEvent",
@@ -165,7 +165,7 @@ class LifecycleNode(Node):
         return self.__manager.current_state
 
     def execute(self, context: LaunchContext) -> list[Any] | None:
-        """Start the node, and start to monitor its state.
+        """Start the node and the monitoring of its state, and return the entities to visit next.
 
         Raises:
             LinkwrightError: see `Node.execute`.

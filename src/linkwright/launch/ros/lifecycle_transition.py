@@ -72,7 +72,7 @@ class LifecycleTransition(Action):
         self._handlers: dict[str, list[BaseEventHandler]] = {}
 
     def execute(self, context: LaunchContext) -> list[Action]:
-        """Return actions that request the first transition of each node, and then the later ones.
+        """Return actions that request the transitions of each node in sequence.
 
         Raises:
             LinkwrightError: LAUNCH138, a transition ID is not a number, or the state after the transition is unknown.

@@ -162,7 +162,7 @@ class Node(ExecuteProcess):
 
     @property
     def node_name(self) -> str:
-        """The full name of the node, which is available after the action was executed.
+        """The full name of the node, available after the action was executed.
 
         Raises:
             RuntimeError: the action has not been executed yet.
@@ -178,7 +178,7 @@ class Node(ExecuteProcess):
 
     @property
     def expanded_remapping_rules(self) -> list[tuple[str, str]] | None:
-        """The evaluated remapping rules, those of the scope first; None if there are none."""
+        """The evaluated remapping rules, beginning with those of the scope, or None."""
         return self.__expanded_remappings
 
     def is_node_name_fully_specified(self) -> bool:
@@ -216,7 +216,7 @@ class Node(ExecuteProcess):
         return None
 
     def __extended(self, context: LaunchContext) -> list[Any]:
-        """Run the extensions, which may change the name and namespace of the node.
+        """Run the extensions. They may change the name and namespace of the node.
 
         Returns:
             The arguments that the extensions add to the command line.
@@ -235,7 +235,7 @@ class Node(ExecuteProcess):
         return added_arguments
 
     def viewer_config(self, context: LaunchContext) -> Callable[[], RvizConfig] | None:
-        """Return a factory of the viewer's configuration; None if the command line determines it."""
+        """Return a factory of the viewer's configuration, or None if the command line determines it."""
         return None
 
     def _perform_substitutions(self, context: LaunchContext) -> None:
@@ -295,8 +295,8 @@ class Node(ExecuteProcess):
     def __name_in_files(self, context: LaunchContext) -> str | None:
         """Return the full name with which parameter files refer to the node, or None.
 
-        The result is None if the program sets the name, which is then unknown. It is also None for a container,
-        because the files may apply to other nodes that the container runs.
+        The result is None if the program sets the name, because the name is then unknown. It is also None for a
+        container, because the files may apply to other nodes in the container.
         """
         package = None if self.__package is None else _text(context, self.__package)
         if self.__node_name is None or package == _CONTAINER_PACKAGE:
@@ -307,7 +307,7 @@ class Node(ExecuteProcess):
 
     @property
     def __expanded_parameter_arguments(self) -> list[tuple[str, bool]]:
-        """The parameter arguments of the command line, and for each of them whether it is the path of a file.
+        """The parameter arguments of the command line, each with whether it is the path of a file.
 
         Files with the values of dictionaries are written on first access. As in launch_ros, parameters of the scope
         are included only if they are files.
@@ -438,7 +438,7 @@ class _DeferredArgument(Substitution):
 
 
 def _as_list(values: Any) -> list[Any]:
-    """Return an argument or several arguments as a list, which is empty for None."""
+    """Return an argument or several arguments as a list. None becomes an empty list."""
     if values is None:
         return []
     return [values] if isinstance(values, (str, Substitution)) or not isinstance(values, Iterable) else list(values)

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from linkwright.launch.model.context import LaunchContext
 
 GROUP = "launch_ros.node_action"
-"""The entry point group of node extensions, which is that of launch_ros."""
+"""The entry point group of node extensions, the same as in launch_ros."""
 
 
 class NodeActionExtension:

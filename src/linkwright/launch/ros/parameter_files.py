@@ -76,9 +76,9 @@ class ParameterFile(Placed):
 
     @property
     def allow_substs(self) -> Any:
-        """Whether substitutions in the file are evaluated; before `evaluate`, possibly a list of substitutions.
+        """Whether substitutions in the file are evaluated.
 
-        After `evaluate`, the value is a boolean.
+        Before `evaluate`, the value may be a list of substitutions. Afterwards, it is a boolean.
         """
         return self._allow_substs if self._allows_substitutions is None else self._allows_substitutions
 
@@ -185,7 +185,7 @@ _QUOTED_TEXT = re.compile(r"\"(?:[^\"\\\n]|\\.)*\"|'(?:[^'\n]|'')*'")
 
 
 def substitute_text(source: SourceText, context: LaunchContext) -> str:
-    """Return the text of a YAML file in which the substitutions outside of comments are evaluated.
+    """Return the text of a YAML file, with substitutions evaluated except in comments.
 
     Raises:
         LinkwrightError: LAUNCH119 and others, a substitution is unknown or has no value; the error has its location.

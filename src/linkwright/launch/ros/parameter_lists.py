@@ -28,7 +28,9 @@ NormalizedDict = dict[Name, Any]
 
 
 class PlainItem(TextSubstitution):
-    """A literal item among substitutions, which keeps its type. For example, a string is not read as YAML.
+    """A literal item among substitutions.
+
+    The item keeps its type. For example, a string is not read as YAML.
 
     Attributes:
         value: the literal.

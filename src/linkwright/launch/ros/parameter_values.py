@@ -65,7 +65,7 @@ class ParameterValue(Placed):
 
     @property
     def value_type(self) -> Any:
-        """The type of the value; None if YAML's rules determine it."""
+        """The type of the value, or None to apply YAML's rules."""
         return self._value_type
 
     def evaluate(self, context: LaunchContext, name: str | None = None) -> Any:
@@ -134,7 +134,7 @@ class Parameter:
 
     @property
     def value_type(self) -> Any:
-        """The type of the value; None if YAML's rules determine it."""
+        """The type of the value, or None to apply YAML's rules."""
         return self._parameter_value.value_type
 
     def evaluate(self, context: LaunchContext) -> tuple[str, Any]:
@@ -150,7 +150,9 @@ class Parameter:
 
 
 def parse_yaml_value(text: str, name: str, place: Place | None) -> Any:
-    """Return the value of a parameter without a type, whose text is read as YAML as in launch_ros.
+    """Return the value of a parameter without a type.
+
+    As in launch_ros, the text is read as YAML.
 
     Lists become tuples.
 

@@ -162,7 +162,7 @@ def _warn(context: LaunchContext, code: str, message: Phrase, hint: Phrase | Non
 
 
 def scope_parameters(items: Iterable[Any], context: LaunchContext) -> NodeParameters:
-    """Return the parameters of a scope, which `SetParameter` and `SetParametersFromFile` set."""
+    """Return the parameters that `SetParameter` and `SetParametersFromFile` set in a scope."""
     node_parameters = NodeParameters()
     for item in items:
         if isinstance(item, tuple):
@@ -174,7 +174,7 @@ def scope_parameters(items: Iterable[Any], context: LaunchContext) -> NodeParame
 
 
 def own_parameters(normalized: Sequence[Any], context: LaunchContext) -> NodeParameters:
-    """Return the evaluated parameters of a node, given its normalized parameters (see `normalize_parameters`).
+    """Evaluate the normalized parameters of a node. See `normalize_parameters`.
 
     Raises:
         LinkwrightError: LAUNCH132 or LAUNCH133, a value or a file has errors.
@@ -192,7 +192,10 @@ def own_parameters(normalized: Sequence[Any], context: LaunchContext) -> NodePar
 
 
 def rule(name: str, value: Any) -> str:
-    """Return a parameter in the form ``name:=value`` for the command line, where the value is YAML."""
+    """Return a parameter for the command line in the form ``name:=value``.
+
+    The value is written as YAML.
+    """
     import yaml
 
     value = list(value) if isinstance(value, tuple) else value

@@ -17,13 +17,13 @@ Entities = list[Entity]
 
 
 def parse_node(entity: Entity, parser: Parser, kwargs: dict[str, Any], cls: Any) -> dict[str, Any]:
-    """Return the keyword arguments of a process, extended by those of a node.
+    """Add the keyword arguments of a node to those of a process, and return all of them.
 
     Args:
         entity: the tag.
         parser: parses the substitutions in the tag.
-        kwargs: the keyword arguments of the process, which are changed.
-        cls: the class of the action, whose methods parse command lines and parameters.
+        kwargs: the keyword arguments of the process; changed by this function.
+        cls: the class of the action; its methods parse command lines and parameters.
     """
     for attribute, keyword in (("args", "arguments"), ("ros_args", "ros_arguments")):
         command_line = entity.get_attr(attribute, optional=True)

@@ -135,7 +135,10 @@ class RewrittenYaml(_YamlFileSubstitution):
 
 
 def _value_paths(content: Any, path: tuple[str, ...] = ()) -> Iterator[tuple[str, ...]]:
-    """Yield the path of each value in nested dictionaries and lists, as a tuple of keys and indices."""
+    """Yield the path of each value in nested dictionaries and lists.
+
+    A path is a tuple of keys and indices.
+    """
     if isinstance(content, dict):
         items: Any = content.items()
     elif isinstance(content, list):
@@ -232,7 +235,7 @@ class ReplaceString(_YamlFileSubstitution):
 
 
 class HasNodeParams(_YamlFileSubstitution):
-    """Evaluates to ``True`` if a parameter file has parameters for a node, otherwise to ``False``."""
+    """Evaluates to ``True`` or ``False``: whether a parameter file has parameters for a node."""
 
     def __init__(self, source_file: SomeSubstitutionsType, node_name: str) -> None:
         super().__init__(source_file)
@@ -269,11 +272,13 @@ class LaunchConfigAsBool(Substitution):
 
 
 class ParseMultiRobotPose(Substitution):
-    """The poses of several robots in a text such as ``robot1={x: 1.0, yaw: 0.5}; robot2={...}``.
+    """The poses of several robots.
+
+    They are read from a text such as ``robot1={x: 1.0, yaw: 0.5}; robot2={...}``.
 
     Args:
-        robots_argument: a substitution that evaluates to the text; or the name of a launch argument, which `value`
-            reads from the command line.
+        robots_argument: a substitution that evaluates to the text, or the name of a launch argument that `value` reads
+            from the command line.
     """
 
     def __init__(self, robots_argument: Any) -> None:
@@ -285,7 +290,7 @@ class ParseMultiRobotPose(Substitution):
         return f"ParseMultiRobotPose({argument_text})"
 
     def value(self) -> dict[str, dict[str, float]]:
-        """Return the poses of the robots by name, parsed from the launch argument on the command line."""
+        """Return the poses of the robots by name, from the launch argument on the command line."""
         prefix = f"{self._argument}:="
         return self._parse_poses(
             next((argument[len(prefix) :] for argument in sys.argv if argument.startswith(prefix)), "")

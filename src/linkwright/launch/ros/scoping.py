@@ -1,4 +1,4 @@
-"""Actions that apply to all later nodes in their scope: namespaces, parameters and remappings.
+"""Actions on all later nodes in their scope: namespaces, parameters and remappings.
 
 As in launch_ros, the settings are stored in launch configurations, so that they end with a group.
 """
@@ -178,7 +178,7 @@ class SetUseSimTime(SetParameter):
     @classmethod
     def parse(cls, entity: Entity, parser: Parser) -> ParseResult:
         """Return the class and keyword arguments for the tag."""
-        _, kwargs = Action.parse.__func__(cls, entity, parser)  # type: ignore[attr-defined]  # past SetParameter's
+        _, kwargs = Action.parse.__func__(cls, entity, parser)  # type: ignore[attr-defined]  # skips SetParameter's
         kwargs["value"] = parser.parse_if_substitutions(entity.get_attr("value", data_type=bool, can_be_str=True))
         return cls, kwargs
 

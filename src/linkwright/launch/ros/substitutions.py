@@ -32,7 +32,7 @@ class _LaunchRosSubstitution(DeclaredSubstitution):
     @classmethod
     def wrong_count(cls, expected: str, given: int) -> Exception:
         """Return an AttributeError for a wrong number of arguments, as ROS does."""
-        return AttributeError(f"{cls.__name__} substitution expects {expected}, and it is given {given}")
+        return AttributeError(f"{cls.__name__} substitution expects {expected}, but got {given}")
 
 
 class FindPackage(_LaunchRosSubstitution, shown="{kind}(pkg={package})"):

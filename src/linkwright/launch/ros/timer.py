@@ -1,4 +1,4 @@
-"""The action that visits actions after a period of ROS time, which may be simulated."""
+"""The action that visits actions after a period of ROS time, real or simulated."""
 
 from __future__ import annotations
 

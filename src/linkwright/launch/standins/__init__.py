@@ -1,1 +1,1 @@
-"""Stand-ins for ROS modules that build on launches; see `linkwright.standins`."""
+"""Stand-ins for ROS modules that use launches. See `linkwright.standins`."""

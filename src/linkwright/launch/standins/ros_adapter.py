@@ -40,7 +40,7 @@ class ROSAdapter:
         if self._running:
             raise RuntimeError("Cannot start a ROS adapter that is already running")
         import rclpy  # type: ignore[import-not-found, unused-ignore]  # a stand-in, or a real ROS 2
-        from rclpy.executors import SingleThreadedExecutor  # type: ignore[import-not-found, unused-ignore]  # likewise
+        from rclpy.executors import SingleThreadedExecutor  # type: ignore[import-not-found, unused-ignore]  # as above
 
         self._context = rclpy.context.Context()
         rclpy.init(args=self._argv, context=self._context)

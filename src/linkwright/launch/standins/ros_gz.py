@@ -47,7 +47,7 @@ class _SingleNodeAction(Action, ABC):
 
     @classmethod
     def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
-        """Read the attributes of the tag, which are the text options."""
+        """Return the class and keyword arguments for the tag. The attributes are the text options."""
         _, kwargs = super().parse(entity, parser)
         for name in cls.TEXTS:
             text = entity.get_attr(name, data_type=str, optional=True)
@@ -56,7 +56,7 @@ class _SingleNodeAction(Action, ABC):
         return cls, kwargs
 
     def execute(self, context: LaunchContext) -> list[Any]:
-        """Return the action that starts the node, which is visited next."""
+        """Return the action that starts the node, to be visited next."""
         texts = {name: perform_substitutions(context, text) for name, text in self._texts.items()}
         node = self._node(texts)
         node.place = self.place
@@ -151,7 +151,7 @@ class RosGzBridge(_SingleNodeAction):
 
     @classmethod
     def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
-        """Read the attributes of the tag and the ``param`` tags inside."""
+        """Return the class and keyword arguments for the tag and its ``param`` tags."""
         _, kwargs = super().parse(entity, parser)
         tags = entity.get_attr("param", data_type=Entities, optional=True)
         if tags:

@@ -1,1 +1,1 @@
-"""The lint rules, one module for each topic; the entry point ``linkwright.lint_rules``."""
+"""The lint rules of the entry point ``linkwright.lint_rules``, with one module for each topic."""

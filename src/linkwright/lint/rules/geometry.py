@@ -35,7 +35,7 @@ def kind_of(shape: Visual | Collision) -> str:
 
 
 def sizes_of(geometry: Geometry) -> tuple[tuple[str, float], ...]:
-    """Return the name and length in m of each size of a simple shape; empty for a mesh."""
+    """Return the name and length in m of each size of a simple shape, or an empty tuple for a mesh."""
     if isinstance(geometry, Mesh):
         return ()
     if isinstance(geometry, Box):
@@ -51,7 +51,7 @@ class NonPositiveSize(Rule):
     ## Why
 
     Below URDF 1.2, urdfdom accepts any number. RViz then shows nothing or a shape turned inside out, and physics
-    engines stop with an assertion. If all sizes of a visual are zero, the finding is only an information, since some
+    engines stop with an assertion. If all sizes of a visual are zero, the finding is only informational, since some
     authors use such visuals as markers.
 
     ## Example

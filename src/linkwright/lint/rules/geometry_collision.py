@@ -271,7 +271,7 @@ def _comparable_links(subject: Subject) -> Iterator[tuple[Link, Bounds, Bounds]]
 
 
 def _bounds(subject: Subject, shapes: Iterable[Visual | Collision]) -> Bounds | None:
-    """Return the box around shapes in the link frame; None if empty or not measurable."""
+    """Return the box around shapes in the link frame, or None if one cannot be measured or there are none."""
     from linkwright.geometry.shapes import union
 
     boxes = [subject.extents.shape_bounds(shape) for shape in shapes]

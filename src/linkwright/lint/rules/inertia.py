@@ -39,7 +39,7 @@ class MissingInertial(Rule):
     Gazebo drops a link without mass, together with the joint that moves it, and dynamics libraries treat it as
     massless. A link that is fixed to another link needs no inertia, because simulators merge the two. Therefore, the
     rule checks links that move together as one body. If the robot is not for simulation, the finding on a link without
-    shapes is only an information, since a driver may command such a link.
+    shapes is only informational, since a driver may command such a link.
 
     ## Example
 
@@ -328,7 +328,7 @@ def _is_frame(subject: Subject, link: Link) -> bool:
 
 
 def _is_scenery(subject: Subject, inertial: Inertial) -> bool:
-    """Return whether the only link has zero inertia, which makes it immovable in Bullet."""
+    """Return whether the robot has a single link with zero inertia, which Bullet treats as immovable."""
     return len(subject.links) == 1 and not any(getattr(inertial, name) for name in (*DIAGONAL, *PRODUCTS))
 
 

@@ -24,7 +24,7 @@ class PlaceholderInertia(Rule):
     tensor is thousands of times too large, and the robot moves far too sluggishly. The inertia depends on size and
     mass, so it cannot be the same for all links. The rule only applies if at least half of the links share such a
     tensor. Other rules then report neither the size of the tensor nor the centre of mass. If a comment on the line or
-    above it explains the value, the finding is an information.
+    above it explains the value, the finding is informational.
 
     ## Example
 
@@ -177,5 +177,5 @@ class TinyInertia(Rule):
 
 
 def _shape_key(link: Link) -> tuple[object, ...]:
-    """Return a key for the shapes of a link, which is the same for copies of a link."""
+    """Return a key that is the same for links with the same shapes."""
     return tuple(shape.geometry for shape in (link.collisions or link.visuals))

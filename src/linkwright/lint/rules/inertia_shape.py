@@ -32,13 +32,13 @@ _MAX_ORIGIN_DISTANCE = 20.0
 """The distance in m above which `shape-far` reports an origin."""
 
 _MIN_SUSPECT_MASS = 1.0
-"""Smaller masses, in kg, are not in grams by mistake: small frames have them because simulators require a mass."""
+"""The mass in kg below which a value is not in grams by mistake: simulators require a mass of small frames."""
 
 _BALLAST_FACTOR = 10.0
 _ESTIMATE_FACTOR = 3.0
 
 _LENGTH_TOLERANCE = 1e-3
-"""Smaller differences, in m, are ignored."""
+"""The difference in m below which two lengths count as equal."""
 
 
 class DensityTooHigh(Rule):
@@ -50,7 +50,7 @@ class DensityTooHigh(Rule):
     unit other than metres. A mesh counts with the volume of its bounding box, so real parts are not reported. If links
     that are fixed to the link have shapes but no mass, the mass is compared with the box around the whole body.
 
-    The finding is only an information in three cases. A comment on the line or above it explains the value, as for
+    The finding is only informational in three cases. A comment on the line or above it explains the value, as for
     ballast. The link is part of the robot's base, which a large mass keeps in place, and has at most ten times the
     density of osmium. The mass has one significant digit, such as 1 or 20, so it is an estimate, and the link has at
     most three times the density of osmium.

@@ -15,7 +15,7 @@ from linkwright.urdf import Joint
 from linkwright.urdf.values import plain
 
 _TILT_TOLERANCE = 1e-6
-"""Smaller tilts, in rad, come from the rounding of a program: a thousandth of a millimetre in a metre."""
+"""The tilt in rad below which an axis is not reported, because it is only rounded: a micrometre per metre."""
 _MOVING_TYPES = ("revolute", "continuous", "prismatic", "planar")
 _LENGTH_TOLERANCE = 1e-3
 
@@ -199,7 +199,7 @@ class AxisOnFixed(Rule):
     default = False
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every axis of a fixed or floating joint, which readers ignore."""
+        """Report every ``<axis>`` of a fixed or floating joint, because readers ignore it."""
         for joint, _, axis in parts(subject, "axis"):
             if joint.type in ("fixed", "floating"):
                 yield self.report(
@@ -235,7 +235,7 @@ class AxisTilted(Rule):
     name = "axis-tilted"
     holds_for_parts = True
     severity = Severity.INFO
-    options = (Option("largest-tilt", 0.1, "the largest tilt, in degrees, that is taken for an accident"),)
+    options = (Option("largest-tilt", 0.1, "the largest tilt, in degrees, that is considered unintended"),)
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every axis that is close to a coordinate axis without being exactly aligned."""

@@ -15,7 +15,7 @@ from linkwright.xmltree import Element
 
 _TOLERANCE = 1e-6
 _MAX_OVERSHOOT = 0.25
-"""The fraction of the range by which a soft limit may exceed one end, to rely on the mechanical stop there."""
+"""The fraction of the range by which a soft limit may exceed one end, where a mechanical stop is assumed."""
 
 
 class SoftLimitsOutside(Rule):

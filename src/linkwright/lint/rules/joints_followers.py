@@ -231,7 +231,7 @@ class MimicChain(Rule):
     name = "mimic-chain"
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every follower of a follower; the URDF reader reports cycles."""
+        """Report every follower of a follower, except cycles, which the URDF reader reports."""
         joints_by_name = {joint.name: joint for joint in subject.joints}
         for joint, leader, mimic in _followers_with_leaders(subject):
             if leader.mimic is None or joint.mimic is None:
@@ -362,7 +362,7 @@ class MimicDrivenByControl(Rule):
 
 
 def _position_range(joint: Joint) -> tuple[float, float] | None:
-    """Return the range of positions of a joint in rad or m; None if it is missing or invalid."""
+    """Return the range of positions of a joint in rad or m, or None if it is missing or invalid."""
     if joint.type not in ("revolute", "prismatic") or joint.limit is None:
         return None
     lower, upper = joint.limit.lower, joint.limit.upper

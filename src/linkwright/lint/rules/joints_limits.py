@@ -46,7 +46,7 @@ class LimitInverted(Rule):
     severity = Severity.ERROR
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every bounded joint with inverted limits; for URDF 1.2, the reader does."""
+        """Report every bounded joint with inverted limits, except in URDF 1.2, where the reader reports them."""
         if subject.robot is not None and subject.robot.version >= (1, 2):
             return
         for joint, limit in limits(subject, *BOUNDED):
@@ -82,7 +82,7 @@ class LimitEmpty(Rule):
     ## Why
 
     Such a joint cannot move. joint_state_publisher_gui shows no slider for it, and planners treat it as fixed, at the
-    cost of a moving joint. If the names show that the joint holds a sensor at 0, the finding is only an information:
+    cost of a moving joint. If the names show that the joint holds a sensor at 0, the finding is only informational:
     Gazebo merges a link on a fixed joint with its parent, and a joint with equal limits preserves the link of the
     sensor.
 
@@ -152,7 +152,7 @@ class LimitBoundsMissing(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every joint with a ``<limit>`` without bounds; for URDF 1.2 files, the reader does."""
+        """Report every ``<limit>`` without bounds, except in URDF 1.2, where the reader reports them."""
         if subject.robot is not None and subject.robot.version >= (1, 2):
             return
         for joint, limit in limits(subject, *BOUNDED):

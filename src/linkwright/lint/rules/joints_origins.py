@@ -40,7 +40,7 @@ class OriginFar(Rule):
     code = "LW226"
     name = "origin-far"
     holds_for_parts = True
-    options = (Option("farthest", 20.0, "the farthest distance in m that is still believed"),)
+    options = (Option("farthest", 20.0, "the largest distance, in m, that is considered plausible"),)
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every joint whose origin is implausibly far away in metres."""
@@ -98,7 +98,7 @@ class AngleInDegrees(Rule):
             if len(rpy) == 3 and not looks_like_degrees(*rpy) and 4 * pi < max(map(abs, rpy)) <= 360:
                 yield self.report(
                     phrase(
-                        "'rpy' in <origin> of {owner} turns by more than two turns: '{rpy}'",
+                        "'rpy' in <origin> of {owner} is a rotation of more than two turns: '{rpy}'",
                         owner=owner,
                         rpy=origin.attributes["rpy"].strip(),
                     ),

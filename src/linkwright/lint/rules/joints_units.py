@@ -39,7 +39,7 @@ class LimitInDegrees(Rule):
     code = "LW211"
     name = "limit-in-degrees"
     holds_for_parts = True
-    options = (Option("most-turns", 3.0, "how many turns to either side are still believed"),)
+    options = (Option("most-turns", 3.0, "the largest number of turns to either side that is considered plausible"),)
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every limit of a revolute joint that is implausible in radians and plausible in degrees."""
@@ -135,7 +135,7 @@ class LimitInMillimetres(Rule):
     code = "LW213"
     name = "limit-in-millimetres"
     holds_for_parts = True
-    options = (Option("longest", 20.0, "the longest way in m to either side that is still believed"),)
+    options = (Option("longest", 20.0, "the largest travel to either side, in m, that is considered plausible"),)
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every limit of a prismatic joint that is implausible in metres."""

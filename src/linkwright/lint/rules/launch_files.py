@@ -90,7 +90,7 @@ class LaunchFunctionMissing(LaunchRule):
 
     `ros2 launch` calls this function and no other. Tests for launch_testing, launch_pytest and pytest are not reported,
     because they define other functions. Modules of a Python package (next to an `__init__.py`) are not reported either.
-    For a file without statements, which is unfinished or disabled, the finding is only an information.
+    For a file without statements, which is unfinished or disabled, the finding is only informational.
 
     ## Example
 

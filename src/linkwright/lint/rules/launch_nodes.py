@@ -25,10 +25,10 @@ EXTERNAL_EXECUTABLES = {
     "xacro": frozenset({"xacro"}),
     "controller_manager": frozenset({"ros2_control_node", "spawner", "unspawner", "hardware_spawner"}),
 }
-"""The executables of well-known packages; packages whose executables change between releases are left out."""
+"""The executables of well-known packages, without packages whose executables change between releases."""
 
 OURS = frozenset({"joint_state_publisher", "joint_state_publisher_gui", "robot_state_publisher", "tf2_ros"})
-"""Packages of which we provide every executable; of the demo packages, we provide only some."""
+"""Packages of which Linkwright provides every executable, unlike the demo packages."""
 
 WELL_KNOWN = frozenset(
     {
@@ -194,8 +194,8 @@ class UndeclaredLaunchDependency(Rule):
             return
         names = sorted(missing_packages)
         message = counted(
-            "launch files use this package that package.xml does not depend on: {names}",
-            "launch files use these packages that package.xml does not depend on: {names}",
+            "launch files use a package on which package.xml does not depend: {names}",
+            "launch files use packages on which package.xml does not depend: {names}",
             len(names),
             names=quoted_names(names),
         )

@@ -50,7 +50,7 @@ class RedefinedMaterial(Rule):
 
     The first definition of a name in the file applies to all uses of the name, even to a visual that defines another
     colour. Therefore, the second colour is never shown, and users complain that RViz shows the wrong colour. If the two
-    colours look the same, the finding is only an information.
+    colours look the same, the finding is only informational.
 
     ## Example
 

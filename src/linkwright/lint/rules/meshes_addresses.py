@@ -1,4 +1,4 @@
-"""Rules about the form of mesh URIs; other rules check whether the files exist."""
+"""Rules about the form of mesh URIs. Other rules check whether the files exist."""
 
 from __future__ import annotations
 
@@ -86,7 +86,7 @@ class RelativePath(Rule):
 
     The base of a relative path depends on the tool: some use the folder of the URDF, others the current folder. RViz
     receives the description on a topic, so it has no base folder and shows nothing. In a file outside a ROS package, or
-    next to a model for MuJoCo, the finding is only an information, because such files are meant for simulators that do
+    next to a model for MuJoCo, the finding is only informational, because such files are meant for simulators that do
     not know packages.
 
     ## Example
@@ -235,8 +235,8 @@ class UnportableMeshName(Rule):
     ## Why
 
     RViz fetches meshes through a library for web URLs, which does not allow blanks. Non-ASCII letters are compared byte
-    by byte, so a name typed on a Mac may not match the same name on Linux. The finding on such letters is only an
-    information, because the file is found on the author's computer.
+    by byte, so a name typed on a Mac may not match the same name on Linux. The finding on such letters is only
+    informational, because the file is found on the author's computer.
 
     ## Example
 
@@ -349,5 +349,5 @@ def file_hint(path: Path, suffixes: Sequence[str]) -> Phrase:
 
 
 def normalized_path(path: Path) -> str:
-    """Return a path without ``..`` and ``.``; symbolic links are not resolved."""
+    """Return a path without ``..`` and ``.``, but with unresolved symbolic links."""
     return os.path.normpath(path)

@@ -19,7 +19,7 @@ class HeavyCollision(Rule):
 
     All triangles are tested in every simulation step, and for every pose that a planner tries. With a few hundred
     triangles, or a few boxes and cylinders, the same contacts are found in a hundredth of the time. Up to twice the
-    allowed number, the finding is only an information, because most programs still handle such a mesh.
+    allowed number, the finding is only informational, because most programs still handle such a mesh.
 
     ## Example
 

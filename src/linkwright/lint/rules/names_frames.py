@@ -178,7 +178,7 @@ class FootprintHasBody(Rule):
 
     `base_footprint` is a position on the ground, not a body. In simulation, a body there rubs on the floor, and its
     mass is counted twice. If the link also has a visual, it is the body of the robot under another name, and the
-    finding is only an information.
+    finding is only informational.
 
     ## Example
 
@@ -321,7 +321,7 @@ class OpticalFrameRotation(Rule):
 
 
 def _is_optical(joint: Joint | None) -> bool:
-    """Return whether a joint has the rotation of an optical frame, as in REP 103, whatever its child is called."""
+    """Return whether a joint has the rotation of an optical frame (REP 103). The name of its child is ignored."""
     return joint is not None and angle_between(rotation(joint.origin), _OPTICAL_ROTATION) <= _ANGLE_TOLERANCE
 
 

@@ -73,7 +73,7 @@ def is_wheel(joint: Joint) -> bool:
 
 
 def words(name: str) -> list[str]:
-    """Return the words of a name in lower case; ``leftWheel_joint`` has three words."""
+    """Return the words of a name in lower case. For example, ``leftWheel_joint`` has three words."""
     return [word.lower() for word in re.findall(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])|\d+", name)]
 
 
@@ -246,7 +246,7 @@ class WheelAxesOpposed(Rule):
 
     Equal velocities then rotate the wheels in opposite directions, and a differential drive controller makes the robot
     spin instead of drive straight. If neither a simulator plugin nor `<ros2_control>` drives the wheels, the finding is
-    only an information, because the driver of the robot may negate the velocity of one side. If a plugin negates this
+    only informational, because the driver of the robot may negate the velocity of one side. If a plugin negates this
     velocity, ignore the rule in the configuration.
 
     ## Example

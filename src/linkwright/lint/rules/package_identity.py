@@ -101,7 +101,7 @@ class PackageName(ManifestRule):
 
     colcon reads `package.xml` through catkin_pkg, which refuses a name with blanks or dots, so such a name is an error.
     REP 144 requires lower case letters, digits and underscores. Python cannot import a package whose name has a dash,
-    and `ros2 pkg create` does not create such a package. A name that only violates REP 144 is an information, because a
+    and `ros2 pkg create` does not create such a package. A name that only violates REP 144 is informational, because a
     published package cannot easily be renamed.
 
     ## Example

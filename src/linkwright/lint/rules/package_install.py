@@ -43,7 +43,7 @@ class PatternMatchesNothing(PackageRule):
 
     `glob` does not report that it finds nothing, so the intended files are missing after the build. A launch file or an
     include then fails with "no such file". A misspelt folder is the usual cause. If another pattern finds files in the
-    same folder, the finding is an information.
+    same folder, the finding is informational.
 
     ## Example
 
@@ -98,7 +98,7 @@ class FolderNotInstalled(PackageRule):
     ROS searches the share folder of the installed package, not the sources, so launch files and descriptions do not
     find a file that is not installed. A folder with an unusual name is only reported if a launch file of the package
     uses a file in the folder. For a folder of YAML and RViz files that no launch file of the package reads, the finding
-    is an information.
+    is informational.
 
     ## Example
 
@@ -184,7 +184,7 @@ class FolderNotInstalled(PackageRule):
             yield self.report(message, span=span, source=cmake.source, hint=hint, fix=fix, severity=severity)
 
     def _severity(self, package: PackageContext, folders: Iterable[str]) -> Severity:
-        """Return the severity, an information for settings that no launch file of the package reads."""
+        """Return the severity, informational for settings that no launch file of the package reads."""
         prefixes = tuple(f"{folder}/" for folder in folders)
         shared_files = [file for file in package.files if file.startswith(prefixes) and _is_shared(file)]
         is_unread = not any(path.startswith(prefixes) for path in _paths_named_by_launch_files(package))
@@ -232,7 +232,7 @@ class FileNotInstalled(PackageRule):
             folder = file.rpartition("/")[0]
             pattern = patterns_by_folder.get(folder)
             if folder and pattern is not None and file not in files and _is_shared(file):
-                message = phrase("setup.py installs '{text}', which leaves out '{file}'", text=pattern.text, file=file)
+                message = phrase("the pattern '{text}' in setup.py leaves out '{file}'", text=pattern.text, file=file)
                 yield self.report(
                     message,
                     span=pattern.span,

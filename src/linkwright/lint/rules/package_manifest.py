@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 _REQUIRED = ("name", "version", "description", "maintainer", "license")
 _NON_EMPTY_ELEMENTS = frozenset({"name", "version", "description", "license"})
-"""Elements that catkin_pkg refuses if they are empty; a maintainer may consist of an e-mail address only."""
+"""Elements that catkin_pkg refuses if they are empty. A maintainer may consist of an e-mail address only."""
 _INCLUDED_IN_DEPEND = frozenset({"build_depend", "build_export_depend", "exec_depend"})
 _BUILD_FILES = {
     "ament_python": "setup.py",
@@ -29,7 +29,7 @@ _BUILD_FILES = {
 
 
 class PackageRule(Rule, ABC):
-    """The base class of rules about packages, which skip descriptions outside a package."""
+    """The base class of rules about packages. The rules skip descriptions outside a package."""
 
     scope = Scope.PACKAGE
 
@@ -190,7 +190,7 @@ class DependencyRepeated(ManifestRule):
     `<depend>` combines `<build_depend>`, `<build_export_depend>` and `<exec_depend>`. colcon and `ament_package()` read
     the file with catkin_pkg. If one of the three elements also names a package of a `<depend>`, catkin_pkg refuses the
     file, and the package is not built. The same line twice, as in files of MoveIt's Setup Assistant, has no effect, and
-    the finding is only an information.
+    the finding is only informational.
 
     ## Example
 

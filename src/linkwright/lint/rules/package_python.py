@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 _INDEX_FOLDER = "share/ament_index/resource_index/packages"
 _WEBOTS_DRIVER = lazy_pattern(r"^[ \t]+def init\(self, *\w+, *\w+\)", re.MULTILINE)
-"""A class that webots_ros2_driver loads by its name; the executable in its tutorial is never run."""
+"""A class that webots_ros2_driver loads by its name. The executable of such a package is never run."""
 _SCRIPT_FOLDERS = lazy_pattern(r"^(script_dir|install_scripts)[ \t]*=[ \t]*(\S+)[ \t]*\r?$", re.MULTILINE)
 
 

@@ -209,7 +209,7 @@ def _depth(shape: object, upward: float) -> float | None:
 
 
 def _center_of_mass(robot: Robot, frames: Mapping[str, Placement]) -> Point | None:
-    """Return x and y of a robot's centre of mass in the base frame in m; None if it is massless."""
+    """Return x and y of a robot's centre of mass in the base frame in m, or None if the robot is massless."""
     base = frames.get("base_link", frames[robot.root])
     total = x = y = 0.0
     for name, link in robot.links.items():

@@ -38,7 +38,7 @@ class XacroInUrdf(Rule):
     severity = Severity.ERROR
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every URI with an expression; the reader reports expressions in place of numbers."""
+        """Report every URI with an expression. The URDF reader reports expressions in place of numbers."""
         if subject.expansion is not None:
             return
         for schema_element in subject.structure.places:

@@ -66,7 +66,7 @@ class GazeboReferenceUnknown(Rule):
     ## Why
 
     Gazebo silently drops the content of the element, so a wheel has no friction, or a camera has no sensor. The finding
-    is only an information if the reference probably belongs to a part that this robot does not have: no name is
+    is only informational if the reference probably belongs to a part that this robot does not have: no name is
     similar, only colours and surfaces are lost, and most references of the description are valid.
 
     ## Example

@@ -31,7 +31,7 @@ class NoShapes(Rule):
     ## Use instead
 
     Give the links a `<visual>`. If no joint moves and all links are empty, the description probably only defines
-    frames, such as those of two cameras, and the finding is an information.
+    frames, such as those of two cameras, and the finding is informational.
     """
 
     code = "LW102"
@@ -214,7 +214,7 @@ class NewerVersion(Rule):
 
 
 def _root_of(name: str, parents: dict[str, str]) -> str | None:
-    """Return the topmost link above a link; None if the joints form a cycle."""
+    """Return the topmost link above a link, or None if the joints form a cycle."""
     steps = 0
     while name in parents:
         name = parents[name]

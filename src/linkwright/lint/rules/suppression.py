@@ -1,4 +1,4 @@
-"""Rules about comments that suppress findings, which the engine reports."""
+"""Rules about suppression comments. The engine reports their findings."""
 
 from __future__ import annotations
 

@@ -266,7 +266,7 @@ class IncludeOutsidePackage(XacroRule):
                     target = Path(os.path.normpath(folder / include.name))
                     if not target.is_relative_to(package.folder):
                         message = phrase(
-                            "'{name}' is outside the package '{package_name}'",
+                            "the included file '{name}' is outside the package '{package_name}'",
                             name=include.name,
                             package_name=package.name,
                         )
@@ -280,8 +280,8 @@ class UndeclaredPackage(Rule):
     ## Why
 
     rosdep and colcon only read dependencies from `package.xml`. On a fresh machine, the package is not installed, and
-    the expansion fails. If every use is inside a condition, the package may be optional, and the finding is only an
-    information. A package that itself depends on this package is not reported, because declaring it would form a cycle.
+    the expansion fails. If every use is inside a condition, the package may be optional, and the finding is only
+    informational. A package that itself depends on this package is not reported: declaring it would form a cycle.
 
     ## Example
 

@@ -45,7 +45,7 @@ class UnusedProperty(XacroRule):
     Only properties of the checked file and properties inside macros are checked, because a file of properties for
     several robots contains more than each robot needs. Mathematical constants, such as `PI`, are not reported. Neither
     is a property with `lazy_eval="false"` that calls `xacro.fatal`, `error`, `warning` or `message`. If the property
-    belongs to a table of dimensions, the finding is only an information, because such tables are usually complete. An
+    belongs to a table of dimensions, the finding is only informational, because such tables are usually complete. An
     example is an unused `d415_cam_depth_px` next to `d415_cam_depth_py` and `d415_cam_depth_pz`, which are used.
 
     ## Example
@@ -216,7 +216,7 @@ class UnusedInclude(XacroRule):
                 path = paths.get(id(include.element))
                 if path is not None and not (_contributes(path, facts, paths) or _is_switched_off(path, facts)):
                     yield self.report(
-                        phrase("nothing in '{name}' is used", name=Path(path).name),
+                        phrase("nothing in the included file '{name}' is used", name=Path(path).name),
                         include.element,
                         "filename",
                         hint=phrase("use what it defines, or remove the include"),

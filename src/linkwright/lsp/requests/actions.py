@@ -11,6 +11,7 @@ from pygls.exceptions import JsonRpcException
 
 from linkwright.diagnostics import LinkwrightError, phrase
 from linkwright.diagnostics.translation import localized
+from linkwright.language.extraction import selected_value
 from linkwright.language.includes import real
 from linkwright.language.refactoring import Action, Offer, Refactoring, offers_at, refactor
 from linkwright.lsp.edits import document_edits, new_file_edit
@@ -157,6 +158,8 @@ def add_requests(server: LinkwrightServer) -> None:
             start, end = positions.offset(asked.range.start), positions.offset(asked.range.end)
             names = await server.names(path)
             server.check_unchanged(path, positions)
+            if end == start + 1 and selected_value(positions.text, start, end) is None:
+                end = start  # ALE and Helix send the character under their block cursor
             offers = [
                 offer
                 for offer in offers_at(positions.text, path, start, end, names)

@@ -79,15 +79,13 @@ def add_requests(server: LinkwrightServer) -> None:
         return None if positions is None else highlights(path, positions, asked.range)
 
     @server.feature(types.TEXT_DOCUMENT_DOCUMENT_COLOR)
-    def document_color(
-        server: LinkwrightServer, asked: types.DocumentColorParams
-    ) -> list[types.ColorInformation] | None:
+    def document_color(server: LinkwrightServer, asked: types.DocumentColorParams) -> list[types.ColorInformation]:
         _, positions = server.text(asked.text_document)
-        return None if positions is None else colors(positions)
+        return [] if positions is None else colors(positions)
 
     @server.feature(types.TEXT_DOCUMENT_COLOR_PRESENTATION)
     def color_presentation(
         server: LinkwrightServer, asked: types.ColorPresentationParams
-    ) -> list[types.ColorPresentation] | None:
+    ) -> list[types.ColorPresentation]:
         _, positions = server.text(asked.text_document)
-        return None if positions is None else color_edits(positions, asked.range, asked.color)
+        return [] if positions is None else color_edits(positions, asked.range, asked.color)

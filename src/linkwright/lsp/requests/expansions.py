@@ -19,10 +19,16 @@ from linkwright.diagnostics.translation import localized
 from linkwright.language.expanded import ExpandedText, expanded_text
 from linkwright.language.includes import real
 from linkwright.language.workspace import Workspace
+from linkwright.lint.targets import DESCRIPTIONS
 from linkwright.lsp.positions import UTF_16, TextPositions
 from linkwright.lsp.server import LinkwrightServer, path_of
 
 SCHEME = "linkwright-expansion"
+
+
+def is_expanded(file: Path) -> bool:
+    """Return whether a file is written in xacro or read as a description, so that it has an expansion."""
+    return file.name.endswith(DESCRIPTIONS)
 
 
 def expansion_uri(entry: Path, arguments: Mapping[str, str]) -> str:
@@ -120,7 +126,7 @@ def add_requests(server: LinkwrightServer) -> None:
     ) -> list[types.Location] | None:
         path, positions = server.text(asked.text_document)
         project, texts = server.project, server.texts()
-        if positions is None or project is None:
+        if positions is None or project is None or not is_expanded(path) or not server.opens_virtual_documents:
             return None
         await server.when_indexed()
         offset, encoding = positions.offset(asked.position), server.workspace.position_encoding or UTF_16

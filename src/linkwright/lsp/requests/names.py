@@ -3,23 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from functools import partial
 from pathlib import Path
 
 from lsprotocol import types
 
 from linkwright.diagnostics import Phrase
 from linkwright.diagnostics.translation import localized
-from linkwright.language.completion import Completion, ItemKind, complete
-from linkwright.language.definitions import NameDefinition
+from linkwright.language.completion import Completion, ItemKind
+from linkwright.language.definitions import NameDefinition, NameKind
 from linkwright.language.facts import facts_at
-from linkwright.language.format import Target
+from linkwright.language.format import Document, Target
 from linkwright.language.hover import definitions_at, explain_at
 from linkwright.language.includes import real
 from linkwright.language.links import file_references
+from linkwright.language.renaming import occurrence_at, references
+from linkwright.language.robot_names import PartNames
 from linkwright.language.suppressing import code_at
 from linkwright.language.values import ValuedText, described_values, value_at
-from linkwright.language.workspace import Workspace
+from linkwright.language.xml_completion import complete
 from linkwright.lint.explain import find_page
 from linkwright.lsp.positions import TextOf, TextPositions
 from linkwright.lsp.requests.expansions import source_of
@@ -37,30 +38,6 @@ _KINDS = {
     ItemKind.FILE: types.CompletionItemKind.File,
     ItemKind.FOLDER: types.CompletionItemKind.Folder,
 }
-
-
-def completions(
-    project: Workspace,
-    path: Path,
-    names: Sequence[NameDefinition],
-    positions: TextPositions,
-    place: types.Position,
-    *,
-    takes_snippets: bool,
-) -> list[types.CompletionItem]:
-    """Return the completions at a place.
-
-    Args:
-        project: the files of the editor.
-        path: the file.
-        names: the names that the description defines.
-        positions: the text of the file.
-        place: the place.
-        takes_snippets: whether the editor understands snippets.
-    """
-    offset = positions.offset(place)
-    found = complete(positions.text, offset, path, names, partial(project.finder, path))
-    return [_item(item, positions, offset, takes_snippets=takes_snippets) for item in found]
 
 
 def items(
@@ -83,7 +60,8 @@ def _item(item: Completion, positions: TextPositions, offset: int, *, takes_snip
         detail=item.detail or None,
         documentation=_markdown(item.description) if item.description else None,
         insert_text_format=types.InsertTextFormat.Snippet if is_snippet else types.InsertTextFormat.PlainText,
-        filter_text=f"<{item.label}" if item.snippet.startswith("<") else None,
+        # Neovim offers an item without this text whatever is typed.
+        filter_text=f"<{item.label}" if item.snippet.startswith("<") else item.label,
         text_edit=edit,
     )
 
@@ -143,6 +121,20 @@ def definitions(
     return [*_locations(found, text_of, uri)]
 
 
+async def parameter_definitions(
+    server: LinkwrightServer, path: Path, positions: TextPositions, place: types.Position
+) -> list[types.Location]:
+    """Return where the parameter of a macro at a place is declared; nothing for other names."""
+    project, texts = server.project, server.texts()
+    name = occurrence_at(positions.text, real(path), positions.offset(place))
+    if project is None or name is None or name.kind is not NameKind.PARAMETER:
+        return []
+    await server.when_indexed()
+    uses = await server.in_thread(lambda: references(project, texts, name))
+    declared = (Target(use.file, use.start, use.end) for use in uses if use.is_definition)
+    return [*target_locations(declared, server.positions, server.uri_of)]
+
+
 def _locations(
     names: Iterable[NameDefinition], text_of: TextOf, uri: Callable[[Path], str]
 ) -> Iterable[types.Location]:
@@ -197,8 +189,17 @@ def add_requests(server: LinkwrightServer) -> None:
         path, positions = server.text(asked.text_document)
         if positions is None or server.project is None:
             return None
-        known = await server.names(path)
-        return completions(server.project, path, known, positions, asked.position, takes_snippets=takes_snippets)
+        known, file = await server.names(path), real(path)
+        document = Document(server.project, server.texts(), file, positions.text)
+        parts = PartNames(server.project, document.texts, file)
+        found = complete(document, positions.offset(asked.position), known, parts)
+        if parts.is_missing:
+            await server.in_thread(parts.read)
+            server.check_unchanged(path, positions)
+            found = complete(document, positions.offset(asked.position), known, parts)
+        elif parts.is_stale:
+            server.in_background(parts.read, file)
+        return items(found, positions, asked.position, takes_snippets=takes_snippets)
 
     @server.feature(types.TEXT_DOCUMENT_HOVER)
     async def hover_request(server: LinkwrightServer, asked: types.HoverParams) -> types.Hover | None:
@@ -232,7 +233,9 @@ def add_requests(server: LinkwrightServer) -> None:
             return source
         known, values = await server.names(path), await server.values(path)
         server.check_unchanged(path, positions)
-        found = definitions(known, positions, asked.position, server.positions, server.uri_of)
+        found = await parameter_definitions(server, path, positions, asked.position) or definitions(
+            known, positions, asked.position, server.positions, server.uri_of
+        )
         offset, finder = positions.offset(asked.position), server.project.finder(real(path))
         links = () if found else file_references(positions.text, path, finder, values)
         top = types.Range(types.Position(0, 0), types.Position(0, 0))

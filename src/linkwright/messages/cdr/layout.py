@@ -13,10 +13,13 @@ from linkwright.messages.definitions.interfaces import PRIMITIVES, Container, Fi
 from linkwright.messages.definitions.library import LIBRARY
 
 MAX_INLINE_LEAVES = 40
-"""The maximum number of leaves of a nested structure whose code is inlined; larger ones have separate functions."""
+"""The maximum number of leaves of a nested structure whose code is inlined.
+
+Larger structures have separate functions.
+"""
 
 MAX_LOOP_DEPTH = 5
-"""The maximum depth of nested loops in one function; Python's limit for nested blocks is 20."""
+"""The maximum depth of nested loops in one function. Python's limit for nested blocks is 20."""
 
 
 class Place(NamedTuple):
@@ -34,7 +37,7 @@ class Place(NamedTuple):
         return (-self.rest) % size if self.modulus >= size else None
 
     def common(self, other: Place) -> Place:
-        """Return what is known about a position that may be either this one or the other."""
+        """Return the common knowledge about two positions, either of which may be the actual one."""
         modulus = min(self.modulus, other.modulus)
         while (self.rest - other.rest) % modulus:
             modulus //= 2

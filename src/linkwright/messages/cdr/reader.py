@@ -59,7 +59,9 @@ def compile_reader(structure: Structure, class_of: ClassOf, order: Order = "<") 
 
 
 def _compile_part(structure: Structure, class_of: ClassOf, order: Order) -> Callable[..., Any]:
-    """Return the function that reads a nested structure at an offset, which is compiled on first use.
+    """Return the function that reads a nested structure at an offset.
+
+    The function is compiled on first use. It returns the object and the offset after it.
 
     The function returns the object and the offset after it.
     """
@@ -260,7 +262,9 @@ class _ReaderCode:
     # --- positions and runs ---------------------------------------------------------------------------------
 
     def _read_length(self) -> str:
-        """Generate code that reads the length of a string or sequence, and return the name of its variable.
+        """Generate code that reads the length of a string or sequence.
+
+        Return the name of the length's variable.
 
         After this code, `p` is the position after the length.
         """
@@ -317,7 +321,7 @@ class _ReaderCode:
         return "p" if self._known_position is None else str(self._known_position)
 
     def _write_position(self) -> None:
-        """End the run, and store the position in `p`, which the code uses from here on."""
+        """End the run, and store the position in `p`. The following code uses `p`."""
         self.end_run()
         if self._known_position is not None:
             self._add_line(f"p = {self._known_position}")

@@ -1,4 +1,4 @@
-"""The functions that generated CDR code calls: for strings, lists of strings, and errors in bad data.
+"""The functions that generated CDR code calls for strings, lists of strings and bad data.
 
 Publishers send the same names repeatedly. Therefore, the bytes of short strings and of lists of strings are cached when
 they are written, and lists of strings are cached by their bytes when they are read. With this cache, reading the names
@@ -28,7 +28,9 @@ READ_FAULTS = (struct.error, IndexError, ValueError)
 
 
 class DataFaultError(ValueError):
-    """Raised inside this package when bytes are not a valid message; the text of the error is the reason.
+    """Raised inside this package when bytes are not a valid message.
+
+    The text of the error is the reason.
 
     The package's public functions convert it to a `MessageDataError`.
     """
@@ -79,7 +81,10 @@ TEXT_LIST1 = TextLists(1)
 TEXT_LIST4 = TextLists(4)
 
 _blocks: dict[bytes, tuple[bytes, list[str], int]] = {}
-"""Cached lists of strings by their first bytes: all their bytes, the strings, and the number of bytes."""
+"""Cached lists of strings by their first bytes.
+
+Each entry has all bytes of the list, the strings, and the number of bytes.
+"""
 
 
 def read_texts(data: bytes, at: int, count: int) -> tuple[list[str], int]:

@@ -1,1 +1,1 @@
-"""The definitions of interfaces: how they are found and parsed, and their hashes."""
+"""Finds and parses the definitions of interfaces, and computes their hashes."""

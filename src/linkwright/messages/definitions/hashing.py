@@ -27,7 +27,10 @@ from linkwright.messages.definitions.library import LIBRARY
 
 _NESTED_TYPE_ID = 1
 _BOUNDED_TEXT_OFFSET = 4
-"""The difference between the ids of a bounded and an unbounded string type: 21 and 17, or 22 and 18."""
+"""The difference between the type ids of a bounded and an unbounded string.
+
+The ids are 21 and 17 for strings, and 22 and 18 for wide strings.
+"""
 
 _CONTAINER_OFFSETS = {Container.ONE: 0, Container.ARRAY: 48, Container.SEQUENCE: 144}
 _BOUNDED_SEQUENCE_OFFSET = 96
@@ -87,7 +90,10 @@ def _individual_description(definition: Definition) -> dict[str, Any]:
 
 
 def _members(definition: Definition) -> tuple[Field, ...]:
-    """Return the fields of a definition; for a service or action, a field for each of its parts."""
+    """Return the fields of a definition.
+
+    For a service or action, there is a field for each of its parts.
+    """
     if isinstance(definition, Structure):
         return definition.wire_fields
     if isinstance(definition, Service):

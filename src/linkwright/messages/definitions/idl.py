@@ -62,7 +62,7 @@ def parse_idl(source: SourceText, type_name: str, known: KnownMessages) -> Defin
     Args:
         source: the content of the file.
         type_name: the name of the interface, such as ``my_msgs/msg/Count``.
-        known: tells which messages exist, to check references.
+        known: determines which messages exist, to check references.
 
     Raises:
         DefinitionError: MSG120 for text that cannot be parsed; MSG111, MSG114, MSG118 and MSG119 as for other files.
@@ -103,7 +103,7 @@ class _Reader:
         while position < len(text):
             match = _TOKEN_PATTERN.match(text, position)
             if match is None:
-                self._fail("MSG120", phrase("'{text}' is not expected here", text=text[position]), position, 1)
+                self._fail("MSG120", phrase("unexpected '{text}'", text=text[position]), position, 1)
             assert match.lastgroup is not None
             if match.lastgroup != "skip":
                 yield _Token(match.lastgroup, match.group(), position)
@@ -185,7 +185,7 @@ class _Reader:
         self.constants.setdefault(owner, []).append(constant)
 
     def _read_annotations(self) -> _Token | None:
-        """Skip annotations, and return the value of ``@default (value=...)``, or None if there is none."""
+        """Skip annotations, and return the value of ``@default (value=...)``, or None."""
         default = None
         while self._now.text == "@":
             self._expect("@")
@@ -261,7 +261,10 @@ class _Reader:
         return FieldType(item_type.base, item_type.string_bound, Container.SEQUENCE, size)
 
     def _declared(self, kind: FieldType) -> tuple[str, FieldType]:
-        """Parse a declarator, and return its name and its type, including an array size after the name."""
+        """Parse a declarator, and return its name and its type.
+
+        The type includes an array size that follows the name.
+        """
         token = self._expect_kind("name")
         if self._now.text != "[":
             return token.text, kind
@@ -323,7 +326,7 @@ class _Reader:
         actual = quoted(token.text) if token.text else phrase("the end of the file")
         self._fail(
             "MSG120",
-            phrase("{wanted} was expected instead of {found}", found=actual, wanted=expected),
+            phrase("expected {wanted}, but found {found}", found=actual, wanted=expected),
             token.start,
             len(token.text),
         )

@@ -1,4 +1,4 @@
-"""The data model of interfaces: names, primitive types, fields, constants, and derived definitions.
+"""The data model of interfaces: names, primitive types, fields, constants and structures.
 
 From services and actions, rosidl derives further definitions, such as the event message of a service.
 """
@@ -27,7 +27,7 @@ class InterfaceName(NamedTuple):
 
 
 def split_name(text: str) -> InterfaceName | None:
-    """Return the parts of ``package/kind/Name`` or ``package/Name``; None for any other text."""
+    """Return the parts of ``package/kind/Name`` or ``package/Name``, or None for any other text."""
     parts = text.split("/")
     if len(parts) == 3 and parts[1] in KINDS:
         package, kind, name = parts
@@ -45,7 +45,10 @@ def is_package_name(text: str) -> bool:
 
 
 def is_interface_name(text: str) -> bool:
-    """Return whether an interface name is valid: CamelCase, also with a suffix as in ``SetBool_Request``."""
+    """Return whether an interface name is valid.
+
+    A valid name is CamelCase, optionally with a suffix as in ``SetBool_Request``.
+    """
     return text.isascii() and all(part.isalnum() and part[0].isupper() for part in text.split("_"))
 
 
@@ -80,7 +83,7 @@ def snake_case(name: str) -> str:
 
 
 def python_module(type_name: str) -> str:
-    """Return the name of the module in which rosidl_generator_py puts a class.
+    """Return the name of the module that contains a class of rosidl_generator_py.
 
     For example, all classes of SetBool are in ``std_srvs.srv._set_bool``.
     """
@@ -113,7 +116,7 @@ class Primitive(NamedTuple):
 
     @property
     def is_integer(self) -> bool:
-        """Whether values are integers; ``byte`` and ``bool`` are not integer types."""
+        """Whether values are integers. ``byte`` and ``bool`` are not integer types."""
         return self.python is int
 
     @property
@@ -148,11 +151,14 @@ PRIMITIVES: dict[str, Primitive] = {
 """The primitive types by their names in ``.msg`` files."""
 
 EMPTY_MEMBER = "structure_needs_at_least_one_member"
-"""The field that rosidl adds to an empty structure: it is serialized and hashed, but users do not see it."""
+"""The field that rosidl adds to an empty structure.
+
+The field is serialized and hashed, but users do not see it.
+"""
 
 
 class Container(Enum):
-    """Whether a field has one value, an array or a sequence."""
+    """The number of values of a field: one value, an array or a sequence."""
 
     ONE = "one"
     ARRAY = "array"
@@ -176,12 +182,12 @@ class FieldType(NamedTuple):
 
     @property
     def primitive(self) -> Primitive | None:
-        """The primitive type; None if the base is another structure."""
+        """The primitive type, or None if the base is another structure."""
         return PRIMITIVES.get(self.base)
 
     @property
     def is_numeric_array(self) -> bool:
-        """Whether Python stores the values in a numpy array or an ``array.array`` instead of a list."""
+        """Whether values are stored in a numpy array or an ``array.array`` instead of a list."""
         primitive = self.primitive
         return self.container is not Container.ONE and primitive is not None and primitive.array_code is not None
 
@@ -237,7 +243,7 @@ class Field(NamedTuple):
 
 
 class Constant(NamedTuple):
-    """A named constant; `type` is the name of a primitive."""
+    """A named constant. `type` is the name of a primitive."""
 
     name: str
     type: str
@@ -264,7 +270,7 @@ class Structure(NamedTuple):
 
     @property
     def references(self) -> Iterator[str]:
-        """The type name of the structure in each field that has one; names may repeat."""
+        """The type name of the structure in each field that has one. Names may repeat."""
         return (field.type.base for field in self.fields if "/" in field.type.base)
 
 

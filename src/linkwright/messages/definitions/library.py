@@ -51,7 +51,7 @@ KIND_NAMES = {"msg": "message", "srv": "service", "action": "action"}
 
 
 class Library:
-    """All available interfaces, read on demand; the methods are thread-safe.
+    """All available interfaces, read on demand. The methods are thread-safe.
 
     Interfaces that come with Linkwright take precedence over interfaces of the workspace with the same name. Interfaces
     of the workspace are read, without a build, from the interface files of the packages that the current finder
@@ -106,7 +106,9 @@ class Library:
         return self._sources[f"{package}/{kind}/{part.partition('_')[0]}"]
 
     def add_text(self, type_name: str, source: SourceText) -> None:
-        """Register a message definition that was contained in data; later texts for the same type are ignored.
+        """Register a message definition that data contain.
+
+        Later texts for the same type are ignored.
 
         Args:
             type_name: the type of the message.
@@ -116,7 +118,7 @@ class Library:
             self._embedded_sources.setdefault(type_name, source)
 
     def names(self, kind: str, package: str | None = None) -> list[str]:
-        """Return the sorted type names of all interfaces of one kind, including those of the workspace.
+        """Return the sorted type names of all interfaces of one kind, including the workspace's.
 
         Args:
             kind: ``msg``, ``srv`` or ``action``.
@@ -198,7 +200,7 @@ class Library:
         return share is not None and interface_file(share, *rest.split("/")) is not None
 
     def hint_for(self, type_name: str) -> Phrase | None:
-        """Return a hint with names similar to that of a missing message; None if there are none."""
+        """Return a hint with names similar to that of a missing message, or None."""
         name = split_name(type_name)
         return None if name is None else self._not_found_diagnostic(name, ("msg",)).hint
 
@@ -292,7 +294,7 @@ class Library:
 
 
 class _TrustedMessages:
-    """Accepts every message name in files that come with Linkwright, because a test has checked these files.
+    """Accepts every message name in files that come with Linkwright, which a test has checked.
 
     It has the interface of `KnownMessages`.
     """
@@ -379,4 +381,7 @@ def _recursion_diagnostic(source: SourceText, way: tuple[str, ...]) -> Diagnosti
 
 
 LIBRARY = Library()
-"""The interfaces of this process. Classes are made of it once, so a message is the same class everywhere."""
+"""The interfaces of this process.
+
+A class is created from an interface only once, so a message has the same class everywhere.
+"""

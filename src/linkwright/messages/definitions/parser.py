@@ -32,7 +32,7 @@ _ESCAPED_CHARACTERS = {"n": "\n", "t": "\t", "r": "\r", "0": "\0", "\\": "\\", '
 
 
 class LiteralFault(Exception):  # noqa: N818 - not an error of the program; the parser turns it into a diagnostic
-    """Raised when a text is not a valid value of a type; the argument is the reason."""
+    """Raised when a text is not a valid value of a type. The argument is the reason."""
 
 
 def read_default(text: str, kind: FieldType) -> object:
@@ -84,7 +84,7 @@ def read_constant(text: str, type_name: str) -> Value:
 
 
 def split_list(text: str) -> list[str]:
-    """Split a list at its commas, except those inside quotes."""
+    """Split a list at its commas, except commas inside quotes."""
     items: list[str] = []
     position = 0
     while position < len(text):
@@ -202,13 +202,13 @@ class _Section:
 
 
 class KnownMessages(Protocol):
-    """The interface of objects that can tell which messages exist."""
+    """The interface of objects that determine which messages exist."""
 
     def has_message(self, type_name: str) -> bool:
         """Return whether a message with a full name exists."""
 
     def hint_for(self, type_name: str) -> Phrase | None:
-        """Return a hint with names similar to that of a missing message; None if there are none."""
+        """Return a hint with names similar to that of a missing message, or None."""
 
 
 def parse_interface(source: SourceText, type_name: str, known: KnownMessages) -> Definition:
@@ -217,7 +217,7 @@ def parse_interface(source: SourceText, type_name: str, known: KnownMessages) ->
     Args:
         source: the content of the file.
         type_name: the name of the interface, such as ``my_msgs/srv/Count``.
-        known: tells which messages exist, to check references.
+        known: determines which messages exist, to check references.
 
     Raises:
         DefinitionError: the file has mistakes; the error contains all of them (MSG110 to MSG119).

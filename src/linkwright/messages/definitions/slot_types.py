@@ -1,4 +1,4 @@
-"""The classes of rosidl_parser for field types, which programs read from the attribute ``SLOT_TYPES``."""
+"""The classes of rosidl_parser for field types. Programs read them from ``SLOT_TYPES``."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from linkwright.messages.definitions.interfaces import Container, FieldType, Str
 
 
 class AbstractType:
-    """The base class of all field types; types with the same content are equal."""
+    """The base class of all field types. Types with the same content are equal."""
 
     __slots__ = ()
 
@@ -33,7 +33,7 @@ class AbstractNestableType(AbstractType):
 
 
 class BasicType(AbstractNestableType):
-    """A number, bool, byte or character type; `typename` is its name in IDL."""
+    """A number, bool, byte or character type. `typename` is its name in IDL."""
 
     __slots__ = ("typename",)
 

@@ -1,1 +1,1 @@
-"""Recovery behaviours, and zones around the robot that limit its velocity."""
+"""Behaviours for recovery, and zones around the robot that limit its velocity."""

@@ -26,7 +26,7 @@ class Outcome(Enum):
     RUNNING = "running"
     DONE = "done"
     COLLISION = "there is an obstacle ahead"
-    TIMEOUT = "it took longer than was allowed"
+    TIMEOUT = "the time allowance was exceeded"
 
 
 @dataclass(frozen=True, slots=True)

@@ -90,7 +90,7 @@ class Rule:
     simulation_time_step: float = 0.1
 
     def allowed(self, shape: Shape, points: Points, velocity: Velocity) -> Velocity | None:
-        """Return the permitted velocity, or None if the zone does not restrict the requested one."""
+        """Return the permitted velocity, or None if the zone does not restrict `velocity`."""
         if self.action is Action.APPROACH:
             seconds = self._time_to_collision(shape, points, velocity)
             return None if seconds is None else _scaled(velocity, seconds / self.time_before_collision)

@@ -42,7 +42,7 @@ class Costmap:
 
     def __init__(self, grid: Grid) -> None:
         if grid.cells.dtype != np.uint8 or grid.yaw:
-            raise ValueError(f"a costmap has unturned cells of uint8, not {grid.cells.dtype} turned by {grid.yaw:g}")
+            raise ValueError(f"a costmap needs uint8 cells and yaw 0, not {grid.cells.dtype} and yaw {grid.yaw:g}")
         self.grid = grid
 
     def copy(self) -> Costmap:

@@ -1,4 +1,4 @@
-"""The denoise layer, which removes obstacles of too few cells.
+"""A costmap layer that removes obstacles of too few cells.
 
 Source: nav2_costmap_2d ``DenoiseLayer``.
 """

@@ -20,7 +20,10 @@ _MIN_CORNERS = 3
 
 
 class BadFootprintError(ValueError):
-    """Raised when a footprint parameter is not valid; the message gives the reason."""
+    """Raised when a footprint parameter is not valid.
+
+    The message gives the reason.
+    """
 
 
 def circle(radius: float) -> Footprint:
@@ -72,7 +75,10 @@ def radii(footprint: Footprint) -> tuple[float, float]:
 
 
 def outline(footprint: Footprint, spacing: float) -> NDArray[np.float64]:
-    """Return points along the outline of a footprint, of shape (points, 2), at most `spacing` metres apart."""
+    """Return points along the outline of a footprint, at most `spacing` metres apart.
+
+    The points have shape (points, 2).
+    """
     edge_points = []
     for corner, next_corner in zip(footprint, np.roll(footprint, -1, axis=0), strict=True):
         point_count = max(1, ceil(hypot(*(next_corner - corner)) / spacing))
@@ -81,7 +87,7 @@ def outline(footprint: Footprint, spacing: float) -> NDArray[np.float64]:
 
 
 def place_footprint(footprint: Footprint, x: float, y: float, yaw: float) -> Footprint:
-    """Return the corners of a footprint at a pose, in the frame of the pose."""
+    """Return the corners of a footprint at a pose, in the frame in which the pose is given."""
     cosine, sine = np.cos(yaw), np.sin(yaw)
     corners: Footprint = footprint @ np.array([[cosine, sine], [-sine, cosine]]) + (x, y)
     return corners

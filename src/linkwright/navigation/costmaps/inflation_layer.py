@@ -1,4 +1,4 @@
-"""The inflation layer, which writes costs that decay with the distance from obstacles.
+"""A costmap layer whose costs decay with the distance from obstacles.
 
 Source: nav2_costmap_2d ``InflationLayer``. A cell costs `INSCRIBED` up to the inscribed radius, then
 ``252 exp(-cost_scaling_factor (distance - inscribed radius))``, and nothing beyond the inflation radius.
@@ -36,7 +36,10 @@ class Inflation:
     inflate_around_unknown: bool = False
 
     def costs(self, distances: NDArray[np.float64], inscribed_radius: float) -> Costs:
-        """Return the costs at distances (in metres) from the nearest obstacle, in an array of the same shape."""
+        """Return the costs at distances, in metres, from the nearest obstacle.
+
+        The costs have the shape of `distances`.
+        """
         excess_distances = np.maximum(distances - inscribed_radius, 0.0)
         decayed_costs = (MAX_PASSABLE * np.exp(-self.cost_scaling_factor * excess_distances)).astype(np.uint8)
         decayed_costs = np.where(distances <= inscribed_radius, INSCRIBED, decayed_costs).astype(np.uint8)

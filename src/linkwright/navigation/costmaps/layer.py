@@ -53,7 +53,7 @@ class Window:
         return slice(self.top, self.bottom), slice(self.left, self.right)
 
     def within(self, grid: Grid) -> Window:
-        """Return the part of the window that is within a grid; empty if there is none."""
+        """Return the part of the window within a grid, or an empty window."""
         clipped = Window(
             max(0, self.top), max(0, self.left), min(grid.rows, self.bottom), min(grid.columns, self.right)
         )
@@ -110,7 +110,7 @@ class Layer(ABC):
     enabled: bool = True
     is_clearable: bool = False
 
-    def match(self, grid: Grid, default: int) -> None:  # noqa: B027  # most keep nothing
+    def match(self, grid: Grid, default: int) -> None:  # noqa: B027  # Most layers store no cells.
         """Adapt to a new size or origin of the costmap.
 
         `default` is the cost of the costmap's cells before any layer writes to them.
@@ -133,10 +133,10 @@ class Layer(ABC):
     def write(self, grid: Grid, window: Window, moment: UpdateContext) -> None:
         """Write costs into the cells of the window."""
 
-    def reset(self) -> None:  # noqa: B027  # most keep nothing
-        """Discard all data, so that the layer is as it was when it was created."""
+    def reset(self) -> None:  # noqa: B027  # Most layers store no data.
+        """Reset the layer's data. By default, do nothing."""
 
-    def clear(self, window: Window, *, outside: bool) -> None:  # noqa: B027  # of those that can be cleared
+    def clear(self, window: Window, *, outside: bool) -> None:  # noqa: B027  # Only clearable layers override it.
         """Clear the layer's data in a window, or all data outside the window."""
 
     def is_current(self, time_ns: int) -> bool:
@@ -145,7 +145,7 @@ class Layer(ABC):
 
 
 class PersistentLayer(Layer):
-    """A layer with its own cells, which keep their values until they are cleared.
+    """A layer whose cells keep their values until they are cleared.
 
     Attributes:
         layer_grid: the layer's cells, on the same grid as the costmap.
@@ -159,7 +159,10 @@ class PersistentLayer(Layer):
         self._extra = Window()
 
     def match(self, grid: Grid, default: int) -> None:
-        """Move the layer's cells to a new grid; cells outside the old grid get the default cost."""
+        """Move the layer's cells to a new grid.
+
+        Cells outside the old grid get the default cost.
+        """
         cells = shift_cells(self.layer_grid.cells, self.layer_grid, grid, default)
         self.layer_grid = Grid(cells=cells, resolution=grid.resolution, x=grid.x, y=grid.y)
         self._default = default
@@ -187,7 +190,7 @@ class PersistentLayer(Layer):
 
 
 def shift_cells(cells: NDArray[Any], old: Grid, new: Grid, fill: int) -> NDArray[Any]:
-    """Return the cells of an old grid on a new grid; cells outside the old grid are `fill`.
+    """Return the cells of an old grid on a new grid, with `fill` outside the old grid.
 
     If the resolutions differ, all cells are `fill`.
     """

@@ -57,7 +57,10 @@ class LayeredCostmap:
 
     @property
     def footprint(self) -> Footprint:
-        """The padded footprint, in the frame of the robot; the setter takes it without padding."""
+        """The padded footprint, in the frame of the robot.
+
+        The setter expects a footprint without padding, and adds the padding.
+        """
         return self._footprint
 
     @footprint.setter
@@ -66,7 +69,10 @@ class LayeredCostmap:
         self.inscribed_radius, self.circumscribed_radius = radii(self._footprint)
 
     def resize(self, grid: Grid) -> None:
-        """Change the size, origin or resolution; layers keep the cells that both grids contain."""
+        """Change the size, origin or resolution.
+
+        If the resolution stays the same, layers keep the cells that both grids contain.
+        """
         cells = np.full((grid.rows, grid.columns), self._default, np.uint8)
         self.costmap = Costmap(Grid(cells=cells, resolution=grid.resolution, x=grid.x, y=grid.y))
         for layer in self.layers:

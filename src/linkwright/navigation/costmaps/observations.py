@@ -78,7 +78,10 @@ class ObservationBuffer:
         self._updated_ns: int | None = None
 
     def add(self, origin: NDArray[np.float64], points: NDArray[np.float64], time_ns: int) -> None:
-        """Add an observation; points that are not finite or outside the height limits are dropped."""
+        """Add an observation.
+
+        Points that are not finite or outside the height limits are dropped.
+        """
         heights = points[:, 2]
         is_valid = np.isfinite(points).all(axis=1)
         is_valid &= (heights >= self.source.min_obstacle_height) & (heights <= self.source.max_obstacle_height)
@@ -88,7 +91,7 @@ class ObservationBuffer:
         self._updated_ns = time_ns
 
     def observations(self, time_ns: int) -> list[Observation]:
-        """Return the observations that are valid at a time, and drop those that have expired."""
+        """Drop the observations that have expired at a time, and return the others."""
         if self.source.observation_persistence:
             oldest_ns = time_ns - round(self.source.observation_persistence * NANOSECONDS_PER_SECOND)
             while self._observations and self._observations[0].time_ns < oldest_ns:
@@ -96,7 +99,10 @@ class ObservationBuffer:
         return list(self._observations)
 
     def is_current(self, time_ns: int) -> bool:
-        """Return whether the latest observation is within the expected time, or no time is set."""
+        """Return whether the latest observation is recent enough.
+
+        Without an expected update rate, the result is always True.
+        """
         if not self.source.expected_update_rate:
             return True
         return (

@@ -1,4 +1,4 @@
-"""The obstacle layer, which marks the cells of sensor points and clears the rays to them.
+"""A costmap layer that marks the cells of sensor points and clears the rays to them.
 
 Source: nav2_costmap_2d ``ObstacleLayer``.
 """
@@ -63,7 +63,10 @@ class ObstacleLayer(PersistentLayer):
         self._was_reset = False
 
     def reset(self) -> None:
-        """Clear all cells; the layer is not current until its next update."""
+        """Clear all cells.
+
+        The layer is not current until its next update.
+        """
         super().reset()
         self._was_reset = True
 

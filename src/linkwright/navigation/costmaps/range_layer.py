@@ -1,4 +1,4 @@
-"""The range layer, which estimates occupancy from sensors with a wide cone, such as sonars.
+"""A costmap layer that estimates occupancy from sensors with a wide cone, such as sonars.
 
 Source: nav2_costmap_2d ``RangeSensorLayer``. Unlike in nav2, only cells within the field of view change.
 """
@@ -89,7 +89,10 @@ class RangeLayer(PersistentLayer):
         self._latest_reading_ns = reading.time_ns
 
     def match(self, grid: Grid, default: int) -> None:
-        """Move the probabilities to the new grid; cells that were outside the old grid get 127."""
+        """Move the probabilities to the new grid.
+
+        Cells outside the old grid get the probability of an unknown cell.
+        """
         super().match(grid, _UNKNOWN_PROBABILITY)
 
     def clear(self, window: Window, *, outside: bool) -> None:
@@ -98,7 +101,10 @@ class RangeLayer(PersistentLayer):
         self.layer_grid.cells[self.layer_grid.cells == UNKNOWN] = _UNKNOWN_PROBABILITY
 
     def is_current(self, time_ns: int) -> bool:
-        """Return whether the latest reading is within the timeout, or no timeout is set."""
+        """Return whether the latest reading is recent enough.
+
+        Without a timeout, the result is always True.
+        """
         timeout = self.settings.no_readings_timeout
         return not timeout or (
             self._latest_reading_ns is not None

@@ -1,4 +1,4 @@
-"""The static layer, which writes the costs of a map's occupancy grid.
+"""A costmap layer with the costs of a map's occupancy grid.
 
 Source: nav2_costmap_2d ``StaticLayer``.
 """
@@ -104,7 +104,7 @@ class StaticLayer(Layer):
         self._needs_rewrite = True
 
     def reset(self) -> None:
-        """Make the next update write all cells; the map is kept."""
+        """Keep the map, and make the next update write all cells."""
         self._needs_rewrite = True
 
     def is_current(self, time_ns: int) -> bool:

@@ -67,13 +67,19 @@ class VoxelLayer(ObstacleLayer):
         self._unknown: Levels = np.zeros((0, 0), np.uint16)
 
     def match(self, grid: Grid, default: int) -> None:
-        """Move the voxels to a new grid; voxels outside the old grid are unknown."""
+        """Move the voxels to a new grid.
+
+        Voxels outside the old grid are unknown.
+        """
         self._occupied = shift_cells(self._occupied, self.layer_grid, grid, 0)
         self._unknown = shift_cells(self._unknown, self.layer_grid, grid, _ALL_LEVELS)
         super().match(grid, default)
 
     def reset(self) -> None:
-        """Set all voxels to unknown; the layer is not current until its next update."""
+        """Set all voxels to unknown.
+
+        The layer is not current until its next update.
+        """
         super().reset()
         self._occupied[:] = 0
         self._unknown[:] = _ALL_LEVELS

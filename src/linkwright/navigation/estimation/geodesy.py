@@ -1,4 +1,4 @@
-"""Conversion of geodetic coordinates (degrees, WGS 84) to metres: UTM, and planes tangent to the ellipsoid.
+"""Conversion of WGS 84 coordinates in degrees to metres: UTM and tangent planes.
 
 Sources: L. Krüger 1912 for the transverse Mercator projection, with the coefficients of C. Karney, "Transverse Mercator
 with an accuracy of a few nanometers", 2011, to the fourth order, whose error is far below a millimetre within a zone;
@@ -49,7 +49,10 @@ class Zone(NamedTuple):
 
 
 def zone_from_degrees(latitude: float, longitude: float) -> Zone:
-    """Return the UTM zone of a position in degrees, including the wider zones of Norway and Svalbard."""
+    """Return the UTM zone of a position in degrees.
+
+    The zones of Norway and Svalbard are wider than the others.
+    """
     longitude = (longitude + 180.0) % 360.0 - 180.0
     number = floor((longitude + 180.0) / 6.0) + 1
     if 56.0 <= latitude < 64.0 and 3.0 <= longitude < 12.0:

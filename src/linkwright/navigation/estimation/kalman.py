@@ -97,7 +97,7 @@ class Control:
 
 @dataclass(slots=True, eq=False)
 class Snapshot:
-    """The state of a filter at one moment; see `KalmanFilter.snapshot`."""
+    """The state of a filter at one time, as returned by `KalmanFilter.snapshot`."""
 
     state: Vector
     covariance: Matrix
@@ -146,7 +146,10 @@ class KalmanFilter(ABC):
         self.reset()
 
     def reset(self) -> None:
-        """Reset the filter; the next measurement initializes it."""
+        """Reset the filter.
+
+        The next measurement initializes the state.
+        """
         self.state = self.settings.initial_state.copy()
         self.covariance = self.settings.initial_covariance.copy()
         self.initialized = False
@@ -252,7 +255,7 @@ class ExtendedKalmanFilter(KalmanFilter):
 
 
 class UnscentedKalmanFilter(KalmanFilter):
-    """A Kalman filter that propagates sigma points, and takes their mean and covariance.
+    """A Kalman filter that computes mean and covariance from propagated sigma points.
 
     Args:
         settings: the settings; see `Settings`.

@@ -57,7 +57,10 @@ def wrap_angles(state: Vector) -> None:
 
 
 def rotation(roll: float, pitch: float, yaw: float) -> Matrix:
-    """Return the matrix that rotates vectors from the body to the world: Rz(yaw) Ry(pitch) Rx(roll), shape (3, 3)."""
+    """Return the rotation matrix from the body to the world, of shape (3, 3).
+
+    The matrix is Rz(yaw) Ry(pitch) Rx(roll).
+    """
     sr, cr, sp, cp, sy, cy = sin(roll), cos(roll), sin(pitch), cos(pitch), sin(yaw), cos(yaw)
     return np.array(
         [
@@ -69,7 +72,10 @@ def rotation(roll: float, pitch: float, yaw: float) -> Matrix:
 
 
 def predict_state(state: Vector, seconds: float) -> Vector:
-    """Return the state after some seconds as a new array of shape (15,), with angles between -pi and pi."""
+    """Return the predicted state after some seconds, as a new array of shape (15,).
+
+    Angles are wrapped to -pi to pi.
+    """
     rotation_matrix, angle_rates = rotation(*state[ANGLES].tolist()), _angle_rates(state)
     predicted = state.copy()
     predicted[POSITION] += rotation_matrix @ _shift(state, seconds)
@@ -115,7 +121,10 @@ def _shift(state: Vector, seconds: float) -> Vector:
 
 
 def _angle_rates(state: Vector) -> Matrix:
-    """Return the matrix that maps the body's angular velocity to the rates of roll, pitch and yaw, shape (3, 3)."""
+    """Return the matrix that maps angular velocity to the rates of roll, pitch and yaw.
+
+    The angular velocity is in the frame of the body. The matrix has shape (3, 3).
+    """
     roll, pitch = float(state[State.ROLL]), float(state[State.PITCH])
     sr, cr, sp, cp = sin(roll), cos(roll), sin(pitch), cos(pitch)
     return np.array([[1.0, sr * sp / cp, cr * sp / cp], [0.0, cr, -sr], [0.0, sr / cp, cr / cp]])

@@ -1,4 +1,4 @@
-"""Conversion of sensor poses, twists and accelerations to measurements of the body that carries the sensors.
+"""Conversion of sensor poses, twists and accelerations to measurements of the robot's body.
 
 Source of the rules: robot_localization. Two computations that are approximate there are exact here: the orientation of
 a rotated IMU, and the attitude that is used to remove gravity if the IMU provides no orientation.
@@ -94,8 +94,8 @@ class PoseReader:
             time_ns: the time of the measurement.
 
         Returns:
-            The reading of the finite values; None for the first pose of a differential sensor, and for a pose that has
-            no finite value.
+            The reading of the finite values; None for a pose without a finite value, and for a differential sensor's
+            first pose or a pose that is not newer than the previous one.
         """
         rotation_to_world = rotation_matrix(sensor[3:])
         return self._read(pose, covariance, sensor, rotation_to_world, time_ns)
@@ -103,7 +103,9 @@ class PoseReader:
     def read_orientation(
         self, orientation: Quaternion, covariance: Matrix, mounting: Transform, time_ns: int
     ) -> Reading | None:
-        """Convert the orientation of an IMU; see `read` for the result.
+        """Convert the orientation of an IMU.
+
+        The result is the same as for `read`.
 
         Args:
             orientation: the orientation of the IMU in the world.

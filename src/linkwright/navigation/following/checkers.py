@@ -20,9 +20,12 @@ class GoalChecker(ABC):
 
     @abstractmethod
     def is_reached(self, pose: Pose, goal: Pose, velocity: Velocity) -> bool:
-        """Return whether the goal is reached; all arguments are in one frame."""
+        """Return whether the goal is reached.
 
-    def begin(self) -> None:  # noqa: B027 - not all keep something
+        All arguments are in the same frame.
+        """
+
+    def begin(self) -> None:  # noqa: B027  # Some checkers have no state.
         """Reset for a new goal."""
 
 
@@ -102,7 +105,7 @@ class PoseProgressParameters(ProgressParameters):
 
 
 class ProgressChecker:
-    """A checker of whether a robot moves or turns by a minimum amount within a time limit."""
+    """A checker that a robot moves or turns by a minimum amount within a time limit."""
 
     def __init__(self, parameters: ProgressParameters | None = None) -> None:
         self._parameters = parameters or ProgressParameters()

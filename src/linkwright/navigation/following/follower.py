@@ -58,13 +58,16 @@ class Situation:
 
 
 class FollowingError(Exception):
-    """Raised when there is no valid velocity; the message gives the reason."""
+    """Raised when there is no valid velocity.
+
+    The message gives the reason.
+    """
 
 
 class Follower(ABC):
     """The base class of controllers that compute velocities to drive a robot along a path."""
 
-    def begin(self) -> None:  # noqa: B027 - most keep nothing from the path before
+    def begin(self) -> None:  # noqa: B027  # Most followers keep no data of the previous path.
         """Reset for a new path."""
 
     @abstractmethod
@@ -86,7 +89,7 @@ class Follower(ABC):
 
 
 def limited(max_speed: float, speed: float, *, is_percentage: bool) -> float:
-    """Return a maximum speed reduced to a limit, in m/s; see `Follower.limit_speed`."""
+    """Return a maximum speed, in m/s, reduced to the limit of `Follower.limit_speed`."""
     if not speed > 0.0:
         return max_speed
     return max_speed * min(speed, 100.0) / 100.0 if is_percentage else min(max_speed, speed)
@@ -98,7 +101,10 @@ def wrapped(angle: float) -> float:
 
 
 def to_robot_frame(pose: Pose, points: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Transform points, of shape (..., 2), to the frame of a robot at a pose: x forward, y to the left."""
+    """Transform points of shape (..., 2) to the frame of a robot at a pose.
+
+    In this frame, x points forward and y points to the left.
+    """
     x, y, yaw = pose
     cosine, sine = np.cos(yaw), np.sin(yaw)
     dx, dy = points[..., 0] - x, points[..., 1] - y

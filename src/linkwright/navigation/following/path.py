@@ -34,7 +34,10 @@ class FollowedPath:
         self._index += int(np.argmin((nearby_points[:, 0] - x) ** 2 + (nearby_points[:, 1] - y) ** 2))
 
     def poses_ahead(self, distance: float) -> NDArray[np.float64]:
-        """Return the poses from the robot up to a distance ahead along the path, in metres; at least two poses."""
+        """Return the poses from the robot up to a distance, in metres, ahead along the path.
+
+        The result contains at least two poses.
+        """
         end = int(np.searchsorted(self._lengths, self._lengths[self._index] + distance, side="right"))
         first = min(self._index, len(self.poses) - 2)
         return self.poses[first : max(end, first + 2)]

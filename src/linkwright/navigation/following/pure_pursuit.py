@@ -32,7 +32,10 @@ from linkwright.navigation.following.follower import (
 
 @dataclass(frozen=True, kw_only=True)
 class PurePursuitParameters:
-    """Parameters of `RegulatedPurePursuit`, with nav2's names and defaults, in metres, seconds and radians."""
+    """Parameters of `RegulatedPurePursuit`, with nav2's names and defaults.
+
+    Units are metres, seconds and radians.
+    """
 
     desired_linear_vel: float = 0.5
     lookahead_dist: float = 0.6
@@ -68,11 +71,11 @@ class RegulatedPurePursuit(Follower):
         self._max_speed = self.parameters.desired_linear_vel
 
     def limit_speed(self, speed: float, *, is_percentage: bool = False) -> None:
-        """Limit the speed; see `Follower.limit_speed`."""
+        """Limit the speed as described in `Follower.limit_speed`."""
         self._max_speed = limited(self.parameters.desired_linear_vel, speed, is_percentage=is_percentage)
 
     def velocity(self, situation: Situation) -> Velocity:
-        """Return the velocity for the next cycle; see `Follower.velocity`."""
+        """Return the velocity for the next cycle, as described in `Follower.velocity`."""
         parameters = self.parameters
         points = to_robot_frame(situation.pose, situation.path[:, :2])
         cusp = _cusp_index(points) if parameters.allow_reversing else len(points)
@@ -217,7 +220,9 @@ def speed_in_curve(speed: float, curvature: float, min_radius: float) -> float:
 
 
 def rotation_speed(angle: float, current: float, period: float, max_speed: float, acceleration: float) -> float:
-    """Return an angular velocity, in rad/s, at which a rotation can still stop at its target angle.
+    """Return the angular velocity, in rad/s, for the next cycle of a rotation to an angle.
+
+    From this velocity, the rotation can stop at the angle.
 
     Args:
         angle: the remaining angle, in radians.

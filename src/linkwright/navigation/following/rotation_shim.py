@@ -1,4 +1,4 @@
-"""The rotation shim, which turns the robot towards a new path before another follower takes over.
+"""A path follower that turns the robot towards a new path before another follower drives.
 
 Source: nav2_rotation_shim_controller, with its parameters.
 """
@@ -23,7 +23,10 @@ from linkwright.navigation.following.pure_pursuit import is_free, rotation_speed
 
 @dataclass(frozen=True, kw_only=True)
 class RotationShimParameters:
-    """Parameters of `RotationShim`, with nav2's names and defaults, in metres, seconds and radians."""
+    """Parameters of `RotationShim`, with nav2's names and defaults.
+
+    Units are metres, seconds and radians.
+    """
 
     angular_dist_threshold: float = 0.785
     angular_disengage_threshold: float = 0.3925
@@ -53,11 +56,11 @@ class RotationShim(Follower):
         self._primary.begin()
 
     def limit_speed(self, speed: float, *, is_percentage: bool = False) -> None:
-        """Limit the speed; see `Follower.limit_speed`."""
+        """Limit the speed as described in `Follower.limit_speed`."""
         self._primary.limit_speed(speed, is_percentage=is_percentage)
 
     def velocity(self, situation: Situation) -> Velocity:
-        """Return the velocity for the next cycle; see `Follower.velocity`."""
+        """Return the velocity for the next cycle, as described in `Follower.velocity`."""
         parameters = self._parameters
         points = to_robot_frame(situation.pose, situation.path[:, :2])
         lengths = lengths_along(situation.path)

@@ -1,4 +1,4 @@
-"""A path follower that samples velocities, simulates each for some time, and commands the best one.
+"""A path follower that samples velocities, simulates their motions and commands the best.
 
 This follower replaces both of nav2's sampling controllers, DWB and MPPI. Limits and times use the parameter names of
 either; the scoring of the sampled motions is Linkwright's own.
@@ -92,11 +92,11 @@ class SamplingFollower(Follower):
         self._is_turning = False
 
     def limit_speed(self, speed: float, *, is_percentage: bool = False) -> None:
-        """Limit the speed; see `Follower.limit_speed`."""
+        """Limit the speed as described in `Follower.limit_speed`."""
         self._max_speed = limited(self.parameters.limits.max_velocity.x, speed, is_percentage=is_percentage)
 
     def velocity(self, situation: Situation) -> Velocity:
-        """Return the velocity for the next cycle; see `Follower.velocity`."""
+        """Return the velocity for the next cycle, as described in `Follower.velocity`."""
         x, y, yaw = situation.pose
         goal = situation.path[-1]
         if hypot(goal[0] - x, goal[1] - y) < situation.xy_tolerance:
@@ -154,7 +154,7 @@ class SamplingFollower(Follower):
             best = Velocity(*map(float, candidates[index]))
             if max_costs[index] <= 0.0 or is_free(situation, best, parameters.seconds):
                 return self._reachable(best, situation)
-        raise FollowingError("every velocity that was tried leads into an obstacle")
+        raise FollowingError("every sampled velocity leads to a collision")
 
     def _candidates(self, situation: Situation) -> NDArray[np.float64]:
         """Return velocities that are reachable within the simulated time, of shape (candidates, 3)."""

@@ -1,4 +1,4 @@
-"""Import of SciPy, which is installed with the extra ``navigation``."""
+"""Import of SciPy, a dependency of the extra ``navigation``."""
 
 from __future__ import annotations
 

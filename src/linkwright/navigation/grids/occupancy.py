@@ -13,7 +13,10 @@ from linkwright.navigation.grids.grid import Grid
 
 
 class BadGridError(ValueError):
-    """Raised when a message is not a valid grid; the error message gives the reason."""
+    """Raised when a message is not a valid grid.
+
+    The error's message gives the reason.
+    """
 
 
 def occupancy_message(grid: Grid, frame: str, stamp: Any) -> Any:
@@ -38,7 +41,7 @@ def occupancy_message(grid: Grid, frame: str, stamp: Any) -> Any:
 
 
 def grid_from_message(message: Any) -> Grid:
-    """Convert a nav_msgs/OccupancyGrid to a grid with its own int8 cells.
+    """Convert a nav_msgs/OccupancyGrid to a grid with a copy of its int8 cells.
 
     Raises:
         BadGridError: the message has no cells, no resolution, or a number of cells that does not match its size.

@@ -21,7 +21,7 @@ _CONVERGENCE_DISTANCE = 0.5
 
 @dataclass(frozen=True, slots=True)
 class FilterSettings:
-    """Settings of a particle filter: the number of particles, and when random particles are added.
+    """Settings of a particle filter: KLD sampling, and recovery by random particles.
 
     Attributes:
         min_particles: the minimum number of particles.
@@ -104,7 +104,9 @@ class ParticleFilter:
         self.weights = weights / total
 
     def resample(self, random_particles: Callable[[int], Poses]) -> None:
-        """Resample the particles by their weights; KLD sampling determines their number.
+        """Resample the particles in proportion to their weights.
+
+        KLD sampling determines the number of particles.
 
         Args:
             random_particles: returns a number of random particles; they are added while scans match worse than before.
@@ -146,7 +148,10 @@ class ParticleFilter:
         return covariance
 
     def _required_count(self, particles: Poses) -> int:
-        """Return how many of the drawn particles are enough for the number of bins that they occupy."""
+        """Return the number of drawn particles that KLD sampling keeps.
+
+        The number grows with the number of bins that the particles occupy.
+        """
         _, first_indices = np.unique(_bins(particles)[0], return_index=True)
         is_new_bin = np.zeros(len(particles), np.int64)
         is_new_bin[first_indices] = 1
@@ -181,7 +186,10 @@ def _bins(particles: Poses) -> tuple[NDArray[np.int64], int]:
 
 
 def _clusters(particles: Poses) -> NDArray[np.int64]:
-    """Return the index of each particle's cluster; adjacent bins belong to the same cluster."""
+    """Return the index of each particle's cluster.
+
+    Adjacent bins belong to the same cluster.
+    """
     numbers, along_x = _bins(particles)
     bins, bin_indices = np.unique(numbers, return_inverse=True)
     yaw = bins % _YAW_BINS

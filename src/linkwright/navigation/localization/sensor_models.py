@@ -1,4 +1,4 @@
-"""The sensor models of nav2_amcl, which rate how well a scan fits a map from many poses.
+"""The sensor models of nav2_amcl: the likelihood of a scan at each of many poses.
 
 Source: "Probabilistic Robotics", chapter 6. Beams are combined as in nav2_amcl: the likelihood of a pose is 1 plus the
 sum of the cubes of its beams' likelihoods, which is less strict than their product. ``likelihood_field_prob`` uses the
@@ -26,9 +26,9 @@ _FIT_DISTANCE = 0.15
 
 @dataclass(frozen=True, slots=True)
 class BeamSkipping:
-    """Settings of beam skipping, which ignores beams that fit only few particles.
+    """Settings of beam skipping.
 
-    Beams that hit people are an example.
+    Beam skipping ignores beams that fit only few particles, such as beams that hit people.
 
     Attributes:
         distance: the maximum distance from the map's nearest obstacle at which a beam fits a particle, in metres.

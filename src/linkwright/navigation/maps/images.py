@@ -1,4 +1,7 @@
-"""Reading and writing of map images: PGM directly, and other formats (PNG, BMP, ...) with Pillow."""
+"""Reading and writing of map images.
+
+Only formats other than PGM, such as PNG and BMP, need Pillow.
+"""
 
 from __future__ import annotations
 

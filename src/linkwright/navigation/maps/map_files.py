@@ -1,4 +1,4 @@
-"""Loads and saves maps as a YAML file with an image, as nav2_map_server does."""
+"""Loading and saving of maps as a YAML file with an image, as in nav2_map_server."""
 
 from __future__ import annotations
 
@@ -137,6 +137,6 @@ def _yaml_text(grid: Grid, settings: MapSaveSettings, image: str) -> str:
 
 
 def _format_number(value: float) -> str:
-    """Format a number with three significant digits as nav2 does, or with more to keep millimetres."""
+    """Format a number with nav2's three significant digits, or more to keep millimetres."""
     digits = 3 if value == 0.0 else max(3, floor(log10(abs(value))) + 4)
     return f"{value:.{digits}g}"

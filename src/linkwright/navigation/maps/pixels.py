@@ -1,4 +1,4 @@
-"""Conversion between the pixels of an image and the cells of an occupancy grid, as in nav2_map_server."""
+"""Conversion between image pixels and cells of an occupancy grid, as in nav2_map_server."""
 
 from __future__ import annotations
 

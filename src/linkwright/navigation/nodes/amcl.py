@@ -99,7 +99,7 @@ class AmclNode(ManagedNode):
         self._active = True
 
     def deactivate(self) -> None:
-        """Stop localizing; the estimated pose is kept."""
+        """Stop localizing, and keep the estimated pose."""
         self._active = False
         self._scan_timer.destroy()
         self._waiting.clear()
@@ -233,7 +233,10 @@ class AmclNode(ManagedNode):
         self._update_count = self._misfit_count = 0
 
     def _follow(self) -> None:
-        """Apply changed parameters to the active node; frames and topics remain as configured."""
+        """Apply changed parameters to the configured node.
+
+        The frames and topics stay the same.
+        """
         if not hasattr(self, "_settings"):
             return
         previous, self._settings = self._settings, read_parameters(self)
@@ -272,8 +275,8 @@ class AmclNode(ManagedNode):
         self._misfit_count = 0 if fit > _MIN_FIT else self._misfit_count + 1
         if self._misfit_count >= _MAX_MISFITS:
             self.get_logger().warning(
-                f"only {fit:.0%} of the beams end near something on the map: the robot is elsewhere, or the map is "
-                "another one. Say where it is (2D Pose Estimate), or call /reinitialize_global_localization and drive",
+                f"only {fit:.0%} of the beams end near an obstacle of the map: the pose or the map is wrong. "
+                "Set the pose with 2D Pose Estimate, or call /reinitialize_global_localization and drive",
                 throttle_duration_sec=_SCAN_TIMEOUT,
             )
 

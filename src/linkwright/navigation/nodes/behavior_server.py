@@ -1,4 +1,4 @@
-"""nav2's behavior_server, with the actions spin, back up, drive on heading, wait and assisted teleoperation.
+"""nav2's behavior_server: spin, back up, drive on heading, wait and assisted teleoperation.
 
 Source: nav2_behaviors, Humble and Jazzy. Obstacles are read from ``local_costmap/costmap_raw``, and the footprint from
 ``local_costmap/published_footprint``. A deliberate difference: a behaviour other than wait fails when the costmap is no
@@ -159,7 +159,7 @@ class BehaviorNode(ManagedNode):
     def _start(self, server: GoalServer, name: str, goal: Any) -> None:
         self.get_logger().info(f"Running {name}")
         if self._running is not None and self._running[0] is not server:
-            self._running[0].abort("UNKNOWN", f"{name} took its place")
+            self._running[0].abort("UNKNOWN", f"{name} replaced it")
         self._halt()
         start = self._pose() if name not in ("wait", "assisted_teleop") else (0.0, 0.0, 0.0)
         if start is None:
@@ -192,14 +192,14 @@ class BehaviorNode(ManagedNode):
         if name == "assisted_teleop":
             return _AssistedTeleop(allowance, self._value("projection_time"), lambda: self._requested_velocity)
         if goal.target.y or goal.target.z:
-            return f"{name} drives along x alone, and its target has y or z"
+            return f"{name} drives only along x, but its target has y or z"
         distance, speed = goal.target.x, abs(goal.speed)
         if name == "backup":
             distance = -abs(distance)
         elif (goal.target.x > 0.0) != (goal.speed > 0.0):
             return "Speed and command sign did not match"
         if not speed > 0.0:
-            return f"{name} needs a speed"
+            return f"{name} needs a speed other than 0"
         return DriveStraight(distance, speed, allowance, self._value("simulate_ahead_time"), start)
 
     def _cycle(self) -> None:
@@ -249,14 +249,14 @@ class BehaviorNode(ManagedNode):
     def _missing_data_reason(self) -> str:
         """Return the reason why obstacles are unknown, or an empty string if they are known."""
         if self._costmap is None or self._footprint is None:
-            return "no costmap has come yet"
+            return "no costmap has been received yet"
         if self.now_ns() - self._costmap_received_ns > _COSTMAP_TIMEOUT * 1e9:
-            return "the costmap has fallen silent"
+            return "the costmap is no longer published"
         return ""
 
     def _is_free(self, poses: NDArray[np.float64]) -> bool:
-        assert self._costmap is not None, "it was looked whether there is one"
-        assert self._footprint is not None, "it was looked whether there is one"
+        assert self._costmap is not None, "`_missing_data_reason` checked it"
+        assert self._footprint is not None, "`_missing_data_reason` checked it"
         return not bool(np.any(self._costmap.footprint_cost(poses, self._footprint) == LETHAL))
 
     def _pose(self) -> Pose | None:

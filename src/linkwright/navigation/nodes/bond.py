@@ -1,4 +1,6 @@
-"""Bonds (bondcpp), with which nav2's servers and their manager detect that the other process died.
+"""Bonds (bondcpp): the heartbeats that nav2's servers and their manager exchange.
+
+Each end detects when the other process has died.
 
 Both ends publish heartbeats on ``bond`` with the same id. An end that leaves sends a last message; an end that dies
 stops publishing. Unlike in bondcpp, an end waits for the other without a timeout instead of 10 s, so either may start

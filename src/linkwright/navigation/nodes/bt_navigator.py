@@ -1,10 +1,10 @@
-"""nav2's bt_navigator, which navigates to poses with the planner, controller and behaviour servers.
+"""nav2's bt_navigator, which navigates to poses by calling nav2's other servers.
 
 The node offers the actions ``navigate_to_pose`` and ``navigate_through_poses``, and subscribes to ``goal_pose`` (RViz's
 2D Goal Pose). It behaves as nav2's default trees do (``navigate_to_pose_w_replanning_and_recovery.xml``): it plans a
 new path each second. When planning or driving fails, it clears the costmaps; if that does not help, the robot spins,
-waits, backs up and tries again, up to six times. A deliberate difference: it does not read users' behaviour trees, and
-logs this.
+waits, backs up and tries again, up to six times. A deliberate difference: it does not run users' behaviour trees, and
+logs a warning instead.
 """
 
 from __future__ import annotations
@@ -114,7 +114,7 @@ class NavigatorNode(StepNode):
         self.get_logger().warning(f"behaviour trees are not supported: the default navigation runs instead of {path}")
 
     def _start(self, variant: str, goal: Any) -> None:
-        """Start navigating for a goal; a running goal of the other action is aborted."""
+        """Start navigating for a goal, and abort a running goal of the other action."""
         poses = [goal.pose] if variant == "pose" else list(goal.poses)
         goal_position = poses[-1].pose.position
         x, y = self._robot_position() or (float("nan"),) * 2
@@ -208,7 +208,7 @@ class NavigatorNode(StepNode):
             path_goal.cancel()
 
     def _plan_with_retry(self, variant: str) -> Step:
-        """Plan a path and return it; if that fails, clear the global costmap and try once more."""
+        """Plan and return a path, with one retry after the global costmap is cleared."""
         try:
             return (yield from self._plan(variant))
         except StepError as failure:
@@ -238,7 +238,10 @@ class NavigatorNode(StepNode):
         return path
 
     def _refusal_reason(self) -> str:
-        """Return why the global costmap makes the goal unreachable, or an empty string if it does not."""
+        """Return the reason why the robot cannot be at the goal, or an empty string.
+
+        The reason comes from the global costmap.
+        """
         goal_position, frame = self._poses[-1].pose.position, self._poses[-1].header.frame_id
         if self._costmap is None or (frame and frame != self._costmap_frame):
             return ""
@@ -267,7 +270,7 @@ class NavigatorNode(StepNode):
         yield from self._clear("global")
 
     def _clear(self, scope: str) -> Step:
-        """Clear a costmap if its service is available; otherwise log a warning."""
+        """Clear a costmap, or log a warning if its service is not available."""
         client = self._clear_clients[scope]
         if not client.service_is_ready():
             self.get_logger().warning(f"the {scope} costmap is not cleared: there is no {client.service_name}")

@@ -1,4 +1,4 @@
-"""nav2's collision_monitor, which slows down or stops the robot when sensors detect something in a zone.
+"""nav2's collision_monitor, which slows down or stops the robot near obstacles.
 
 The node has nav2's parameters, topics and rules, for Humble and Jazzy. Deliberate differences: unless
 ``enable_stamped_cmd_vel`` is set, the node accepts Twist and TwistStamped, and publishes the type that subscribers
@@ -35,7 +35,7 @@ _SILENT_SENSOR_ZONE = "invalid source"
 _ACTION_MESSAGES = {
     Action.STOP: "Robot to stop due to {}",
     Action.SLOWDOWN: "Robot to slow down due to {}",
-    Action.APPROACH: "Robot to slow down while it approaches what is in the way of {}",
+    Action.APPROACH: "Robot to slow down while it approaches an obstacle near {}",
     Action.LIMIT: "Robot to limit its speed due to {}",
     Action.NOTHING: "Robot to continue normal operation",
 }

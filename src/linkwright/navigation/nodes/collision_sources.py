@@ -1,4 +1,4 @@
-"""The sensors of collision_monitor, which provide their latest points in the robot's current frame."""
+"""The sensors of collision_monitor, and their points in the robot's current frame."""
 
 from __future__ import annotations
 

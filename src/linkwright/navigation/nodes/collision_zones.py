@@ -167,9 +167,9 @@ class Zone:
             self._register(self._node.create_subscription(polygon, topic, self._on_polygon, _DEPTH))
 
     def _corners(self, name: str) -> Footprint | None:
-        """Return the corners from a parameter, which is a string in Jazzy and a list of numbers in Humble.
+        """Return the corners from a parameter, or None if the parameter is not set.
 
-        Returns None if the parameter is not set.
+        The parameter is a string in Jazzy and a list of numbers in Humble.
         """
         full_name = f"{self.name}.{name}"
         if not self._node.has_parameter(full_name):

@@ -39,7 +39,10 @@ _MAX_PATH_FRAME_AGE = 5.0
 
 
 class _TemporarilyUnavailableError(GoalError):
-    """Raised when data are temporarily unavailable; if that persists, the goal is aborted."""
+    """Raised when data are temporarily unavailable.
+
+    If the data stay unavailable, the goal is aborted.
+    """
 
 
 class ControllerNode(ManagedNode):
@@ -120,7 +123,7 @@ class ControllerNode(ManagedNode):
     # --- goals --------------------------------------------------------------------------------------------------------
 
     def _start(self, goal: ServerGoalHandle) -> None:
-        """Start following the path of a goal; a robot that follows a path keeps moving."""
+        """Start following the path of a goal, without a stop if the robot already follows a path."""
         request = goal.request
         assert self._goals is not None, "it is configured"
         is_driving = self.is_cycling
@@ -349,7 +352,10 @@ def _transform_poses(frame: Pose, poses: NDArray[np.float64]) -> NDArray[np.floa
 
 
 def _relative_pose(frame: Pose, pose: Pose) -> Pose:
-    """Return a pose relative to a frame; both arguments are in a common frame."""
+    """Return the pose relative to a frame.
+
+    Both arguments are poses in a common frame.
+    """
     cosine, sine = cos(frame[2]), sin(frame[2])
     dx, dy = pose[0] - frame[0], pose[1] - frame[1]
     return cosine * dx + sine * dy, cosine * dy - sine * dx, pose[2] - frame[2]

@@ -1,4 +1,6 @@
-"""Costmaps of nav2's servers: nodes such as ``/local_costmap/local_costmap`` in the process of a server.
+"""Costmaps of nav2's servers, such as the node ``/local_costmap/local_costmap``.
+
+Each costmap runs in the process of its server.
 
 Source: nav2_costmap_2d ``Costmap2DROS``, Humble and Jazzy. A deliberate difference: a costmap can be activated before
 the robot's pose is known, and starts updating once it is known. Unsupported layers and costmap filters are skipped
@@ -52,7 +54,10 @@ _TF_TOPICS = (DEFAULT_TF_TOPIC, DEFAULT_STATIC_TF_TOPIC)
 
 @dataclass(frozen=True, kw_only=True)
 class CostmapParameters:
-    """The parameters that do not belong to a layer, with nav2's names; units are m, s and Hz."""
+    """The parameters that do not belong to a layer, with nav2's names.
+
+    Units are m, s and Hz.
+    """
 
     always_send_full_costmap: bool = False
     map_vis_z: float = 0.0

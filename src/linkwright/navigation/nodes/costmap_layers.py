@@ -177,7 +177,7 @@ def _make_obstacle_layer(shared: Surroundings, name: str) -> Layer:
 
 def _make_voxel_layer(shared: Surroundings, name: str) -> Layer:
     if shared.value(f"{name}.publish_voxel_map", False):
-        shared.node.get_logger().info(f"'{name}' publishes no voxels, though {name}.publish_voxel_map asks for them")
+        shared.node.get_logger().info(f"{name}.publish_voxel_map is not supported: '{name}' publishes no voxels")
     voxels: Voxels = declared(shared.node, Voxels, name)
     if not 0 < voxels.z_voxels <= MAX_LEVELS:
         valid_counts = [str(count) for count in range(1, MAX_LEVELS + 1)]

@@ -83,7 +83,7 @@ class SensorTopic(ABC):
     @property
     @abstractmethod
     def all_count(self) -> bool:
-        """Whether all messages are used; otherwise only the latest message is."""
+        """Whether all messages are used, instead of only the latest one."""
 
     @abstractmethod
     def _observe(self, message: Any, pose: Transform) -> None:

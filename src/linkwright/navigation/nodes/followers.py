@@ -1,4 +1,4 @@
-"""The plugins of nav2's controller_server: Linkwright's classes with nav2's names and parameters.
+"""Plugins of nav2's controller_server, with nav2's names and parameters.
 
 A deliberate difference: one sampling follower replaces DWB and MPPI. It uses their parameters for limits and times, and
 logs which other parameters are set.
@@ -114,7 +114,10 @@ def _mppi_parameters(node: Node, plugin: str) -> SamplingParameters:
 
 
 def make_goal_checker(node: Node, plugin: str) -> GoalChecker:
-    """Create the goal checker of a plugin; see `make_follower`."""
+    """Create the goal checker of a plugin.
+
+    The exceptions are the same as for `make_follower`.
+    """
     kind = type_of(node, plugin, DEFAULT_GOAL_CHECKERS)
     checkers: dict[str, Callable[[], GoalChecker]] = {
         "nav2_controller/SimpleGoalChecker": lambda: SimpleGoalChecker(declared(node, SimpleGoalParameters, plugin)),
@@ -125,7 +128,10 @@ def make_goal_checker(node: Node, plugin: str) -> GoalChecker:
 
 
 def make_progress_checker(node: Node, plugin: str) -> ProgressChecker:
-    """Create the progress checker of a plugin; see `make_follower`."""
+    """Create the progress checker of a plugin.
+
+    The exceptions are the same as for `make_follower`.
+    """
     kind = type_of(node, plugin, DEFAULT_PROGRESS_CHECKERS)
     checkers: dict[str, Callable[[], ProgressChecker]] = {
         "nav2_controller/SimpleProgressChecker": lambda: ProgressChecker(declared(node, ProgressParameters, plugin)),

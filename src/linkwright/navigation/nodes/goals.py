@@ -1,4 +1,7 @@
-"""Action servers that execute one goal at a time; a new goal replaces the previous one, as in nav2's servers."""
+"""Action servers that execute one goal at a time, as in nav2.
+
+A new goal replaces the previous one.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +15,9 @@ from linkwright.navigation.nodes.managed import ManagedNode
 
 
 class GoalError(Exception):
-    """Raised when a goal cannot be reached; the message gives the reason.
+    """Raised when a goal cannot be reached.
+
+    The message gives the reason.
 
     Attributes:
         code: the name of nav2's error code.
@@ -24,7 +29,9 @@ class GoalError(Exception):
 
 
 class GoalServer:
-    """The action server of a managed node, which rejects goals while the node is not active.
+    """The action server of a managed node.
+
+    Goals are rejected while the node is not active.
 
     The code that executes the goal must check `is_canceled` regularly, and then call `canceled`.
 
@@ -66,7 +73,7 @@ class GoalServer:
     @property
     def goal(self) -> Any:
         """The goal message of the active goal."""
-        assert self.current is not None, "something is worked on"
+        assert self.current is not None, "there is an active goal"
         return self.current.request
 
     @property
@@ -75,7 +82,7 @@ class GoalServer:
         return self.current is not None and self.current.is_cancel_requested
 
     def feedback(self, **fields: Any) -> None:
-        """Publish feedback for the active goal; do nothing if there is none.
+        """Publish feedback for the active goal, if there is one.
 
         The arguments are the fields of the feedback.
         """
@@ -86,7 +93,10 @@ class GoalServer:
             self.current.publish_feedback(message)
 
     def succeed(self, **fields: Any) -> None:
-        """End the active goal with the status succeeded; the arguments are the fields of the result."""
+        """End the active goal with the status succeeded.
+
+        The arguments are the fields of the result.
+        """
         if (goal := self._take_active_goal()) is not None:
             goal.succeed(self._result("", "", fields))
 
@@ -111,7 +121,7 @@ class GoalServer:
 
     def destroy(self) -> None:
         """Abort the active goal, and destroy the action server."""
-        self.abort("UNKNOWN", "the server ends")
+        self.abort("UNKNOWN", "the server was destroyed")
         self._server.destroy()
 
     def _take_active_goal(self) -> ServerGoalHandle | None:
@@ -126,7 +136,7 @@ class GoalServer:
         return GoalResponse.ACCEPT if is_accepted else GoalResponse.REJECT
 
     def _on_accepted(self, goal: ServerGoalHandle) -> None:
-        self.abort("UNKNOWN", "another goal took its place")
+        self.abort("UNKNOWN", "another goal replaced it")
         goal.update(GoalEvent.EXECUTE)
         self.current = goal
         self._begin(goal)

@@ -1,4 +1,4 @@
-"""nav2's lifecycle_manager, which configures and activates managed nodes in order, and resets them if one dies.
+"""nav2's lifecycle_manager, which activates managed nodes, and resets them if one dies.
 
 The node has nav2's services, parameters, order and log lines. Deliberate differences: the manager waits for a response
 as long as the node exists, with a log line every ``service_timeout`` seconds, so that a slow machine does not cause a
@@ -170,7 +170,7 @@ class LifecycleManager(SingleNode):
             self._begin(self._run_exclusively(self._startup))
 
     def close(self) -> None:
-        """Close the manager; the managed nodes keep their states."""
+        """Close the manager, but keep the states of the managed nodes."""
         for task in self._tasks:
             task.cancel()
         for managed in self._managed_nodes:
@@ -215,7 +215,7 @@ class LifecycleManager(SingleNode):
         return response
 
     async def _run_exclusively(self, command: Callable[[], Coroutine[Any, Any, bool]]) -> bool:
-        """Run a command after all earlier commands have finished."""
+        """Run a command after all earlier commands have finished, and return whether it succeeded."""
         async with self._command_lock:
             return await command()
 

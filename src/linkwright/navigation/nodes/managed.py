@@ -1,4 +1,4 @@
-"""Base classes of nav2's servers: managed nodes with nav2's log lines and a bond to their manager."""
+"""Base classes of nav2's servers: managed nodes with nav2's log lines and a bond."""
 
 from __future__ import annotations
 
@@ -44,7 +44,10 @@ class ManagedNode(LifecycleNodeMixin, Node):
         self.declare()
 
     def declare(self) -> None:
-        """Declare the parameters; `configure` may declare more."""
+        """Declare the parameters.
+
+        `configure` may declare more.
+        """
 
     def configure(self) -> None:
         """Read the parameters, and create the topics."""
@@ -56,7 +59,10 @@ class ManagedNode(LifecycleNodeMixin, Node):
         """Stop the node's work."""
 
     def cleanup(self) -> None:
-        """Drop the objects that are not registered; `configure` may have failed halfway."""
+        """Drop the objects that are not registered.
+
+        This method is also called after `configure` has failed halfway.
+        """
 
     def register(self, resource: P) -> P:
         """Register an object that is destroyed when the node is cleaned up, and return the object."""
@@ -74,11 +80,14 @@ class ManagedNode(LifecycleNodeMixin, Node):
 
     @property
     def is_cycling(self) -> bool:
-        """Whether cycles are running, that is, `begin_cycles` was called and `end_cycles` was not called since."""
+        """Whether cycles are running: `end_cycles` was not called since `begin_cycles`."""
         return self._timer is not None
 
     def begin_cycles(self, period: float, cycle: Callable[[], object]) -> None:
-        """Call a function every `period` seconds of the node's clock; it replaces an earlier function."""
+        """Call a function every `period` seconds of the node's clock.
+
+        The function replaces an earlier one.
+        """
         self.end_cycles()
         self._timer = self.create_timer(period, cycle)
 
@@ -94,7 +103,7 @@ class ManagedNode(LifecycleNodeMixin, Node):
             self.trigger_activate()
 
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Run `configure`; after the first success, log parameters that are not known."""
+        """Run `configure`, and log unknown parameters after its first success."""
         self.get_logger().info("Configuring")
         try:
             self.configure()
@@ -130,7 +139,7 @@ class ManagedNode(LifecycleNodeMixin, Node):
         return super().on_deactivate(state)
 
     def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Run `cleanup` and destroy the registered parts."""
+        """Run `cleanup` and destroy the registered objects."""
         self.get_logger().info("Cleaning up")
         self._release()
         return super().on_cleanup(state)
@@ -191,7 +200,7 @@ class ManagedServer(SingleNode):
             node.autostart()
 
     def prepare(self, graph: Graph, options: NodeOptions) -> None:
-        """Prepare the node before it starts; does nothing by default."""
+        """Prepare the node before it starts. By default, do nothing."""
 
     def close(self) -> None:
         """Close the node and notify its manager."""

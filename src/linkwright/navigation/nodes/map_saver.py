@@ -41,7 +41,7 @@ _INVALID_ARGUMENT_STATUS = 255
 
 
 class _MapSaving:
-    """A receiver that saves a map; both programs use it."""
+    """A receiver that saves a map, shared by both programs."""
 
     def __init__(self, node: Node) -> None:
         self._node = node
@@ -52,7 +52,10 @@ class _MapSaving:
         self._is_latched: bool = declare("map_subscribe_transient_local", True).value
 
     def mode(self, text: str) -> MapMode:
-        """Return the mode with a name, or log a warning and return ``trinary`` if there is no such mode."""
+        """Return the mode with a name.
+
+        If there is no such mode, log a warning and return ``trinary``.
+        """
         try:
             return MapMode(text or MapMode.TRINARY.value)
         except ValueError:
@@ -106,7 +109,10 @@ class _MapSaving:
         return None
 
     async def _receive_map(self, topic: str) -> Any:
-        """Return the next message of a topic; log an error and return None if none arrives in time."""
+        """Return the next message of a topic.
+
+        If no message arrives in time, log an error and return None.
+        """
         node = self._node
         received: asyncio.Future[Any] = asyncio.get_running_loop().create_future()
 
@@ -124,7 +130,7 @@ class _MapSaving:
                 reason = (
                     f"no node publishes on '{subscription.name}'"
                     if not publisher_count
-                    else f"{publisher_count} publish on '{subscription.name}', but no map with a compatible QoS arrived"
+                    else f"'{subscription.name}' has publishers ({publisher_count}), but no map arrived: check the QoS"
                 )
                 node.get_logger().error(
                     f"Failed to spin map subscription: no map arrived within {self._timeout:g} s; {reason}"

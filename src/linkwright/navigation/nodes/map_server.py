@@ -1,4 +1,4 @@
-"""nav2's map_server, which publishes a map loaded from files, and returns it in a service.
+"""nav2's map_server, which loads a map from files, and provides it on a topic and a service.
 
 A difference from nav2 in Humble: as in Jazzy, the node can be configured without ``yaml_filename``, and serves a map
 once one is loaded.

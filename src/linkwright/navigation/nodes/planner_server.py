@@ -1,4 +1,6 @@
-"""nav2's planner_server, which plans paths for ``compute_path_to_pose`` and ``compute_path_through_poses``.
+"""nav2's planner_server, which plans paths to poses.
+
+The actions are ``compute_path_to_pose`` and ``compute_path_through_poses``.
 
 The node has nav2's parameters, topics, texts and results, for Humble and Jazzy. All types of planners are accepted, but
 they share one method (`linkwright.navigation.planning.planner`); a warning is logged for types that have another method
@@ -128,7 +130,10 @@ class PlannerNode(ManagedNode):
     # --- goals --------------------------------------------------------------------------------------------------------
 
     def _offer(self, kind: str, name: str, work: Callable[[Any], Work]) -> None:
-        """Create an action server; `work` returns the generator that computes the path for a request."""
+        """Create an action server that plans paths.
+
+        `work` returns the generator that computes the path for a request.
+        """
 
         def begin(goal: ServerGoalHandle) -> None:
             self._stop(name)

@@ -44,7 +44,7 @@ def type_of(node: Node, plugin: str, defaults: Mapping[str, str]) -> str:
             Diagnostic(
                 "NODE431",
                 phrase("'{node}' needs the parameter '{name}'", node=node.get_name(), name=name),
-                hint=phrase("it is the type of the plugin '{plugin}'", plugin=plugin),
+                hint=phrase("set it to the type of the plugin '{plugin}'", plugin=plugin),
             )
         )
     return str(type_name).replace("::", "/")

@@ -1,4 +1,7 @@
-"""Execution of long computations in slices on the event loop, between which other callbacks run."""
+"""Execution of long computations in slices on the event loop.
+
+Other callbacks run between the slices.
+"""
 
 from __future__ import annotations
 

@@ -90,7 +90,7 @@ class SmootherNode(ManagedNode):
             self._finish(request, path, poses, began_ns)
 
     def _finish(self, request: Any, path: Any, poses: Any, began_ns: int) -> None:
-        assert self._costmap is not None, "a path is smoothed on a costmap"
+        assert self._costmap is not None, "a goal is accepted only with a costmap"
         duration = Duration(nanoseconds=self.get_clock().now().nanoseconds - began_ns).to_msg()
         if request.check_for_collisions:
             costs = self._costmap.cost_at(poses[:, :2], outside=LETHAL)

@@ -1,4 +1,4 @@
-"""Managed nodes that execute a goal in steps; most steps are goals of other servers.
+"""Managed nodes that execute a goal in steps, mostly goals of other servers.
 
 A generator executes the goal. It is resumed once each cycle, so ``yield`` waits for the next cycle. It returns when the
 goal is reached, raises `StepError` when the goal cannot be reached, and is closed when the goal is canceled.
@@ -44,12 +44,12 @@ class StepNode(ManagedNode):
         """Start executing the goal of a server, and abort an earlier goal of another server."""
         self._stop()
         if self._server is not None and self._server is not server:
-            self._server.abort("UNKNOWN", "another goal took its place")
+            self._server.abort("UNKNOWN", "another goal replaced it")
         self._server, self._work = server, work
         self.begin_cycles(_PERIOD, self._cycle)
 
     def publish_feedback(self, server: GoalServer) -> None:
-        """Publish the feedback for the active goal; called each cycle."""
+        """Publish the feedback for the active goal, once per cycle."""
 
     def result(self) -> dict[str, Any]:
         """Return the fields of the result message, by name."""
@@ -125,7 +125,7 @@ class StepNode(ManagedNode):
             self.publish_feedback(server)
 
     def _stop(self) -> None:
-        """Stop the cycles and close the generator, which cancels goals at other servers."""
+        """Stop the cycles, close the generator, and so cancel goals at other servers."""
         work, self._work = self._work, None
         if work is not None:
             work.close()
@@ -171,7 +171,7 @@ class SentGoal:
         return self.is_over and not self.has_succeeded
 
     def reason(self, summary: str) -> str:
-        """Return a failure message: `summary`, followed by the server's error message if there is one (Jazzy)."""
+        """Return a failure message: `summary` and the server's error message, if there is one."""
         message = getattr(self.result, "error_msg", "")
         return f"{summary}: {message}" if message else summary
 

@@ -1,4 +1,4 @@
-"""nav2's velocity_smoother, which forwards ``cmd_vel`` within limits to ``cmd_vel_smoothed``.
+"""nav2's velocity_smoother, which limits ``cmd_vel`` and publishes ``cmd_vel_smoothed``.
 
 The node is managed; parameters, defaults and rules are those of nav2. Deliberate differences: unless
 ``enable_stamped_cmd_vel`` is set, the node accepts Twist and TwistStamped, and publishes the type that subscribers
@@ -124,7 +124,10 @@ class _ManagedSmoother(ManagedNode):
         return SetParametersResult(successful=problem is None, reason="" if problem is None else str(problem))
 
     def _follow(self) -> None:
-        """Apply changed parameters to the configured node; the topics stay the same."""
+        """Apply changed parameters to the configured node.
+
+        The topics stay the same.
+        """
         if self._output is not None:
             old_frequency = self._frequency
             self._read()
@@ -217,7 +220,10 @@ class _ManagedSmoother(ManagedNode):
 
 
 class VelocitySmoother(ManagedServer):
-    """The running velocity_smoother node, which becomes active at the start if ``autostart_node`` is set."""
+    """The running velocity_smoother node.
+
+    The node becomes active at the start if ``autostart_node`` is set.
+    """
 
     NODE = _ManagedSmoother
     DEFAULT_NAME = "velocity_smoother"

@@ -1,4 +1,4 @@
-"""Smoothing of velocities by limits of speed and acceleration, as in nav2's velocity smoother."""
+"""Smoothing of velocities within limits of speed and acceleration, as in nav2."""
 
 from __future__ import annotations
 

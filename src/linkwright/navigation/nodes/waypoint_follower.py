@@ -1,4 +1,4 @@
-"""nav2's waypoint_follower, which navigates to poses in turn and waits at each pose (``follow_waypoints``).
+"""nav2's waypoint_follower, which navigates to poses in turn (``follow_waypoints``).
 
 A deliberate difference: waiting is the only supported task at waypoints; other tasks are skipped with a log line.
 """
@@ -91,7 +91,10 @@ class WaypointNode(StepNode):
             yield
 
     def _missed_waypoint(self, pose: Any, reason: str) -> Any:
-        """Return the result's item for the current waypoint: an index in Humble, and a message since Iron."""
+        """Return the result's item for the current, missed waypoint.
+
+        The item is an index in Humble, and a message since Iron.
+        """
         if is_before_iron():
             return self._index
         return get_message("nav2_msgs/msg/MissedWaypoint")(index=self._index, goal=pose, error_msg=reason)

@@ -1,6 +1,6 @@
-"""The server side of nav2's panel (nav2_rviz_plugins, "Navigation 2"): states, goal progress and commands.
+"""The server side of nav2's panel: states, goal progress and commands.
 
-The names of services and topics and the functions of the buttons are the same as in nav2's panel.
+Services, topics and buttons are the same as in nav2's panel (nav2_rviz_plugins, "Navigation 2").
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The page features of navigation, which are created on demand."""
+"""The page features of navigation, created on demand."""
 
 from linkwright.panels.page_feature import OnDemand, messages
 

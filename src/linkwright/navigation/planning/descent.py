@@ -109,7 +109,9 @@ def _difference(previous: float, current: float, following: float) -> float:
 
 
 def descend(costs: Floats, source: Cell, begin: Place) -> Generator[None, None, NDArray[np.float64]]:
-    """Extract a path by descent on a potential; yields regularly so that other callbacks can run.
+    """Extract a path by descent on a potential.
+
+    The generator yields regularly, so that other callbacks can run.
 
     Args:
         costs: a potential (see `potential`).

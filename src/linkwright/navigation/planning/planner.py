@@ -72,7 +72,9 @@ class Settings:
 
 
 def plan(costmap: Costmap, start: Pose, goal: Pose, settings: Settings) -> Generator[None, None, NDArray[np.float64]]:
-    """Plan a path; yields regularly so that other callbacks can run.
+    """Plan a path.
+
+    The generator yields regularly, so that other callbacks can run.
 
     The costmap must not change before the generator ends.
 
@@ -159,7 +161,9 @@ def _open_escape(prices: Floats, costmap: Costmap, cell: Cell, start: Pose) -> N
 def _nearest_reachable_cell(
     costs_to_start: Floats, costmap: Costmap, goal: Pose, cell: Cell, settings: Settings
 ) -> Cell:
-    """Return the reachable cell nearest to a goal, within the tolerance and on the same side of obstacles.
+    """Return the reachable cell nearest to a goal, within the tolerance.
+
+    No obstacle is between the cell and the goal.
 
     Raises:
         PlanError: there is no such cell.
@@ -186,7 +190,7 @@ def _nearest_reachable_cell(
 
 
 def _thin_path(path_cells: NDArray[np.float64], prices: Floats) -> NDArray[np.float64]:
-    """Drop every second point of a path if the straight line between its neighbours avoids unreachable cells."""
+    """Drop every second point of a path where a straight line avoids unreachable cells."""
     cells = np.floor(path_cells).astype(np.int64)
     dropped = np.arange(1, len(path_cells) - 1, 2)
     previous, following = cells[dropped - 1], cells[dropped + 1]

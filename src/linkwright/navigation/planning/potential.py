@@ -76,7 +76,7 @@ def potential(
     costs = np.full(prices.size, np.inf)
     update_bounds = np.where(
         prices < np.inf, np.inf, -np.inf
-    )  # Like `least`, except that obstacles can never become cheaper.
+    )  # Like `costs`, except that obstacles can never become cheaper.
     last_positions = np.zeros(prices.size, np.intp)
     offsets = np.array([[-1], [1], [-width], [width]])
     start_index = (source[0] + 1) * width + source[1] + 1

@@ -1,4 +1,4 @@
-"""Smoothing of paths, which moves points towards the middle of their neighbours.
+"""Smoothing of paths: each point moves towards the middle of its neighbours.
 
 Points stay near their original positions.
 
@@ -50,8 +50,8 @@ def smoothed(points: Points, smoothing: Smoothing, costmap: Costmap | None = Non
         costmap: the costmap whose obstacles are avoided; None for no obstacles.
 
     Returns:
-        The smoothed points, of the same shape, with the same first and last point; and whether obstacles prevented no
-        point from moving.
+        The smoothed points, of the same shape, with the same first and last point; and whether all points could move
+        without a collision.
     """
     result, complete = points, True
     pass_count = 1 + (smoothing.refinement_num if smoothing.do_refinement else 0)

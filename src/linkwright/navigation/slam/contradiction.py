@@ -1,4 +1,7 @@
-"""Detection of contradictory poses of two scans, in which rays of a scan pass through points of the other."""
+"""Detection of contradictory poses of two scans.
+
+Poses are contradictory if rays of one scan pass through points of the other.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A mapper that computes the map and the robot's pose from laser scans and odometry, as in slam_toolbox (Karto).
+"""A mapper, as in slam_toolbox (Karto): map and pose from laser scans and odometry.
 
 As in Karto, some scans become nodes of a pose graph. Each new node is matched against the latest scans, linked to
 nearby scans of earlier passes, and matched against scans farther away to close a loop.
@@ -85,20 +85,23 @@ class Mapper:
 
     @property
     def latest_ns(self) -> int:
-        """The time of the last processed scan in nanoseconds; 0 before the first scan."""
+        """The time of the last processed scan in nanoseconds, or 0 before the first scan."""
         return 0 if self._last_processed is None else self._last_processed[1]
 
     def replace(self, graph: PoseGraph, scans: list[PlanarScan], odometry: list[Floats]) -> None:
-        """Replace the graph, and erase the old scans from the map; the new scans are not drawn yet."""
+        """Replace the graph, and erase the old scans from the map.
+
+        The new scans are not drawn yet.
+        """
         for number in range(len(self.scans)):
             self.occupancy.erase(number)
         self.graph, self.scans, self.odometry = graph, scans, odometry
         self.begin_session(None)
 
     def begin_session(self, pose: Floats | None) -> None:
-        """Start a new session; its first scan is matched around a pose.
+        """Start a new session at a pose.
 
-        Scans of earlier sessions no longer count as the latest scans.
+        The first scan is matched around this pose. Scans of earlier sessions no longer count as the latest scans.
 
         Args:
             pose: the expected pose, of shape (3,); None for the pose of the graph's first scan.
@@ -112,7 +115,7 @@ class Mapper:
             self._map_pose = self.graph.poses[0].copy()
 
     def should_process(self, odometry: Floats, stamp_ns: int, since: tuple[Floats, int] | None = None) -> bool:
-        """Return whether enough time has passed and the robot moved far enough since the last scan.
+        """Return whether enough time has passed and the robot has moved or turned enough.
 
         Args:
             odometry: the odometry pose at the scan, of shape (3,).
@@ -193,7 +196,10 @@ class Mapper:
         return _outcome(self._map_pose, information, best_match)
 
     def redraw(self) -> Steps[None]:
-        """Draw the scans that are missing in the map or whose poses changed; each scan is a step."""
+        """Draw the scans that are not in the map yet or whose poses changed.
+
+        Each scan is a step.
+        """
         tolerance = _REDRAW_SHARE * self.occupancy.resolution
         for number, scan in enumerate(self.scans):
             pose, drawn_pose = self.graph.poses[number], self.occupancy.drawn_at(number)

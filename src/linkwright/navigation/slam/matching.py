@@ -84,7 +84,7 @@ def match(
 
 
 def _refine(reference: Reference, scan: PlanarScan, guess: Floats, start: Floats, response: float) -> Match:
-    """Refine a pose by point-to-line ICP with Cauchy weights.
+    """Return the match at a pose, refined by point-to-line ICP with Cauchy weights.
 
     Source: Censi, "An ICP variant using a point-to-line metric", 2008.
     """

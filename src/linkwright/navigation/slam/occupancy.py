@@ -1,4 +1,4 @@
-"""The occupancy grid computed from scans, by counting the rays that pass through each cell or end in it.
+"""An occupancy grid computed from the rays that pass through each cell or end in it.
 
 Source: Karto's occupancy grid, with its parameters ``min_pass_through`` and ``occupancy_threshold``.
 """
@@ -22,7 +22,7 @@ Cells = NDArray[np.int64]
 
 @dataclass(slots=True, eq=False)
 class _Trace:
-    """The ray counts of one scan: the cells (row, column) without duplicates, with their passes and hits."""
+    """The ray counts of one scan: distinct cells (row, column), with their passes and hits."""
 
     pose: Floats
     cells: Cells

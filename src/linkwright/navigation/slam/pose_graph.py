@@ -53,7 +53,10 @@ class PoseGraph:
     def add_edge(
         self, first: int, second: int, measured: Floats, information: Floats, *, doubtful: bool = False
     ) -> None:
-        """Add a measured relative pose between two nodes; the arguments are described at the class."""
+        """Add a measured relative pose between two nodes.
+
+        The arguments have the same names as the attributes of the class.
+        """
         self.first.append(first)
         self.second.append(second)
         self.measured.append(measured)

@@ -1,4 +1,7 @@
-"""Poses in the plane, as arrays (x, y, yaw) in metres and radians, of shape (3,) or (..., 3)."""
+"""Poses in the plane, as arrays (x, y, yaw) of shape (3,) or (..., 3).
+
+Units are metres and radians.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Earlier scans, prepared for matching: their points, the directions of their walls, and a likelihood field."""
+"""Earlier scans, prepared for matching: points, wall directions and a likelihood field."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ class Reference:
         return len(self.points)
 
     def find_lines(self) -> None:
-        """Compute the directions of walls from each point's neighbours, which `nearest` requires."""
+        """Compute the direction of the wall at each point, as required by `nearest`."""
         self._tree = load_scipy("spatial").cKDTree(self.points)
         count = min(_NEIGHBOURS, len(self.points))
         distances, indices = self._tree.query(self.points, k=count)
@@ -75,7 +75,7 @@ class Reference:
         self._flatness: Floats = flatness if count >= 3 else np.zeros(len(self.points))
 
     def nearest(self, points: Floats) -> tuple[Floats, NDArray[np.int64], Floats, Floats, Floats]:
-        """Return the nearest reference point of each point; `points` has shape (n, 2).
+        """Return the nearest reference point of each of the points, of shape (n, 2).
 
         Returns:
             Distances (n,), indices (n,), positions (n, 2), normals of the wall towards the sensor (n, 2), and the

@@ -40,8 +40,8 @@ def planar_scan(
 ) -> PlanarScan:
     """Convert the ranges of a laser to points.
 
-    As in Karto, a range that is not measured (NaN, infinite, 0, outside the laser's own limits) is ignored, and a range
-    beyond the mapper's maximum marks the ray up to the maximum as free.
+    As in Karto, a range that is not measured (NaN, infinite, 0, outside the laser's own limits) or below the mapper's
+    minimum is ignored, and a range beyond the mapper's maximum marks the ray up to the maximum as free.
 
     Args:
         ranges: the ranges in metres, of shape (n,).

@@ -56,7 +56,10 @@ class Search:
 
     @property
     def cell(self) -> float:
-        """The side of a cell of the search in metres: the resolution, but at least half of `smear_deviation`."""
+        """The side of a cell of the search, in metres.
+
+        The side is the resolution, but at least half of `smear_deviation`.
+        """
         return max(self.resolution, self.smear_deviation / 2)
 
 
@@ -74,7 +77,7 @@ class _Blocks:
 
 
 class _Window:
-    """The poses around a guess, which are rated in blocks."""
+    """The poses around a guess, rated in blocks."""
 
     def __init__(self, likelihood: Likelihood, points: Floats, guess: Floats, search: Search) -> None:
         self._likelihood, self._search = likelihood, search

@@ -10,7 +10,7 @@ from linkwright.navigation.slam.search import Search
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MapperSettings:
-    """Settings of a mapper; lengths are in metres, angles in radians, times in seconds.
+    """Settings of a mapper, in metres, radians and seconds.
 
     Attributes:
         use_scan_matching: whether scans are matched to earlier scans; otherwise odometry alone is used.

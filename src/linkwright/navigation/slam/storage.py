@@ -34,7 +34,7 @@ _MAX_FILE_BYTES = 1 << 30
 
 
 def path_of(name: str) -> Path:
-    """Return the path of a graph's file; adds the extension if the name lacks it."""
+    """Return the path of a graph's file, with the extension."""
     return Path(name if name.endswith(EXTENSION) else name + EXTENSION)
 
 

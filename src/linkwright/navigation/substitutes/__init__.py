@@ -1,1 +1,1 @@
-"""Substitutes for the navigation packages that launch files include, with their share directories."""
+"""Substitutes for navigation packages that launch files use, with share directories."""

@@ -1,4 +1,4 @@
-"""Code shared by nav2_bringup's launch files, which start servers and their lifecycle manager.
+"""Code of nav2_bringup's launch files that start servers and their lifecycle manager.
 
 Launch files import this module, and it imports the same launch modules as they do.
 """
@@ -23,10 +23,10 @@ _RESPAWN_SECONDS = 2.0
 ARGUMENTS: Mapping[str, tuple[str, str]] = {
     "namespace": ("", "Namespace of all nodes"),
     "use_sim_time": ("false", "Whether to use simulated time"),
-    "autostart": ("true", "Whether the servers are activated at once"),
+    "autostart": ("true", "Whether the servers are activated at the start"),
     "use_composition": ("False", "Whether the servers are composed in a container"),
-    "container_name": ("nav2_container", "The container they are composed in"),
-    "use_respawn": ("False", "Whether a server that dies is started again, where it is not composed"),
+    "container_name": ("nav2_container", "The name of the container"),
+    "use_respawn": ("False", "Whether to restart a server that dies, unless it is composed"),
     "log_level": ("info", "The log level"),
 }
 """The arguments of launch files that start servers: name -> default, description."""

@@ -1,4 +1,4 @@
-"""mux and demux of topic_tools: forward one of several inputs, or forward to one of several outputs."""
+"""mux and demux of topic_tools: forward one of several inputs, or to one of several outputs."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from linkwright.nodes.settings import bad_value, declare_required
 from linkwright.nodes.topic_tools.tool import TopicTool
 
 NO_TOPIC = "__none"
-"""The name that means that no topic is selected."""
+"""The name that represents no selected topic."""
 
 
 class _Switch(TopicTool):

@@ -1,4 +1,4 @@
-"""relay, throttle, drop and delay of topic_tools: forward all or some messages, some with a delay."""
+"""relay, throttle, drop and delay of topic_tools, which forward all or some messages."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ class Relay(_InputToOutput):
 
 
 class Throttle(_InputToOutput):
-    """The running throttle node, which limits the messages or bytes per second and drops the rest.
+    """The running throttle node, which limits messages or bytes per second and drops the rest.
 
     Raises:
         LinkwrightError: a parameter is missing (NODE431) or invalid (NODE433), or an argument is invalid (NODE432).

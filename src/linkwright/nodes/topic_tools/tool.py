@@ -1,4 +1,4 @@
-"""The base class of topic_tools' nodes, which publish an output topic with the same type as the input topic.
+"""The base class of topic_tools' nodes. Their output topic has the type of the input topic.
 
 There are three differences from topic_tools 1.3. Changes of the graph are handled immediately instead of within 100 ms.
 If a source returns with another type, the node subscribes to it again. If the publisher of the last velocity
@@ -102,7 +102,10 @@ class TopicTool(SingleNode, ABC):
         return subscription
 
     def _stop_output(self, lost_publisher: EndpointInfo) -> None:
-        """Publish a stop if the output is a velocity topic; called after the input's publisher has disappeared."""
+        """Publish a stop if the output is a velocity topic.
+
+        This is called after the input's publisher has disappeared.
+        """
         if self._publisher is not None and self._publisher.type_name in VELOCITIES:
             send_stop(self._node, self._publisher, lost_publisher)
 

@@ -38,7 +38,7 @@ class Folder:
 
 @dataclass(frozen=True)
 class File:
-    """A file to write, relative to the package's folder; `announced` is whether its creation is reported."""
+    """A file to write, relative to the package's folder. If `announced` is true, its creation is reported."""
 
     path: Path
     text: str

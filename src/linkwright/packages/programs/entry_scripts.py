@@ -16,7 +16,7 @@ from linkwright.packages.programs.child_python import python_command
 from linkwright.packages.readers.entry_points import EntryPoint
 
 _MAX_INTERPRETER_LINE = 120
-"""The maximum length of the interpreter line in characters; operating systems truncate longer lines."""
+"""The maximum length of the interpreter line in characters. Operating systems truncate longer lines."""
 
 
 def script_for(package: str, name: str, entry: EntryPoint, roots: Sequence[Path]) -> Path:

@@ -1,4 +1,4 @@
-"""Reader for the install rules of a ``CMakeLists.txt``, which does not need CMake.
+"""Reader for the install rules of a ``CMakeLists.txt``, without CMake.
 
 In packages of descriptions, launch files, scripts and interfaces, CMake compiles nothing and only copies files.
 """
@@ -355,7 +355,7 @@ def _build_path(word: str, program: CMakeProgram) -> str:
 
 
 def _read_hooks(file: CMakeFile, command: Command, program: CMakeProgram) -> None:
-    """Record the environment hooks, which are copied or, from a template ``.in``, generated."""
+    """Record the environment hooks that are copied or, from a template ``.in``, generated."""
     for word in command.words:
         if is_open(word):
             continue
@@ -410,7 +410,7 @@ def _read_install(file: CMakeFile, command: Command) -> None:
 
 
 def _add_rule(file: CMakeFile, rule: CopyRule, command: Command) -> None:
-    """Add an install rule; items that only CMake can evaluate are omitted."""
+    """Add an install rule without the items that only CMake can evaluate."""
     known_items = tuple(
         Argument(within_package(item.text, command.folder), item.start, item.end, item.source)
         for item in rule.items

@@ -29,7 +29,7 @@ _COMMAND_FAMILIES = lazy_pattern(
     r"|python3?_add_\w+|moveit_package|xacro_add_files|add_(message|service|action)_files"
     r"|add_\w*(test|gmock)\w*"
 )
-"""Commands by prefix; commands that install files, such as ``ament_python_install_package``, are evaluated."""
+"""Commands by prefix. Those that install files, such as ``ament_python_install_package``, are evaluated."""
 
 
 def has_known_effect(command: str) -> bool:

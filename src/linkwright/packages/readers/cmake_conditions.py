@@ -24,7 +24,7 @@ _BINARY_OPERATORS = frozenset({"MATCHES", "IN_LIST"}) | {
 }
 _MAX_TOKENS = 200
 _SEARCH_TIMEOUT = 0.2
-"""The maximum time in seconds to match a regular expression, which may come from an untrusted file."""
+"""The maximum time in seconds to match a regular expression, because it may come from an untrusted file."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,7 +41,7 @@ class Word:
 
     @property
     def keyword(self) -> str:
-        """The text of the word as an operator; empty if it is quoted."""
+        """The text of the word as an operator, or an empty string if it is quoted."""
         return "" if self.is_quoted else self.text
 
 

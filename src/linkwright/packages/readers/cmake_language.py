@@ -101,7 +101,7 @@ class Command:
 
 
 class _LimitExceededError(Exception):
-    """Raised when a file runs too many commands or a text is too long; the argument names the command or text."""
+    """Raised when a file runs too many commands or a text is too long. The argument names the command or text."""
 
 
 @dataclass(slots=True)
@@ -113,7 +113,7 @@ class _Routine:
 
 @dataclass(slots=True)
 class CMakeProgram:
-    """An interpreter for a ``CMakeLists.txt``, which does not need CMake.
+    """An interpreter for a ``CMakeLists.txt``, without CMake.
 
     Args:
         package: the folder of the package, in which subdirectories, included files and matches of patterns are
@@ -199,7 +199,7 @@ class CMakeProgram:
             yield from self._run_foreach(words, body)
 
     def _run_branches(self, opening: Statement, body: Sequence[Statement]) -> Iterator[Command]:
-        """Yield the commands of the first true branch, and of the preceding branches with unknown conditions."""
+        """Yield the commands of the first true branch and of preceding branches with unknown conditions."""
         is_uncertain = False
         for condition, branch in branches(opening, body):
             is_true = True if condition is None else self._evaluate_condition(condition)

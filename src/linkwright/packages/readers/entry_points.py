@@ -18,7 +18,7 @@ PROGRAMS = "console_scripts"
 """The group of the programs that a package installs."""
 
 LINE = lazy_pattern(r"\s*([^\s=]+)\s*=\s*([\w.]+)\s*(?::\s*([\w.]+))?")
-"""Name, module and attribute of an entry point; the attribute may be missing."""
+"""The name and module of an entry point, and its attribute if there is one."""
 
 
 class EntryPoint(NamedTuple):

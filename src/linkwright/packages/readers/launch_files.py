@@ -172,7 +172,7 @@ def _place(python: PythonFile, node: ast.expr | None) -> Place | None:
 
 
 class _PathReader(ast.NodeVisitor):
-    """Finds the paths in share folders that are not part of longer paths."""
+    """A visitor that finds the paths in share folders that are not part of longer paths."""
 
     def __init__(self, python: PythonFile, facts: LaunchFile) -> None:
         self._python = python

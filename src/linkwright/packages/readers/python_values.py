@@ -81,7 +81,7 @@ class PythonFile:
 
     @cached_property
     def _assignments(self) -> dict[str, ast.expr | None]:
-        """Name -> the expression assigned to it; None for several assignments or a complex target."""
+        """Name -> the expression assigned to it, or None for several assignments or a complex target."""
         bindings: dict[str, ast.expr | None] = {}
         for node in ast.walk(self.tree):
             _record_bindings(node, bindings)

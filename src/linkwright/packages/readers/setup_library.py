@@ -106,7 +106,7 @@ class PackageLibrary:
     """
 
     def __init__(self, folder: Path) -> None:
-        self._folder = Path(os.path.abspath(folder))  # noqa: PTH100 - links stay
+        self._folder = Path(os.path.abspath(folder))  # noqa: PTH100 - do not resolve links
         path_functions: dict[str, Callable[..., Any]] = {
             **{
                 name: getattr(posixpath, name)

@@ -1,4 +1,4 @@
-"""Reader for the syntax tree of a ``setup.py``, which returns the installed files.
+"""Reader for the installed files in the syntax tree of a ``setup.py``.
 
 A ``setup.py`` is read for each ``$(find PACKAGE)`` in sources. To save time, the records in this module and in the
 modules that it imports are named tuples or plain classes, which Python creates six times as fast as data classes.
@@ -145,7 +145,7 @@ def syntax_problem(source: SourceText, error: SyntaxError | ValueError) -> Synta
 
 
 class _DataFilesReader:
-    """Reads the entries of ``data_files`` into the facts of a ``setup.py``."""
+    """A reader of the entries of ``data_files`` into the facts of a ``setup.py``."""
 
     def __init__(self, python: PythonFile, facts: SetupFile) -> None:
         self._python = python

@@ -69,7 +69,7 @@ class _CannotContinueError(Exception):
 
 
 class _ExitError(Exception):
-    """Raised to execute ``break``, ``continue`` or ``return``; `value` is the returned value."""
+    """Raised to execute ``break``, ``continue`` or ``return`` with the returned `value`."""
 
     def __init__(self, kind: str, value: Any = None) -> None:
         super().__init__(kind)

@@ -1,4 +1,4 @@
-"""The comparison of two descriptions in one scene: their differences, and the links to highlight."""
+"""The comparison of two descriptions in one scene: differences, and links to highlight."""
 
 from __future__ import annotations
 
@@ -22,7 +22,10 @@ class ComparedRobot(Record):
 
 
 class ComparedPlace(Record):
-    """A 1-based position in a source text: a text for users, and the file and line for the Source panel."""
+    """A 1-based position in a source text.
+
+    `text` is for users, `file` and `line` are for the Source panel.
+    """
 
     text: str
     file: str

@@ -15,7 +15,7 @@ RowDetails = Literal["frame", "link", "joint", "effort"]
 
 
 class TopicOffer(Record):
-    """The topics offered for a row: topics of one of the types with a name that contains one of the words.
+    """The topics that a row offers: topics of these types, with one of these words in the name.
 
     If there are no words, topics with any name are offered.
     """
@@ -28,10 +28,10 @@ class Property(Record):
     """A row of a property tree, as RViz shows it.
 
     `id` is unique in the page and stable for the lifetime of a display. Colours are ``#rrggbb``. A `group` has no
-    value; a row of any other kind may also have children (``Line Style`` > ``Line Width``).
+    value. A row of any other kind may also have children (``Line Style`` > ``Line Width``).
 
     A row with `details` has the name of a frame, link or joint. The page adds read-only rows below it, such as
-    ``Position`` and ``Orientation`` as in RViz, because the page knows the current pose.
+    ``Position`` and ``Orientation`` as in RViz, because the page has the current pose.
 
     A `topic` without `topics` offers the topics that the display can show.
     """
@@ -83,13 +83,13 @@ class Display(Record):
     `group` is the ID of the group that contains the display, a ``rviz_common/Group`` that precedes it. `enabled` is
     the check box of the display. The display is drawn if the check boxes of all enclosing groups are also on.
 
-    `supported` is false for a class that this program does not draw; such a display stays in the file and is listed as
+    `supported` is false for a class that this program does not draw. Such a display stays in the file and is listed as
     unsupported. Rows of particular classes:
 
     - RobotModel: a shape is drawn with the alpha of its colour, times ``Alpha``, times the link's ``Alpha`` below
       ``Links``. The row of a link with shapes is a ``bool`` (draw the shapes); the row of any other link is a
       ``group``.
-    - TF: a frame is drawn if it has a row below ``Frames`` and the row is on; frames excluded by the filters have no
+    - TF: a frame is drawn if it has a row below ``Frames`` and the row is on. Frames excluded by the filters have no
       row.
 
     The page applies the ``Update Interval`` (seconds between updates, 0 for every frame) of both classes.
@@ -108,7 +108,10 @@ class Display(Record):
 
 
 class Tree(ServerMessage):
-    """The complete tree of displays, sent at the start and when displays are added, removed or moved."""
+    """The complete tree of displays.
+
+    It is sent at the start, and when displays are added, removed or moved.
+    """
 
     global_options: list[Property]
     global_status: list[StatusRow]
@@ -200,7 +203,7 @@ class DisplayClass(Record):
 
 
 class TopicChoice(Record):
-    """A topic of the graph, its message type, and the display classes that can show it, if any."""
+    """A topic of the graph, its message type, and the display classes that can show it."""
 
     topic: str
     message: str
@@ -208,14 +211,14 @@ class TopicChoice(Record):
 
 
 class DisplayChoices(ServerMessage):
-    """The display classes that can be added, and the topics; response to `AskDisplayChoices`."""
+    """The display classes that can be added, and the topics. Response to `AskDisplayChoices`."""
 
     classes: list[DisplayClass]
     topics: list[TopicChoice]
 
 
 class Folder(ServerMessage):
-    """The folders and configuration files in a server folder, by name; response to `AskFolder`."""
+    """The folders and configuration files in a server folder, by name. Response to `AskFolder`."""
 
     path: str
     parent: str | None
@@ -224,7 +227,7 @@ class Folder(ServerMessage):
 
 
 class ConfigurationText(ServerMessage):
-    """The text of the configuration as it would be saved, and a file name for it.
+    """The text of the configuration, as for saving, and a file name.
 
     Response to `AskConfigurationText`.
     """
@@ -306,11 +309,14 @@ class Redo(PageMessage):
 
 
 class AskDisplayChoices(PageMessage):
-    """A request for `DisplayChoices`: the classes that can be added, and the topics that they can show."""
+    """A request for the classes that can be added and the topics that they can show."""
 
 
 class AskFolder(PageMessage):
-    """A request for the contents of a folder of the server; None for the folder of the open file."""
+    """A request for the contents of a folder of the server.
+
+    None means the folder of the open file.
+    """
 
     path: str | None
 
@@ -347,7 +353,7 @@ class RevertConfiguration(PageMessage):
 
 
 class SaveConfiguration(PageMessage):
-    """A request to save to a file on the server, which becomes the configuration's file.
+    """A request to save to a file on the server. It becomes the configuration's file.
 
     Attributes:
         path: a path that ends in ``.rviz``; None for the current file.
@@ -381,6 +387,6 @@ class Panels(ServerMessage):
 
 
 class ShowPanels(PageMessage):
-    """The open panels, sent after the user has opened or closed a panel; the file stores them."""
+    """The open panels, sent after the user has opened or closed a panel. The file stores them."""
 
     shown: list[PanelName]

@@ -42,7 +42,7 @@ class GiveArguments(PageMessage):
 
 
 class CallSite(Record):
-    """A call of a macro or, if the macro is empty, an include of a file; 1-based."""
+    """A macro call or, if `macro` is empty, an include of a file. The position is 1-based."""
 
     macro: str | None
     file: str
@@ -64,10 +64,10 @@ class SourceRange(Record):
 
 
 class Written(Record):
-    """The positions of an element in the expanded text and in its file, with the calls that led to it.
+    """The positions of an element in the expanded text and in its file, and the calls behind it.
 
     `origin` is None if only the position in the expanded text is known. `calls` lists macro calls and includes,
-    beginning with the innermost; if there are very many, the outermost are omitted.
+    beginning with the innermost. If there are very many, the outermost are omitted.
     """
 
     expanded: SourceRange | None
@@ -76,7 +76,7 @@ class Written(Record):
 
 
 class LinkInertia(Record):
-    """The mass of a link in kg, its centre of mass in the link frame in metres, and its equivalent box.
+    """The mass of a link in kg, its centre of mass in its frame in m, and its equivalent box.
 
     `box` has the edge lengths in m of the uniform box with the same inertia, and `quaternion` is the orientation of
     the box in the link. `box` is empty if no body can have this inertia.
@@ -89,7 +89,7 @@ class LinkInertia(Record):
 
 
 class LinkDetails(Record):
-    """A link of the description; `frame` is the name of the link's tf frame."""
+    """A link of the description. `frame` is the name of the link's tf frame."""
 
     name: str
     frame: str
@@ -136,7 +136,7 @@ class JointDetails(Record):
 
 
 class Description(ServerMessage):
-    """The description of the robot of a RobotModel display; response to `AskDescription`.
+    """The description of the robot of a RobotModel display. Response to `AskDescription`.
 
     Links are in file order. `files` are the source files of the description, beginning with the main file.
     """
@@ -153,7 +153,7 @@ class Description(ServerMessage):
 
 
 class DescriptionChanged(ServerMessage):
-    """The notice that a display shows a new description, with the links and joints that have changed."""
+    """The notice of a new description in a display, with the links and joints that changed."""
 
     NEWEST_OF: ClassVar[tuple[str, ...]] = ("display",)
 
@@ -187,7 +187,7 @@ class InertiaFinding(Record):
 
 
 class InertiaFindings(ServerMessage):
-    """All findings about a robot's masses and inertias; response to `AskInertia`."""
+    """All findings about a robot's masses and inertias. Response to `AskInertia`."""
 
     NEWEST_OF: ClassVar[tuple[str, ...]] = ("display",)
 
@@ -203,7 +203,7 @@ class AskDescription(PageMessage):
 
 
 class AskDescriptionText(PageMessage):
-    """A request for a text of a description; an empty `file` means the expanded text.
+    """A request for a text of a description. An empty `file` means the expanded text.
 
     If `display` is empty, `file` is a file that a diagnostic refers to.
     """
@@ -213,7 +213,7 @@ class AskDescriptionText(PageMessage):
 
 
 class AskInertia(PageMessage):
-    """A request for the findings about masses and inertias, which take a while to compute."""
+    """A request for the findings about masses and inertias. Their computation takes a while."""
 
     display: str
 
@@ -228,7 +228,7 @@ class DiagnosticNote(Record):
 
 
 class DiagnosticItem(Record):
-    """A diagnostic for the page; `excerpt` is the source line if available."""
+    """A diagnostic for the page. `excerpt` is the source line if available."""
 
     code: str
     severity: Literal["error", "warning", "info"]
@@ -244,6 +244,6 @@ class DiagnosticItem(Record):
 
 
 class Diagnostics(ServerMessage):
-    """The current findings about the description; the list is empty if there are none."""
+    """The current findings about the description. The list is empty if there are none."""
 
     items: list[DiagnosticItem]

@@ -6,10 +6,11 @@ from linkwright.page.protocol.message import Bytes, DataContent, Floats
 
 
 class SolidBoxes(DataContent):
-    """Boxes of the displays Detection3D, BoundingBox3D and their arrays, in the frame of the content.
+    """Boxes of Detection3D, BoundingBox3D and their arrays, in the frame of the content.
 
-    `poses` has shape (N, 7), x y z (metres) qx qy qz qw of the box centres; `sizes` (N, 3), metres; `colors` (N, 3),
-    RGB; `scores` (N,), 0 to 1, and -1 if unknown; `names` contains the class names.
+    `poses` has shape (N, 7): x y z (metres) qx qy qz qw of the box centres. `sizes` has shape (N, 3), in metres.
+    `colors` has shape (N, 3), RGB. `scores` has shape (N,), from 0 to 1, and -1 if unknown. `names` contains the class
+    names.
     """
 
     poses: Floats

@@ -1,4 +1,4 @@
-"""Editing of a robot: the editable parts, the text changes of an edit, and writing and undoing edits.
+"""Editing of a robot: editable parts, previews of text changes, writing, undo and redo.
 
 Positions are in metres and angles in radians, in the parent link's frame for a joint, and in the link's frame for a
 visual, a collision or an inertial. An axis is in its joint's frame.
@@ -19,7 +19,7 @@ class EditablePart(Record):
 
     A part is the origin of a joint, visual, collision or inertial, or the axis of a joint.
 
-    `index` counts the visuals or collisions of the link `name`; `title` is the label for users. `rpy` is empty for an
+    `index` counts the visuals or collisions of the link `name`. `title` is the label for users. `rpy` is empty for an
     axis. `written` is the text in the file, or empty. `file` and `line` are the position of the text, or the position
     where the text would be inserted.
     """
@@ -94,7 +94,7 @@ class AskEditableParts(PageMessage):
 
 
 class PreviewEdit(PageMessage):
-    """A request to preview an edit, which moves or rotates a part.
+    """A request to preview an edit that moves or rotates a part.
 
     A value that does not change is None. If `together` is true, all elements that the same text generates may change.
     """

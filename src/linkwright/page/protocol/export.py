@@ -9,14 +9,14 @@ from linkwright.page.protocol.views_and_tools import View
 
 
 class AskExport(PageMessage):
-    """A request to export the scene as a file; `view` is the current view of the page."""
+    """A request to export the scene as a file. `view` is the current view of the page."""
 
     format: Literal["html", "glb"]
     view: View
 
 
 class ExportReady(ServerMessage):
-    """The address of the exported file, which can be fetched once; response to `AskExport`.
+    """The address of the exported file, for one download. Response to `AskExport`.
 
     `outside` lists the paths of included files that are neither in a package nor below the description's folder.
     """
@@ -27,6 +27,6 @@ class ExportReady(ServerMessage):
 
 
 class ExportFailed(ServerMessage):
-    """The reason why an export failed; response to `AskExport`."""
+    """The reason why an export failed. Response to `AskExport`."""
 
     message: str

@@ -12,7 +12,7 @@ class PointMarks(DataContent):
 
 
 class PoseMarks(DataContent):
-    """Poses of Pose, PoseArray, PoseWithCovariance, Odometry and Path, in the frame of the content.
+    """Poses of the displays of poses, Odometry and Path, in the frame of the content.
 
     `poses` has shape (N, 7): x, y, z, qx, qy, qz, qw. `covariances` has shape (N, 36): the rows of the 6 x 6 matrix
     over x, y, z and the rotations about these axes. The shape is (0,) if there are no covariances.
@@ -38,8 +38,8 @@ class PolygonLine(DataContent):
 class GridSurface(DataContent):
     """The surface of GridMap: the centres of the cells in the frame of the content, row by row.
 
-    `points` has shape (rows * columns, 3); `colors` (rows * columns, 4): red, green, blue, and 0 for a missing cell. If
-    `filled` is false, only lines are drawn.
+    `points` has shape (rows * columns, 3). `colors` has shape (rows * columns, 4): red, green, blue, and 0 for a
+    missing cell. If `filled` is false, only lines are drawn.
     """
 
     rows: int
@@ -60,7 +60,10 @@ class RangeCone(DataContent):
 
 
 class Screw(DataContent):
-    """The two vectors of TwistStamped, AccelStamped or Wrench, in the frame of the content, SI units."""
+    """The vectors of TwistStamped, AccelStamped or Wrench.
+
+    SI units, in the frame of the content.
+    """
 
     linear: list[float]
     angular: list[float]

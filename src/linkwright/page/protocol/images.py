@@ -27,7 +27,7 @@ class CameraModel(Record):
 class ImageFrame(DataContent):
     """An image of the displays Image and Camera.
 
-    `width` and `height` are the size of the image in the message; `columns` and `rows` are the size of the data, which
+    `width` and `height` are the size of the image in the message. `columns` and `rows` are the size of the data, which
     may be smaller. The data contains 8-bit pixels row by row, or a file that browsers can decode. `quality` is the
     quality (1 to 95) of a WebP file that was made from the image for a slow connection, or 0 for other data.
     """
@@ -54,7 +54,7 @@ class ImageSize(PageMessage):
 
 
 class OccupancyMap(DataContent):
-    """The cells of Map, row by row from the corner at the origin, each as the byte of its int8 value.
+    """The cells of Map as bytes of int8 values, row by row from the corner at the origin.
 
     `origin` is the pose of this corner in the frame of the message: x y z (metres) qx qy qz qw.
     """

@@ -21,7 +21,7 @@ MarkerKind = Literal[
     "triangle_list",
     "arrow_strip",
 ]
-"""The kinds in the order of the numbers in visualization_msgs; the last one exists since Jazzy."""
+"""The kinds in the order of the numbers in visualization_msgs. The last one exists since Jazzy."""
 
 
 class MarkerMesh(Record):
@@ -40,8 +40,8 @@ class MarkerShape(Record):
     """A marker with the fields of visualization_msgs/msg/Marker.
 
     `id` is ``<namespace>/<number>``. `pose` (x y z qx qy qz qw) is in the Fixed Frame or, if `frame` is not empty, in
-    this frame, which the marker follows. `scale` is x, y, z; `color` is RGBA. `points` has shape (N, 3), `colors` (N,
-    4) or is empty, `uvs` (N, 2) or is empty. `texture` is the address of an image.
+    this frame, and the marker then follows the frame. `scale` is x, y, z. `color` is RGBA. `points` has shape (N, 3),
+    `colors` (N, 4) or is empty, `uvs` (N, 2) or is empty. `texture` is the address of an image.
     """
 
     id: str
@@ -107,7 +107,7 @@ class InteractiveControl(Record):
 
 
 class MarkerMenuEntry(Record):
-    """An entry of a marker's menu; `parent` is 0 for a top-level entry."""
+    """An entry of a marker's menu. `parent` is 0 for a top-level entry."""
 
     id: int
     parent: int
@@ -136,7 +136,9 @@ class InteractiveMarkerMoved(DataContent):
 
 
 class MarkerFeedback(PageMessage):
-    """An action of the user on an interactive marker; poses and points are in the frame of the marker.
+    """An action of the user on an interactive marker.
+
+    Poses and points are in the frame of the marker.
 
     `mouse_point` is the point of the marker under the mouse, or empty.
     """

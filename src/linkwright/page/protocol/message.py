@@ -1,17 +1,16 @@
 """The base classes of messages, and their encoding as text and as binary frames.
 
-Defining a message class registers it. Its codec and the types of the page are derived from the
-class. All messages from
+Defining a message class registers it. Its codec and the types of the page are derived from the class. All messages from
 pages are validated. A module with messages that few pages send can be imported when the first of them arrives, see
 `define_later`.
 
 Binary frames to pages are little endian: transforms, content with large arrays, and chunks of these.
 
-Content is what displays draw for the messages that they process. Its frame is four uint32 (kind 2, bytes of the header,
-0, 0), the header as JSON in UTF-8, and the arrays; the header and each array are padded to a multiple of 8 bytes. The
-header is ``{"display", "key", "frame", "stamp", "pose", "content"}``. An array in the content is represented in the
-JSON by ``{"$": [type, offset, count]}``: the type is ``f4`` or ``u1``, and the offset counts bytes from the end of the
-padded header.
+Content is the drawable form of the messages that displays process. Its frame is four uint32 (kind 2, bytes of the
+header, 0, 0), the header as JSON in UTF-8, and the arrays. The header and each array are padded to a multiple of 8
+bytes. The header is ``{"display", "key", "frame", "stamp", "pose", "content"}``. An array in the content is represented
+in the JSON by ``{"$": [type, offset, count]}``: the type is ``f4`` or ``u1``, and the offset counts bytes from the end
+of the padded header.
 """
 
 from __future__ import annotations
@@ -57,7 +56,7 @@ class PageMessage(Struct, tag_field="type", tag=_tag, forbid_unknown_fields=True
 
 
 class DataContent(Struct, tag_field="kind", tag=_tag):
-    """The base class of content of displays with large arrays, which `pack_data` packs."""
+    """The base class of content with large arrays of displays. `pack_data` packs it."""
 
 
 def tag_of(message: Struct) -> str:
@@ -66,11 +65,17 @@ def tag_of(message: Struct) -> str:
 
 
 class BadMessageError(ValueError):
-    """Raised if a page has sent data that is not a message of the protocol; the message gives the reason."""
+    """Raised if a page has sent data that is not a message of the protocol.
+
+    The message gives the reason.
+    """
 
 
 def plain(value: Any) -> Any:
-    """Return a string or number of a derived class, such as a NumPy float, as a plain value for JSON."""
+    """Return a string or number as a plain value for JSON, even if its class is derived.
+
+    An example is a NumPy float.
+    """
     if isinstance(value, str):
         return str.__str__(value)
     if isinstance(value, float):
@@ -83,7 +88,7 @@ def plain(value: Any) -> Any:
 def encode(message: ServerMessage, language: str | None = None) -> str:
     """Return a message as JSON.
 
-    Surrogates, which represent bytes of file names that are not UTF-8, are replaced by question marks.
+    Surrogates, which represent bytes of file names that are not UTF-8, are replaced with question marks.
 
     Args:
         message: the message.
@@ -146,9 +151,9 @@ def _decoder(_known: int) -> msgspec.json.Decoder[Any]:
     by_tag: dict[str, type[PageMessage]] = {}
     for cls in PageMessage.__subclasses__():
         tag = str(cls.__struct_config__.tag)
-        if by_tag.get(tag, cls).__module__ == cls.__module__:  # so that another package cannot replace a message class
+        if by_tag.get(tag, cls).__module__ == cls.__module__:  # another package must not replace a message class
             by_tag[tag] = cls
-    return msgspec.json.Decoder(Union[tuple(by_tag.values())])  # noqa: UP007  # made of a tuple
+    return msgspec.json.Decoder(Union[tuple(by_tag.values())])  # noqa: UP007  # the types are in a tuple
 
 
 _MODULES_BY_TAG: dict[str, str] = {}
@@ -167,7 +172,9 @@ def address_of(message: type) -> str:
 
 
 def define_later(address: str) -> None:
-    """Register a `PageMessage` class whose module is imported when the first such message arrives.
+    """Register a `PageMessage` class by name.
+
+    Its module is imported when the first such message arrives.
 
     Args:
         address: the address of the message class, as ``module:class``.
@@ -177,7 +184,10 @@ def define_later(address: str) -> None:
 
 
 def _import_module(text: str) -> bool:
-    """Import the module of a message; return False if the module is already imported or not registered."""
+    """Import the module of a message.
+
+    Return False if the module is already imported or not registered.
+    """
     module = _MODULES_BY_TAG.pop(msgspec.json.decode(text, type=_TypeField).type, None)
     if module is None:
         return False
@@ -186,11 +196,11 @@ def _import_module(text: str) -> bool:
 
 
 PROTOCOL_VERSION = 5
-"""Increased for every incompatible change; a page with another version reloads itself."""
+"""Increased for every incompatible change. A page with another version reloads itself."""
 
 
 class Hello(ServerMessage):
-    """The first message on every connection; `run` changes when the program is started again."""
+    """The first message on every connection. `run` changes when the program is started again."""
 
     protocol: int
     version: str
@@ -199,7 +209,7 @@ class Hello(ServerMessage):
 
 
 class ProgramIsLate(ServerMessage):
-    """Whether most of the delay that the page observes is caused by the program, not by the connection."""
+    """Whether the program, not the connection, causes most of the delay that the page observes."""
 
     late: bool
 
@@ -218,7 +228,10 @@ TRANSFORMS_KIND = 1
 
 
 class FrameTable(ServerMessage):
-    """The names and parents (index, -1 for a root) of the frames in binary frames with this revision."""
+    """The names and parents of the frames in binary frames with this revision.
+
+    A parent is an index, or -1 for a root.
+    """
 
     revision: int
     names: list[str]
@@ -278,7 +291,7 @@ _EMPTY_PLACEHOLDERS: dict[str, dict[str, list[Any]]] = {
 
 
 class DisplayForgotten(ServerMessage):
-    """The removal of content of a display: the content under a key, or all content if the key is None."""
+    """The removal of a display's content under a key, or of all its content if the key is None."""
 
     NEWEST_OF: ClassVar[tuple[str, ...]] = ("display", "key")
 
@@ -337,7 +350,10 @@ class _Arrays:
         self._length = 0
 
     def encode_value(self, value: Any) -> Any:
-        """Return the JSON form of a value; for an array, add the array and return its placeholder."""
+        """Return the JSON form of a value.
+
+        An array is added, and its placeholder is returned.
+        """
         return self.put(value) if isinstance(value, np.ndarray) else plain(value)
 
     def put(self, array: NDArray[Any]) -> dict[str, list[Any]]:
@@ -354,7 +370,10 @@ class _Arrays:
 
 
 def _header_json(header: dict[str, Any], arrays: _Arrays) -> bytes:
-    """Return the header as JSON; surrogates, which file names may contain, are replaced by question marks."""
+    """Return the header as JSON.
+
+    Surrogates, which file names may contain, are replaced with question marks.
+    """
     try:
         return msgspec.json.encode(header, enc_hook=arrays.encode_value)
     except UnicodeEncodeError:

@@ -1,6 +1,6 @@
 """The live panels: topics, plots, the node graph, parameters, the log and the teleop pad.
 
-A frame with the samples of plots is four uint32 (kind 3, number of series N, 0, 0); then for each series two uint32
+A frame with the samples of plots is four uint32 (kind 3, number of series N, 0, 0), and then for each series two uint32
 (its ID, number of samples M) and 3 x M float64: the receive times and the stamps in the headers, both in seconds since
 the epoch (NaN without a header), and the values. All numbers are little endian.
 
@@ -21,7 +21,7 @@ from linkwright.page.protocol.message import PageMessage, Record, ServerMessage
 
 
 class TopicRow(Record):
-    """A topic of the graph; `types` has several items if nodes use different types for the topic."""
+    """A topic of the graph. `types` has several items if nodes use different types for it."""
 
     name: str
     types: list[str]
@@ -81,7 +81,7 @@ class TopicMessage(ServerMessage):
 
 
 class WatchTopics(PageMessage):
-    """The topics that the page measures and shows with messages from now on, and whether it lists all topics."""
+    """The topics that the page measures, shows with messages, and lists from now on."""
 
     listed: bool
     measured: list[str]
@@ -122,7 +122,7 @@ class SeriesState(Record):
 
 
 class TopicFields(ServerMessage):
-    """The fields of a topic that can be plotted; response to `AskFields`.
+    """The fields of a topic that can be plotted. Response to `AskFields`.
 
     The message is sent again when the lengths of arrays are known.
     """
@@ -140,7 +140,7 @@ class SeriesStates(ServerMessage):
 
 
 class AskFields(PageMessage):
-    """A request for the fields of a topic, from which the user selects one; None after the selection."""
+    """A request for the fields of a topic for the user to choose from. `topic` is None after the choice."""
 
     topic: str | None
 
@@ -203,7 +203,7 @@ ParameterKind = Literal[
 class ParameterRow(Record):
     """A parameter of a node.
 
-    `minimum`, `maximum` and `step` are the range of the parameter as text; they are empty if there is no range.
+    `minimum`, `maximum` and `step` are the range of the parameter as text. They are empty if there is no range.
     """
 
     name: str
@@ -224,7 +224,9 @@ class ParameterNodes(ServerMessage):
 
 
 class NodeParameters(ServerMessage):
-    """The parameters of a node, sorted by name, sent when the page selects the node and on every change.
+    """The parameters of a node, sorted by name.
+
+    They are sent when the page selects the node, and on every change.
 
     `error` is the reason why the parameters are not known, or None.
     """
@@ -235,7 +237,7 @@ class NodeParameters(ServerMessage):
 
 
 class ParameterResult(ServerMessage):
-    """The outcome of `SetParameter`; `reason` is the reason why the parameter was not set."""
+    """The outcome of `SetParameter`. `reason` is the reason why the parameter was not set."""
 
     NEWEST_OF: ClassVar[tuple[str, ...]] = ("node", "name")
 
@@ -246,7 +248,7 @@ class ParameterResult(ServerMessage):
 
 
 class ParameterDump(ServerMessage):
-    """The text and the name of a parameter file; response to `DumpParameters`."""
+    """The text and the name of a parameter file. Response to `DumpParameters`."""
 
     node: str
     file: str
@@ -255,7 +257,7 @@ class ParameterDump(ServerMessage):
 
 
 class WatchParameters(PageMessage):
-    """Whether the page receives the list of nodes from now on, and the node with the parameters that it shows."""
+    """Whether the page receives the list of nodes from now on, and whose parameters it shows."""
 
     listed: bool
     node: str | None
@@ -323,7 +325,7 @@ class TeleopTarget(Record):
 
 
 class TeleopState(ServerMessage):
-    """The message type of a teleop pad, its number of subscribers, and the reason why it cannot publish."""
+    """The message type of a teleop pad, its number of subscribers, and why it cannot publish."""
 
     topic: str
     kind: str

@@ -1,4 +1,4 @@
-"""The nav2 panel: the states of the nodes of nav2 and of the goal, and commands to the nodes."""
+"""The nav2 panel: the states of nav2's nodes and goal, and commands to the nodes."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class WatchNavigation(PageMessage):
 
 
 class CommandNavigation(PageMessage):
-    """A command of the user, which is for both lifecycle managers or cancels all goals."""
+    """A command of the user: for both lifecycle managers, or to cancel all goals."""
 
     command: NavigationCommand
 
@@ -53,7 +53,7 @@ class NavigationState(ServerMessage):
 
 
 class GoalOutcome(ServerMessage):
-    """Whether the last goal failed, which the page shows over the scene.
+    """Whether the last goal failed. The page shows this over the scene.
 
     Attributes:
         reason: the last error of the node that aborted the goal, or the reason why it was not sent; empty if unknown.

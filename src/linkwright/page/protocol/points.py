@@ -8,7 +8,9 @@ from linkwright.page.protocol.message import Bytes, DataContent, Floats, PageMes
 
 
 class CloudPoints(DataContent):
-    """The points of PointCloud2 and similar messages, in the frame of the message, metres, shape (N, 3).
+    """The points of PointCloud2 and similar messages, metres, shape (N, 3).
+
+    They are in the frame of the message.
 
     `colours` has the RGBA colour of each point, shape (N, 4), or is empty if all points have the colour of the
     display. `translucent` is whether any alpha is less than 255. `pixel` is the width of a point in m per metre of its
@@ -23,7 +25,10 @@ class CloudPoints(DataContent):
 
 
 class CellGrid(DataContent):
-    """The cells of GridCells in the frame of the message: centres, shape (N, 3), and side lengths, metres."""
+    """The cells of GridCells in the frame of the message, in metres.
+
+    `positions` are the centres, shape (N, 3). `width` and `height` are the side lengths.
+    """
 
     positions: Floats
     width: float
@@ -31,7 +36,10 @@ class CellGrid(DataContent):
 
 
 class AskPoint(PageMessage):
-    """A request for the fields of a point that the user has selected; the response is `PointFields`."""
+    """A request for the fields of a point that the user has selected.
+
+    The response is `PointFields`.
+    """
 
     display: str
     key: str
@@ -41,7 +49,7 @@ class AskPoint(PageMessage):
 class PointFields(ServerMessage):
     """The channels of a point by name, in the order of the message.
 
-    A packed colour is ``#rrggbbaa``; a number that is not finite is sent as text.
+    A packed colour is ``#rrggbbaa``. A number that is not finite is sent as text.
     """
 
     display: str

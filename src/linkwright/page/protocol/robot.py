@@ -29,7 +29,7 @@ class JointControl(Record):
 
 
 class Joints(ServerMessage):
-    """The rows of the Joints panel; None closes the panel."""
+    """The rows of the Joints panel. None closes the panel."""
 
     controls: list[JointControl] | None
 
@@ -64,20 +64,23 @@ class CenterJoints(PageMessage):
 ShapeKind = Literal[
     "box", "cylinder", "capsule", "sphere", "mesh", "ellipsoid", "cone", "plane", "polyline", "heightmap"
 ]
-"""The kinds of shapes; ``ellipsoid`` and the following kinds occur only in worlds."""
+"""The kinds of shapes. ``ellipsoid`` and the following kinds occur only in worlds."""
 
 
 class Submesh(Record):
-    """The part of a mesh file to draw, by its name in the file; `center` moves it to the origin."""
+    """The part of a mesh file to draw, by its name in the file.
+
+    If `center` is true, the part is moved to the origin.
+    """
 
     name: str
     center: bool
 
 
 class Surface(Record):
-    """The material of a shape in a world: roughness and metalness from 0 to 1, and image addresses.
+    """The material of a shape in a world: roughness and metalness, 0 to 1, and image addresses.
 
-    `emissive_map` is the light that the surface emits; `occlusion_map` (its red channel) darkens regions that ambient
+    `emissive_map` is the light that the surface emits. `occlusion_map` (its red channel) darkens regions that ambient
     light does not reach.
     """
 
@@ -95,14 +98,13 @@ class Shape(Record):
 
     `size` is x, y, z for a box; radius, length for a cylinder or capsule (along z); radius for a sphere; scale x, y, z
     for a mesh. `url` and `format` (the file extension, lower case) are set for a mesh. `color` is None if the URDF
-    gives no colour; then a mesh has the materials in its file, and any other shape is red as in RViz. If `repaints` is
+    gives no colour. A mesh then has the materials in its file, and any other shape is red as in RViz. If `repaints` is
     true, colour and texture replace the materials of a mesh.
 
     In worlds, `size` is the radii of an ellipsoid; radius, length of a cone (tip up); x, y of a plane; the height of a
-    polyline. The `outlines` of a polyline (x, y, x, y, ...) cut holes into each
-    other. For a heightmap, `size` is x, y, z, the
-    offset of its centre, and the edge length of its texture; `heights` are fractions of z, shape (rows, columns),
-    in rows along x from the minimum x and y.
+    polyline. The `outlines` of a polyline (x, y, x, y, ...) cut holes into each other. For a heightmap, `size` is x, y,
+    z, the offset of its centre, and the edge length of its texture. `heights` are fractions of z, shape (rows,
+    columns), in rows along x from the minimum x and y.
     """
 
     kind: ShapeKind
@@ -123,7 +125,7 @@ class Shape(Record):
 
 
 class LinkScene(Record):
-    """A link to draw, which is placed at the pose of a frame."""
+    """A link to draw at the pose of a frame."""
 
     name: str
     frame: str
@@ -135,7 +137,9 @@ class LinkScene(Record):
 
 
 class JointScene(Record):
-    """A joint with its pose in the frame of the parent link; `axis` is in the frame of the joint. SI units.
+    """A joint with its pose in the frame of the parent link. SI units.
+
+    `axis` is in the frame of the joint.
 
     `lower` and `upper` are None if the joint has no limit, or if the limit is not finite.
     """
@@ -152,7 +156,7 @@ class JointScene(Record):
 
 
 class RobotScene(ServerMessage):
-    """The robot of a RobotModel display; `revision` is the number of its descriptions so far.
+    """The robot of a RobotModel display. `revision` is the number of its descriptions so far.
 
     The list of links is empty if there is no robot.
     """
@@ -167,7 +171,7 @@ class RobotScene(ServerMessage):
 
 
 class MeshStatus(PageMessage):
-    """The outcome of loading a mesh in the page; `error` is None if the mesh is drawn."""
+    """The outcome of loading a mesh in the page. `error` is None if the mesh is drawn."""
 
     display: str
     link: str
@@ -176,14 +180,14 @@ class MeshStatus(PageMessage):
 
 
 class AskProvenance(PageMessage):
-    """A request for the source positions of a link that the user has selected in a RobotModel display."""
+    """A request for the source positions of a link selected in a RobotModel display."""
 
     display: str
     link: str
 
 
 class LinkProvenance(ServerMessage):
-    """The source positions of a link and of the macro calls, as lines; response to `AskProvenance`."""
+    """The source positions of a link and its macro calls, as lines. Response to `AskProvenance`."""
 
     display: str
     link: str

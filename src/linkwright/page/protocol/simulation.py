@@ -1,6 +1,7 @@
-"""Simulated worlds: the state and control of a simulation, and modelling. Metres, seconds, newtons.
+"""Simulated worlds: the state and control of a simulation, and modelling.
 
-Modelling means that users edit the models and lights of the file of a world in a page.
+Units are metres, seconds and newtons. Modelling means that users edit the models and lights of a world's file in a
+page.
 
 Poses are x, y, z in metres and roll, pitch, yaw in radians, in the world frame. Sizes of shapes are in metres: x, y, z
 of a box, wall or ramp; radius and length of a cylinder; the radius of a sphere. The frame of a shape is at its centre,
@@ -22,9 +23,9 @@ NewKind = Literal[
 class WorldEntity(Record):
     """A model or light of the world.
 
-    `shape`, `size` and `colour` are set for a model that consists of one simple shape; for others they are None or
-    empty. `address` is set for a model from an
-    ``<include>``. `parts` are the names of the models that are grouped in this model.
+    `shape`, `size` and `colour` are set for a model that consists of one simple shape. For others they are None or
+    empty. `address` is set for a model from an ``<include>``. `parts` are the names of the models that are grouped in
+    this model.
     """
 
     name: str
@@ -41,7 +42,7 @@ class WorldEntity(Record):
 class ModellingState(ServerMessage):
     """Whether the world can be edited and is being edited, and its models and lights.
 
-    `file` is None for a world without a separate file, which is saved to a file that the user names. While no
+    `file` is None for a world without a separate file. It is saved to a file that the user names. While no
     user edits the world, `entities` may be empty.
     """
 
@@ -73,7 +74,7 @@ class ModelChoices(ServerMessage):
 
 
 class EntityChange(Record):
-    """A change of a model or light; fields that are None do not change."""
+    """A change of a model or light. Fields that are None do not change."""
 
     name: str
     pose: list[float] | None
@@ -84,7 +85,7 @@ class EntityChange(Record):
 
 
 class SetModelling(PageMessage):
-    """Whether the user edits the world; during editing, the simulation is paused at its start."""
+    """Whether the user edits the world. During editing, the simulation is paused at its start."""
 
     active: bool
 
@@ -102,13 +103,16 @@ class AddEntity(PageMessage):
 
 
 class ChangeEntities(PageMessage):
-    """A request to change objects, which is undone in one step."""
+    """A request to change objects. It is undone in one step."""
 
     changes: list[EntityChange]
 
 
 class CopyEntities(PageMessage):
-    """A request to copy objects; the copies are placed at an offset (x y z) from the originals."""
+    """A request to copy objects.
+
+    The copies are placed at an offset (x y z) from the originals.
+    """
 
     names: list[str]
     offset: list[float]
@@ -121,7 +125,7 @@ class DeleteEntities(PageMessage):
 
 
 class GroupEntities(PageMessage):
-    """A request to group several models, which become the parts of one model."""
+    """A request to group several models as the parts of one model."""
 
     names: list[str]
     name: str
@@ -152,7 +156,7 @@ class AskModels(PageMessage):
 
 
 class SimulationStatus(ServerMessage):
-    """The state of the simulation; `present` is false if there is none.
+    """The state of the simulation. `present` is false if there is none.
 
     `drivable` is true if a velocity topic has a subscriber. `time` is the simulated time. `time` and the real-time
     factor are None until the simulation publishes them.

@@ -1,6 +1,6 @@
-"""The editor of source files: the files of the workspace, and the messages of the language server.
+"""The editor of source files: files of the workspace, and messages of the language server.
 
-Paths are absolute. Texts have the line end LF, whatever the file has.
+Paths are absolute. Texts have the line end LF, regardless of the line ends in the file.
 """
 
 from __future__ import annotations
@@ -18,10 +18,10 @@ class OpenEditor(PageMessage):
 
 
 class EditorOpened(ServerMessage):
-    """The workspace that the page may edit; response to `OpenEditor`.
+    """The workspace that the page may edit. Response to `OpenEditor`.
 
-    `folder` is its folder, and `uri` the folder's URI for the language server. `why_not` is the reason if nothing can
-    be edited, or else empty.
+    `folder` is its folder, and `uri` the folder's URI for the language server. `why_not` is the reason why no file can
+    be edited, or empty.
     """
 
     folder: str
@@ -42,10 +42,12 @@ class LeaveSourceFile(PageMessage):
 
 
 class SourceFile(ServerMessage):
-    """A file as it is on the disk; response to `AskSourceFile`, sent again when another program changes the file.
+    """A file on the disk.
 
-    `version` counts the contents that the page was sent. `text` is None if the file cannot be read, and `why_not` is
-    the reason if it cannot be read or must not be written, or else empty.
+    It is sent as the response to `AskSourceFile`, and again when another program changes the file.
+
+    `version` counts the contents that were sent to the page. `text` is None if the file cannot be read. `why_not` is
+    the reason why the file cannot be read or must not be written, or empty.
     """
 
     NEWEST_OF: ClassVar[tuple[str, ...]] = ("path",)
@@ -58,7 +60,7 @@ class SourceFile(ServerMessage):
 
 
 class WriteSourceFile(PageMessage):
-    """A request to write a file that has not changed since the page was sent this `version` of it."""
+    """A request to write a file, unless the file has changed since this `version` was sent."""
 
     number: int
     path: str
@@ -114,7 +116,7 @@ class CreateSourceFile(PageMessage):
 class SourceFileWritten(ServerMessage):
     """The result of `WriteSourceFile` or `CreateSourceFile` with this number.
 
-    `version` is the new version of the file. `refusal` is the reason if the file was not written, or else None.
+    `version` is the new version of the file. `refusal` is the reason why the file was not written, or None.
     """
 
     NEWEST_OF: ClassVar[tuple[str, ...]] = ("number",)
@@ -132,7 +134,7 @@ class AskSourceFolder(PageMessage):
 
 
 class SourceFolder(ServerMessage):
-    """The names of the folders and of the files of text in a folder; response to `AskSourceFolder`."""
+    """The names of the subfolders and text files in a folder. Response to `AskSourceFolder`."""
 
     NEWEST_OF: ClassVar[tuple[str, ...]] = ("path",)
 
@@ -150,7 +152,7 @@ class AskLanguageServer(PageMessage):
 class LanguageServerAnswer(ServerMessage):
     """A message of the Language Server Protocol from the page's language server, as JSON.
 
-    `number` counts the messages, none of which replaces another.
+    `number` counts the messages. No message replaces another.
     """
 
     NEWEST_OF: ClassVar[tuple[str, ...]] = ("number",)
@@ -160,4 +162,7 @@ class LanguageServerAnswer(ServerMessage):
 
 
 class LanguageServerEnded(ServerMessage):
-    """A notice that the page's language server has ended unexpectedly; the next `OpenEditor` starts another one."""
+    """A notice that the page's language server ended unexpectedly.
+
+    The next `OpenEditor` starts another one.
+    """

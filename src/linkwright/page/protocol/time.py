@@ -1,4 +1,4 @@
-"""Time: the Time panel, the timeline of a displayed recording, and recording. Times are seconds since the epoch."""
+"""Time: the Time panel, the timeline, and recording. Times are in seconds since the epoch."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from linkwright.page.protocol.message import PageMessage, Record, ServerMessage
 class TimelineTopic(Record):
     """A topic of a recording, with the number of its messages.
 
-    `counts` are the numbers of messages in equal intervals of the recording; the list is empty if they are unknown.
+    `counts` are the numbers of messages in equal intervals of the recording. The list is empty if they are unknown.
     """
 
     name: str
@@ -34,7 +34,7 @@ class Timeline(ServerMessage):
 
 
 class HistoryExtent(ServerMessage):
-    """The extent of the stored last minutes: start and end, size in bytes, and maximum size in bytes."""
+    """The extent of the stored last minutes: start, end, size and maximum size in bytes."""
 
     start: float
     end: float
@@ -43,7 +43,7 @@ class HistoryExtent(ServerMessage):
 
 
 class Playhead(ServerMessage):
-    """The position in a recording, which is sent a few times per second while `playing`.
+    """The position in a recording, sent a few times per second while `playing`.
 
     `live` is whether the present is shown, in a timeline of the last minutes. `seeks` counts the seeks of all users, so
     that a page can wait until its previous seek is done. `problem` is the reason why the recording cannot be read
@@ -72,7 +72,7 @@ class SeekTime(PageMessage):
 
 
 class StepTime(PageMessage):
-    """A request to jump to the next or previous message, of the displayed topics or of a single topic."""
+    """A request to jump to the next or previous message of the displayed topics or of one topic."""
 
     forward: bool
     topic: str = ""
@@ -90,9 +90,9 @@ class SetPlayback(PageMessage):
 
 
 class RecordedFile(Record):
-    """A completed recording: path on the server, size in bytes, length in seconds, and download address.
+    """A completed recording: path on the server, size in bytes, length in s, download address.
 
-    `simulated` is the simulated duration in seconds; None if time is not simulated, or the duration is unknown.
+    `simulated` is the simulated duration in seconds. It is None if time is not simulated, or the duration is unknown.
     """
 
     name: str
@@ -125,7 +125,7 @@ NOTHING_RECORDED = RecordingState(possible=True, path="", length=0.0, size=0, sa
 
 
 class RecordTopics(PageMessage):
-    """A request to record topics; an empty list means all present and future topics."""
+    """A request to record topics. An empty list means all present and future topics."""
 
     topics: list[str]
 
@@ -145,7 +145,10 @@ SyncMode = Literal["Off", "Exact", "Approximate"]
 
 
 class TimeState(ServerMessage):
-    """The state of the Time panel, sent on changes. `sources` are the displays whose messages can drive time."""
+    """The state of the Time panel, sent on changes.
+
+    `sources` are the displays whose messages can drive time.
+    """
 
     paused: bool
     mode: SyncMode
@@ -157,8 +160,7 @@ class Clock(ServerMessage):
     """The current clocks in seconds, for pages that watch them.
 
     `ros_start` and `wall_start` are the times from which elapsed times are counted. If `running` is true, ROS time
-    advances at the speed of the wall clock, and the page advances
-    it. Other clocks are sent again when they have
+    advances at the speed of the wall clock, and the page advances it. Other clocks are sent again when they have
     changed.
     """
 

@@ -1,4 +1,4 @@
-"""Views, which determine the camera, and tools, which determine what the mouse does in the scene.
+"""Views for the camera, and tools for the mouse in the scene.
 
 Every page has its own view and selected tool. Pages share the file's view, the saved views, and the list and settings
 of tools. The values of a view are identified by the path of their property: ``Distance``, ``Focal Point/X``.
@@ -21,7 +21,9 @@ class View(Record):
 
 
 class ViewClass(Record):
-    """A class of views: its property rows, with the names of values as IDs, and the defaults of RViz.
+    """A class of views: its property rows and the defaults of RViz.
+
+    The IDs of the rows are the names of values.
 
     The defaults include values without a row.
     """
@@ -38,7 +40,7 @@ class ViewClasses(ServerMessage):
 
 
 class ViewState(ServerMessage):
-    """The view with which a page shows a configuration; afterwards the page controls its camera.
+    """The view with which a page shows a configuration. Afterwards the page controls its camera.
 
     `revision` is the number of configurations opened so far. A page that reconnects keeps its camera if the number has
     not changed. `whole_robot` is whether no user has chosen this view, so that the page fits the camera to the robot.
@@ -50,7 +52,10 @@ class ViewState(ServerMessage):
 
 
 class SavedView(Record):
-    """A saved view and its ID, which does not change when the view is renamed or edited."""
+    """A saved view and its ID.
+
+    The ID does not change when the view is renamed or edited.
+    """
 
     id: str
     view: View
@@ -102,7 +107,10 @@ class RemoveSavedView(PageMessage):
 
 
 class Tool(Record):
-    """A tool of the toolbar. `supported` is false for an unknown class, which is preserved in the file."""
+    """A tool of the toolbar.
+
+    `supported` is false for an unknown class, which is preserved in the file.
+    """
 
     id: str
     cls: str

@@ -1,9 +1,8 @@
-"""The Voice panel: sound from the microphones of pages, recognized commands, answers, and typed commands.
+"""The Voice panel: sound from microphones, recognized and typed commands, and answers.
 
 Sound is sent in little-endian binary frames: four uint32 (kind 5, number of samples N, number of samples that the
-browser lost in or before these samples,
-0), and N int16 samples, mono at 16 kHz. A frame contains a tenth of a second, or less
-at the end of the sound.
+browser lost in or before these samples, 0), and N int16 samples, mono at 16 kHz. A frame contains a tenth of a second,
+or less at the end of the sound.
 """
 
 from __future__ import annotations
@@ -25,7 +24,7 @@ MOST_SAMPLES = 1600
 """The largest number of samples in a frame."""
 
 MOST_LOST_SAMPLES = 5 * SOUND_RATE
-"""The largest number of lost samples in a frame; a page that lost more samples reports this number."""
+"""The largest number of lost samples in a frame. A page that lost more samples reports this number."""
 
 _HEADER = struct.Struct("<IIII")
 
@@ -44,7 +43,7 @@ class SoundBlock:
 
 
 def unpack_sound(frame: bytes) -> SoundBlock | None:
-    """Return the sound in a binary frame of a page, or None if it is not a valid frame with sound."""
+    """Return the sound in a binary frame of a page, or None if the frame is not valid sound."""
     if len(frame) < _HEADER.size:
         return None
     kind, count, lost, _ = _HEADER.unpack_from(frame)
@@ -81,7 +80,7 @@ class Talk(PageMessage):
 
 
 class SayCommand(PageMessage):
-    """A command that the user has typed, which is handled like a spoken command."""
+    """A command that the user has typed. It is handled like a spoken command."""
 
     text: str
 

@@ -1,4 +1,7 @@
-"""Words that the user enrols in the Voice panel, which are recorded three times and stored in a file of the user."""
+"""Words that the user enrols in the Voice panel.
+
+Each word is recorded three times and stored in a file of the user.
+"""
 
 from __future__ import annotations
 
@@ -53,7 +56,7 @@ class RenameWord(PageMessage):
 
 
 class ImportWords(PageMessage):
-    """A request to import the words of a file, which replace words with the same names."""
+    """A request to import the words of a file. They replace words with the same names."""
 
     text: str
 

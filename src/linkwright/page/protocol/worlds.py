@@ -1,4 +1,4 @@
-"""The content of World displays: the links of all models of a simulated world, and their poses."""
+"""The content of World displays: the links of all models, and their poses."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class LightScene(Record):
 
 
 class RayAngles(Record):
-    """The directions of rays in one plane: `count` angles, starting at `first`, in steps of `step`, in rad."""
+    """The directions of rays in a plane: `count` angles from `first` in steps of `step`, in rad."""
 
     first: float
     step: float
@@ -41,7 +41,7 @@ class LidarScene(Record):
     """A lidar of a world, and the rays of the lidar that are drawn.
 
     `name` includes the names of model and link. `position` (m) and `quaternion` (x y z w) are in the frame of the link.
-    The lidar looks along x; horizontal angles are about z, vertical angles are positive upwards. `nearest` and
+    The lidar looks along x. Horizontal angles are about z, vertical angles are positive upwards. `nearest` and
     `farthest` are the limits of the lidar's range, in m. `visualized` is whether the description requests that the
     rays are drawn.
     """
@@ -58,7 +58,9 @@ class LidarScene(Record):
 
 
 class CameraScene(Record):
-    """A camera of a world, which looks along x with z up; common fields are as in `LidarScene`.
+    """A camera of a world. It looks along x, with z up.
+
+    Common fields are as in `LidarScene`.
 
     `left`, `right`, `up` and `down` are the bounds of the image at a distance of 1. `near` and `far` are the
     clipping distances along x, in m.
@@ -90,12 +92,12 @@ class FogScene(Record):
 
 
 class WorldScene(DataContent):
-    """The drawable content of a World display; `revision` is the number of descriptions so far.
+    """The drawable content of a World display. `revision` is the number of descriptions so far.
 
     `ambient` and `background` are colours: red, green, blue. `shadows` is whether lights cast shadows. `daylight` is
-    the brightness of the sky, from 0 at night to 1; None if there is no sky. `robots` are the names of the models that
-    count as robots. `camera` is the initial camera pose in the world's file, x y z qx qy qz qw in the world frame,
-    looking along x; None if the file sets none.
+    the brightness of the sky, from 0 at night to 1, or None if there is no sky. `robots` are the names of the models
+    that count as robots. `camera` is the initial camera pose in the world's file, x y z qx qy qz qw in the world frame,
+    looking along x, or None if the file sets none.
     """
 
     revision: int
@@ -125,9 +127,9 @@ class WorldPoses(DataContent):
 
 
 class WorldRays(DataContent):
-    """The measured ray lengths of a lidar of a World display, in m, shape (vertical * horizontal,).
+    """The measured ray lengths of a lidar in m, shape (vertical * horizontal,).
 
-    The length is inf for a ray that hits nothing, and -inf for a ray with an object that is too near to be measured.
+    The length is inf for a ray that hits no object, and -inf for a ray with an object that is too near to be measured.
     """
 
     lidar: str

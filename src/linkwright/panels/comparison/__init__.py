@@ -1,1 +1,1 @@
-"""The comparison of two descriptions: the old and the new robot in one scene, and a list of differences."""
+"""The comparison of two descriptions: both robots in one scene, and a list of differences."""

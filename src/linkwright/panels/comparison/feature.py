@@ -1,4 +1,4 @@
-"""Sends the differences of two descriptions that are shown in one scene to pages."""
+"""Sends the differences between two descriptions in one scene to pages."""
 
 from __future__ import annotations
 
@@ -42,7 +42,10 @@ def add_old_robot(config: RvizConfig, name: str) -> None:
 
 
 class ComparisonFeature(PageFeature):
-    """Compares the robots of two displays when one of them changes; does nothing before a pair is attached."""
+    """Compares the robots of two displays when one of them changes.
+
+    It has no effect before a pair is attached.
+    """
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
@@ -52,10 +55,10 @@ class ComparisonFeature(PageFeature):
         self._sent_messages: dict[VisualizationManager, ComparedDescriptions] = {}
 
     def attach(self, pair: Pair, node: Node) -> Callable[[str], None]:
-        """Begin to send the differences between two descriptions to pages.
+        """Start sending the differences between two descriptions to pages.
 
         Args:
-            pair: the descriptions; they are shown by the displays of `RvizConfig.for_model` and of `show_old`.
+            pair: the descriptions; the displays of `RvizConfig.for_model` and of `add_old_robot` show them.
             node: the node that publishes the old description and its transforms.
 
         Returns:
@@ -89,7 +92,10 @@ class ComparisonFeature(PageFeature):
             self._publish(manager)
 
     def edited(self, manager: VisualizationManager) -> None:
-        """Send the differences again if they changed, because displays may have been added or removed."""
+        """Send the differences again if they changed.
+
+        Displays may have been added or removed.
+        """
         self._publish(manager)
 
     def manager_closed(self, manager: VisualizationManager) -> None:
@@ -118,7 +124,7 @@ class ComparisonFeature(PageFeature):
 
 
 def without_paths(message: ComparedDescriptions) -> ComparedDescriptions:
-    """Replace the absolute paths in a message by file names, so that it can be shared, and return the message."""
+    """Replace absolute paths in a message with file names for sharing, and return the message."""
     for robot in (message.old, message.new):
         robot.label = _shareable_name(robot.label)
     for item in message.items:
@@ -133,7 +139,7 @@ def _shareable_name(name: str) -> str:
 
 
 def _robot_displays(manager: VisualizationManager) -> tuple[RobotModelDisplay | None, RobotModelDisplay | None]:
-    """Return the displays of the old and of the new robot; None for a display that was removed."""
+    """Return the displays of the old and the new robot, with None for a removed display."""
     models = manager.robot_models()
     old = next((model for model in models if _description_topic(model) == TOPIC), None)
     return old, next((model for model in models if _description_topic(model) != TOPIC), None)
@@ -170,7 +176,7 @@ def _link_marks(comparison: Comparison, old: Robot, new: Robot) -> tuple[dict[st
 
 
 def _links_of_same_shape(comparison: Comparison) -> dict[str, str]:
-    """Return the new names of the links with unchanged visuals and collisions, by their old names."""
+    """Return the links with unchanged visuals and collisions: new names by old names."""
     changed_links = {
         difference.name
         for difference in comparison.differences

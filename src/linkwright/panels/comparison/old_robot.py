@@ -1,4 +1,4 @@
-"""Publishes the older of two descriptions as a robot with the joint positions of the newer robot."""
+"""Publishes the older of two descriptions, with the joint positions of the newer robot."""
 
 from __future__ import annotations
 
@@ -31,9 +31,8 @@ TOPIC = "/old/robot_description"
 class OldRobot:
     """Publishes a description, and its transforms with the joint positions of another robot.
 
-    Joints that both robots have follow the joints of the other
-    robot. Joints that only the old robot has are at zero, or in the
-    middle of their limits if the limits exclude zero.
+    Joints that both robots have follow the joints of the other robot. Joints that only the old robot has are at zero,
+    or in the middle of their limits if the limits exclude zero.
 
     Args:
         node: the node that publishes.
@@ -52,11 +51,11 @@ class OldRobot:
         listener.create_subscription(JointState, "joint_states", self._on_joint_states, SENSOR_DATA_QOS)
 
     def publish(self, text: str) -> None:
-        """Publish a description; call `place` to publish the poses of its links."""
+        """Publish a description. Call `place` to publish the poses of its links."""
         self._text.publish(String(text))
 
     def place(self, old: Robot, new: Robot, comparison: Comparison) -> None:
-        """Publish the poses of the old robot's links, now and with each of the new robot's joint states.
+        """Publish the poses of the old robot's links, now and at each joint state of the new robot.
 
         Args:
             old: the robot of the published description.
@@ -92,7 +91,7 @@ class OldRobot:
 
 
 def followed_joints(old: Robot, new: Robot, same_names: Mapping[str, str]) -> dict[str, str]:
-    """Return the new names of the joints that the joints of the old robot follow, by their old names.
+    """Return the joints that the joints of the old robot follow: new names by old names.
 
     A joint and the joint that it follows are both revolute, or both prismatic.
     """
@@ -120,7 +119,7 @@ def _initial_positions(robot: Robot, leaders: Mapping[str, str]) -> dict[str, fl
 
 
 def _attach_root(old: Robot, new: Robot, same_names: Mapping[str, str]) -> tuple[str, NDArray[np.float64]]:
-    """Return the frame of the new robot that the old root is attached to, and the pose of the root in it.
+    """Return the frame of the new robot for the old root, and the pose of the old root in it.
 
     The common link that is nearest to the old root has the same pose in both robots. The joints between this link and
     the root are assumed to be at zero.

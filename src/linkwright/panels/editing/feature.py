@@ -1,4 +1,4 @@
-"""Editing of a robot in the page, with a preview of the smallest text change and writing on request.
+"""Editing of a robot in the page: previews of the smallest text change, and writing.
 
 All pages share one history. Requests are handled one after the other in a thread, because an edit is verified by
 expanding the description again.
@@ -42,7 +42,7 @@ class EditingFeature(PageFeature):
         self._worker: asyncio.Task[None] | None = None
 
     def receive(self, page: Page, message: Any) -> None:
-        """Queue a request; requests are handled in order."""
+        """Queue a request. Requests are handled in order."""
         if isinstance(message, editing.PreviewEdit):
             self._newest_numbers[page] = message.number
         self._editing_pages.add(page)
@@ -105,7 +105,7 @@ class EditingFeature(PageFeature):
         self._send_history()
 
     async def write(self, plan: EditPlan) -> list[str]:
-        """Write the files of an edit, which can then be undone, and return their paths.
+        """Write the files of an edit, and return their paths. The edit can then be undone.
 
         Raises:
             EditRefusedError: see `EditHistory.apply`.
@@ -144,7 +144,7 @@ class EditingFeature(PageFeature):
         return editing.EditableParts(message.display, message.link, problem, parts)
 
     def _robot_and_description(self, page: Page, display: str) -> tuple[Robot | None, Description | None]:
-        """Return the robot of a display, and its description if the library has it with the same text."""
+        """Return the robot of a display, and its description if the library stores the same text."""
         display_model = next(
             (candidate for candidate in self.managers.of(page).robot_models() if candidate.id == display), None
         )

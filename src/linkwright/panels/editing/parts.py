@@ -1,4 +1,4 @@
-"""The editable parts of a robot with their values and source positions, and the text of edits."""
+"""The editable parts of a robot, with values and source positions, and the text of edits."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _CONTEXT_LINES = 1
 
 
 def parts_of(robot: Robot, link_name: str) -> list[EditablePart]:
-    """Return the editable parts of a link: its parent joint and axis, visuals, collisions and inertial."""
+    """Return the editable parts of a link: parent joint and axis, visuals, collisions, inertial."""
     link = robot.links.get(link_name)
     if link is None:
         return []
@@ -36,7 +36,7 @@ def request_of(message: PreviewEdit) -> EditRequest:
 
 
 def files_of(plan: EditPlan) -> list[EditedFile]:
-    """Return the files that an edit changes, each as the lines of a unified diff without its header."""
+    """Return the files that an edit changes, each as a unified diff without its header."""
     return [EditedFile(path, list(_diff(plan.old_texts[path], text))) for path, text in plan.texts.items()]
 
 
@@ -69,13 +69,16 @@ def _inertial_part(link: str, inertial: Inertial) -> EditablePart:
 
 
 def _xyz_and_rpy(origin: Pose) -> tuple[list[float], list[float]]:
-    """Return the position and the roll, pitch and yaw of a pose, as written in the file where possible."""
+    """Return the position, and roll, pitch and yaw, of a pose.
+
+    The angles are as written in the file where possible.
+    """
     rpy = origin.rpy if origin.quaternion is None else rpy_from_quaternion(origin.quaternion)
     return list(origin.xyz), list(rpy)
 
 
 def _origin_text(owner: Element | None, tag: str) -> tuple[str, str, int]:
-    """Return the attributes ``xyz`` and ``rpy`` of a child element as text, and its file and line.
+    """Return ``xyz`` and ``rpy`` of a child element as text, and the element's file and line.
 
     If the child is missing, the text is empty, and file and line are those of the owner. If the position is unknown,
     the file name is empty and the line is 0.

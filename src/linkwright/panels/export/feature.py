@@ -1,4 +1,4 @@
-"""Exports the robot in one of several file formats, which a page downloads once."""
+"""Exports the robot in one of several file formats, as a file for one download."""
 
 from __future__ import annotations
 
@@ -90,7 +90,7 @@ class ExportFeature(PageFeature):
         except LinkwrightError as error:
             page.send(ExportFailed(in_one_line(error.diagnostics)))
             return
-        except Exception as error:  # noqa: BLE001  # a fault of ours must not leave the page waiting
+        except Exception as error:  # noqa: BLE001  # an internal error must not leave the page waiting
             self.context.node.get_logger().error(
                 f"The export failed:\n{traceback.format_exc()}"
             )  # the logger is rclpy's, which has no `exception` method

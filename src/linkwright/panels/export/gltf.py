@@ -1,4 +1,4 @@
-"""Writes a robot as a binary glTF 2.0 file, which contains a document, arrays and images."""
+"""Writes a robot as a binary glTF 2.0 file: a document, arrays and images."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ _REPEAT, _LINEAR, _LINEAR_MIPMAPS = 10497, 9729, 9987
 
 
 class GltfFile:
-    """A glTF file under construction; its entries are identified by indices.
+    """A glTF file under construction. Its entries are identified by indices.
 
     Args:
         generator: the name of the program that creates the file.
@@ -55,13 +55,13 @@ class GltfFile:
         return len(entries) - 1
 
     def entry(self, kind: str, index: int) -> dict[str, Any]:
-        """Return an entry of a list; changes of the returned dict change the document."""
+        """Return an entry of a list. Changes of the returned dict change the document."""
         return self._lists[kind][index]
 
     def vertices(self, values: NDArray[Any], *, bounded: bool = False) -> int:
         """Add an array of shape (N, 2 to 4) as float32, and return its index.
 
-        If `bounded` is true, the minimum and maximum of the array are added, which glTF requires for positions.
+        If `bounded` is true, the minimum and maximum of the array are added, as glTF requires for positions.
         """
         array = np.ascontiguousarray(values, dtype="<f4")
         bounds: dict[str, Any] = {}
@@ -251,7 +251,10 @@ class _RobotWriter:
     # --- materials ---------------------------------------------------------------------------------------------
 
     def _texture_file(self, shape: Shape) -> bytes | None:
-        """Return the texture that the URDF sets, as PNG or JPEG; None if it has none or cannot be read."""
+        """Return the texture that the URDF sets, as PNG or JPEG.
+
+        None means that there is no texture, or that it cannot be read.
+        """
         if shape.texture is None:
             return None
         try:
@@ -303,7 +306,7 @@ class _NeighbourFiles:
 
 
 def _look(shape: Shape, part: MeshPart, texture: bytes | None) -> _Appearance:
-    """Return the appearance of a mesh part: the material in the mesh file or, if it has none, in the URDF.
+    """Return the appearance of a mesh part, from the mesh file or, if it has none, the URDF.
 
     The opacity is always taken from the URDF.
     """

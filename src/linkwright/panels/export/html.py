@@ -82,7 +82,7 @@ def _script(folder: Path) -> str:
 
 
 def _policy(script: str) -> str:
-    """Return a content security policy that allows this script and the images and meshes inside the page."""
+    """Return a content security policy that allows only this script and embedded content."""
     digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
     return (
         f"default-src 'none'; script-src 'sha256-{digest}'; style-src 'unsafe-inline'; img-src data: blob:; "
@@ -91,7 +91,7 @@ def _policy(script: str) -> str:
 
 
 def _recorded_json(snapshot: Snapshot, program: str) -> str:
-    """Return the messages, binary frames and files for the page, as JSON that can be embedded in HTML."""
+    """Return messages, binary frames and files for the page, as JSON to embed in HTML."""
     robots = [message for message in snapshot.messages if isinstance(message, RobotScene)]
     files = FileSet(snapshot.meshes).collect([*mesh_addresses(robots), *snapshot.marker_meshes])
     messages = without_secrets(",".join(encode(message) for message in snapshot.messages))

@@ -50,7 +50,7 @@ def sphere(radius: float) -> Triangles:
 
 
 def capsule(radius: float, length: float) -> Triangles:
-    """Return the triangles of a cylinder along z with hemispheres at its ends, centred at the origin."""
+    """Return the triangles of a cylinder along z with hemispherical ends, centred at the origin."""
     angles = np.linspace(np.pi / 2, -np.pi / 2, _RINGS + 1)
     angles = np.insert(angles, _RINGS // 2, 0.0)
     shift = np.where(np.arange(_RINGS + 2) <= _RINGS // 2, length / 2, -length / 2)

@@ -128,7 +128,7 @@ class FileSet:
         return self._meshes.file(match[1], unquote(match[2]))
 
     def collect(self, addresses_to_read: Iterable[str]) -> dict[str, bytes]:
-        """Return the contents of files, and of the files that these files refer to, by the path of their address.
+        """Return the contents of files and of the files that they refer to, by address path.
 
         Missing files are omitted.
         """
@@ -247,7 +247,7 @@ def snapshot_of(viewer: FeatureHost, manager: VisualizationManager, view: View |
 
 
 def files_outside(read: Sequence[Path], scene: RobotScene, meshes: MeshFolders) -> list[Path]:
-    """Return the files of a description that recipients of an export should perhaps not see.
+    """Return the files of a description that may not be meant for recipients of an export.
 
     As in ROS, includes, ``load_yaml`` and ``file://`` can read any file of the machine.
 
@@ -328,13 +328,13 @@ def _problems(model: RobotModelDisplay) -> list[Diagnostic]:
 
 
 def no_robot_error() -> LinkwrightError:
-    """Return the error VIEW201, which says that there is no robot to export."""
+    """Return the error VIEW201: there is no robot to export."""
     hint = phrase("wait until the robot is drawn, or enable its RobotModel display")
     return LinkwrightError(Diagnostic("VIEW201", phrase("no robot can be exported, because none is shown"), hint=hint))
 
 
 def _full_content(payload: Payload) -> bytes | str | None:
-    """Return the full content of a payload, as a new page receives it; None if it is empty."""
+    """Return the full content of a payload, as for a new page, or None if it is empty."""
     if isinstance(payload, ScaledData):
         return payload.full_frame
     return payload if isinstance(payload, (bytes, str)) else payload.since(0)[0]
@@ -356,7 +356,10 @@ def _poses(table: FrameTable, frames: Sequence[bytes]) -> dict[str, NDArray[np.f
 
 
 def _without_details(tree: Tree) -> Tree:
-    """Return a tree of displays without status and paths, which would reveal details of this machine."""
+    """Return a tree of displays without status and paths.
+
+    They would reveal details of this machine.
+    """
     displays: list[Display] = [
         replace(display, status=[], level="ok", properties=_without_paths(display.properties))
         for display in tree.displays

@@ -2,9 +2,9 @@
 
 Names select fields of nested messages. Brackets select an element of an array by its index or name. The names of
 elements are the items of a list of names in the same or an enclosing message (``name`` of a JointState,
-``joint_names`` of a JointTrajectory and its points). If the elements are messages, their names are in a
-field (``name`` of a DiagnosticStatus,
-``child_frame_id`` of a TransformStamped). Booleans count as 0 and 1; times and durations are in seconds.
+``joint_names`` of a JointTrajectory and its points). If the elements are messages, their names are in a field (``name``
+of a DiagnosticStatus, ``child_frame_id`` of a TransformStamped). Booleans count as 0 and 1. Times and durations are in
+seconds.
 """
 
 from __future__ import annotations
@@ -33,7 +33,10 @@ _STEP_PATTERN = re.compile(r"([A-Za-z_]\w*)((?:\[[^\[\]]+\])*)")
 
 
 class FieldPathError(ValueError):
-    """Raised when a path is not valid or does not lead to a number; the message gives the reason."""
+    """Raised when a path is not valid or does not lead to a number.
+
+    The message gives the reason.
+    """
 
 
 @dataclass(frozen=True, slots=True)
@@ -155,7 +158,7 @@ def _number(value: Any) -> float:
 
 _MAX_FIELDS = 500
 _MAX_ELEMENTS = 64
-"""The number of elements of an array that are offered; users can enter the index of any other element."""
+"""The number of elements of an array that are offered. Users can enter the index of any other element."""
 
 
 def plot_fields(message_class: type[Message], message: Message | None = None) -> list[PlotField]:

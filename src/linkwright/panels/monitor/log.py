@@ -16,14 +16,17 @@ from linkwright.panels.page_feature import FeatureHost, PageFeature
 _TOPIC = "/rosout"
 _SEND_PERIOD = 0.1
 _MAX_QUEUED = 1000
-"""The largest number of queued records for a page; if there are more, only the newest are sent."""
+"""The largest number of queued records for a page. If there are more, only the newest are sent."""
 
 _MAX_PAST = 1000
 """The number of past records that a page receives when it starts to watch."""
 
 
 class _PageQueue:
-    """The log records that are queued for one page; the message is created when the outbox sends it."""
+    """The log records that are queued for one page.
+
+    The message is created when the outbox sends it.
+    """
 
     key = "log_lines"
 
@@ -41,7 +44,7 @@ class _PageQueue:
         self._waiting.append(line)
 
     def since(self, seen: int) -> tuple[str | None, int]:
-        """Return a message with all queued records; see `Changes`."""
+        """Return a message with all queued records. See `Changes`."""
         if not self._waiting:
             return None, seen
         message = LogLines(list(self._waiting), self._dropped_count)
@@ -68,7 +71,10 @@ class LogFeature(PageFeature):
         return []
 
     def receive(self, page: Page, message: WatchLog) -> None:
-        """Start, pause or resume sending records to a page; records that arrive during a pause are sent after it."""
+        """Start, pause or resume sending records to a page.
+
+        Records that arrive during a pause are sent after it.
+        """
         if not message.watched:
             self._watching_pages.discard(page)
             return

@@ -46,7 +46,10 @@ class NodeGraphFeature(PageFeature):
 
 
 def node_graph(graph: GraphQueries) -> NodeGraph:
-    """Return the current nodes and topics; nodes with the same name count as one node, as in ROS."""
+    """Return the current nodes and topics.
+
+    As in ROS, nodes with the same name count as one node.
+    """
     topics: dict[str, GraphTopic] = {}
     for endpoint in graph.endpoints():
         if endpoint.kind not in (EndpointKind.PUBLISHER, EndpointKind.SUBSCRIPTION):

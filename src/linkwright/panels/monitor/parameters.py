@@ -91,7 +91,7 @@ def parameter_of(request: SetParameter) -> Parameter:
     if kind.is_array:
         return Parameter(request.name, kind, values)
     if len(values) != 1:
-        raise ValueError(f"a {element} is one value, not {len(values)}")
+        raise ValueError(f"a {element} must be one value, not {len(values)}")
     return Parameter(request.name, kind, values[0])
 
 
@@ -115,7 +115,7 @@ def _value(kind: str, text: str) -> Any:
     except (ValueError, KeyError):
         raise ValueError(f"'{text}' is not {_EXPECTED_TEXTS[kind]}") from None
     if number not in _INT64_RANGE:
-        raise ValueError(f"{text} is more than 64 bits can hold")
+        raise ValueError(f"{text} does not fit into 64 bits")
     return number
 
 
@@ -246,7 +246,10 @@ class ParametersFeature(PageFeature):
         self._event_tap: TopicTap | None = None
 
     def receive(self, page: Page, message: WatchParameters | SetParameter | DumpParameters) -> None:
-        """Handle a request; a page can set and dump parameters only of the node that it watches."""
+        """Handle a request.
+
+        A page can set and dump parameters only of the node that it watches.
+        """
         if isinstance(message, WatchParameters):
             self._watch(page, message)
             return

@@ -31,13 +31,13 @@ from linkwright.panels.timeline import TimelineFeature
 from linkwright.rviz.context import ViewerContext
 
 MAX_SENT = 256
-"""The largest number of samples of a series in a frame; 30 frames a second are enough for a topic at 7 kHz."""
+"""The largest number of samples of a series in a frame. 30 frames a second are enough for a topic at 7 kHz."""
 
 _MAX_QUEUED = 4096
 
 
 class SampleQueue:
-    """A queue of samples, which is thinned out when it gets too long."""
+    """A queue of samples that is thinned out when it gets too long."""
 
     def __init__(self) -> None:
         self._received: list[float] = []
@@ -48,7 +48,7 @@ class SampleQueue:
         return len(self._values)
 
     def add(self, received: float, stamp: float, value: float) -> None:
-        """Add a sample: receive time and stamp (NaN if there is none) in seconds since the epoch, and the value."""
+        """Add a sample: receive time, stamp (or NaN), both in seconds since the epoch, and value."""
         self._received.append(received)
         self._stamps.append(stamp)
         self._values.append(value)
@@ -57,7 +57,7 @@ class SampleQueue:
             self._received, self._stamps, self._values = thinned_samples
 
     def take(self) -> NDArray[np.float64]:
-        """Remove all samples from the queue and return them, shape (3, M), thinned out to fit a frame."""
+        """Remove and return all samples, shape (3, M), thinned out to fit a frame."""
         samples = thin_out(self._array(), MAX_SENT)
         self._received, self._stamps, self._values = [], [], []
         return samples
@@ -74,7 +74,7 @@ def thin_out(samples: NDArray[Any], max_count: int) -> NDArray[Any]:
 
     Args:
         samples: array, shape (3, M); the values are in the last row.
-        max_count: the maximum number of samples to return, which must be even.
+        max_count: the maximum number of samples to return; must be even.
     """
     count = samples.shape[1]
     if count <= max_count:
@@ -142,7 +142,7 @@ class _PlottedTopic:
         self.tap = TopicTap(context, topic, self._receive, changed=self._on_class_change)
 
     def add(self, series: _Series) -> None:
-        """Begin to add samples of the topic to a series."""
+        """Start adding samples of the topic to a series."""
         self.series.append(series)
         self._check(series)
 
@@ -156,7 +156,7 @@ class _PlottedTopic:
         self._on_samples()
 
     def _check(self, series: _Series) -> None:
-        """Set the error of a series, or clear it if the path leads to a number in the messages of the topic."""
+        """Set the error of a series, or clear it if its path leads to a number."""
         if series.path is None:
             return
         error = self.tap.error
@@ -203,7 +203,10 @@ class _PlottedTopic:
 
 
 class _PagePlots:
-    """The series that a page plots; the frame with their samples is created when the outbox sends it."""
+    """The series that a page plots.
+
+    The frame with their samples is created when the outbox sends it.
+    """
 
     key = "samples"
 
@@ -217,7 +220,7 @@ class _PagePlots:
         return any(series.has_samples() for series in self.series.values())
 
     def since(self, seen: int) -> tuple[bytes | None, int]:
-        """Return a frame with all queued samples; see `Changes`."""
+        """Return a frame with all queued samples. See `Changes`."""
         samples_by_series = [
             (identity, series.take()) for identity, series in self.series.items() if series.has_samples()
         ]
@@ -225,7 +228,10 @@ class _PagePlots:
 
 
 class PlotsFeature(PageFeature):
-    """Sends the values of plots to pages; subscribes to a topic only while a page plots a series of it."""
+    """Sends the values of plots to pages.
+
+    It subscribes to a topic only while a page plots a series of the topic.
+    """
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
@@ -342,7 +348,10 @@ class PlotsFeature(PageFeature):
     # --- fields that can be plotted ----------------------------------------------------------------------------
 
     def _send_fields(self, page: Page, topic: str) -> None:
-        """Send the fields that can be plotted, and send them again after a message, which has the array lengths."""
+        """Send the fields that can be plotted, now and after the first message.
+
+        The message has the lengths of arrays.
+        """
 
         def receive(message: Any, _: MessageInfo) -> None:
             page.send(TopicFields(topic, message.TYPE_NAME, plot_fields(type(message), message), None))
@@ -359,7 +368,7 @@ class PlotsFeature(PageFeature):
         return TopicFields(tap.topic, cls.TYPE_NAME, plot_fields(cls), None)
 
     def _class_without_publishers(self, tap: TopicTap) -> Any:
-        """Return the message class of the subscriptions to a topic, or None if they have different classes."""
+        """Return the message class of a topic's subscriptions, or None if they have different ones."""
         from linkwright.messages import get_message
 
         types = self.context.node.graph.topics().get(tap.topic, [])

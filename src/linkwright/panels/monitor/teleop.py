@@ -20,7 +20,7 @@ _STOP_DELAY = 0.4
 
 
 class TeleopFeature(PageFeature):
-    """Publishes the velocities from the teleop pads of pages, with a publisher for each open pad."""
+    """Publishes the velocities from teleop pads, with a publisher for each open pad."""
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
@@ -69,7 +69,10 @@ class _Pad:
         self.review()
 
     def drive(self, velocity: Drive) -> None:
-        """Publish a velocity; the robot is stopped if no other velocity follows in time."""
+        """Publish a velocity.
+
+        The robot is stopped if no other velocity follows in time.
+        """
         if self._topic is None or len(velocity.linear) != 3 or len(velocity.angular) != 3:
             return
         self._cancel_stop()
@@ -84,7 +87,7 @@ class _Pad:
             self._topic.close()
 
     def review(self) -> None:
-        """Adopt the message type of the subscriptions to the topic, and send their number to the page.
+        """Adopt the message type of the topic's subscriptions, and send their number to the page.
 
         While the robot is moving, the type is not changed.
         """

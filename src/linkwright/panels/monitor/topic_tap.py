@@ -21,7 +21,7 @@ from linkwright.rviz.context import ViewerContext
 
 
 class Paced:
-    """Limits how often a function is called that may be requested more often.
+    """Limits the rate of calls of a function.
 
     Args:
         work: the function to call.
@@ -36,7 +36,7 @@ class Paced:
         self._due: asyncio.TimerHandle | None = None
 
     def ask(self) -> None:
-        """Request a call, which follows as soon as the period since the last call has passed."""
+        """Request a call. It follows as soon as the period since the last call has passed."""
         if self._due is None:
             self._due = self._loop.call_at(max(self._loop.time(), self._last_call_time + self._period), self._call)
 

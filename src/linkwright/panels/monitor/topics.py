@@ -28,7 +28,7 @@ from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.rviz.context import ViewerContext
 
 _MAX_ROWS = 1500
-"""The largest number of rows of a message; further rows are omitted."""
+"""The largest number of rows of a message. Further rows are omitted."""
 _MAX_ELEMENTS = 64
 _MAX_INLINE_ELEMENTS = 8
 """The number of elements that are shown in the row of an array."""
@@ -187,7 +187,7 @@ class TopicsFeature(PageFeature):
         self._update_subscriptions()
 
     def came(self, topic: str) -> None:
-        """Record that a topic has a new message, and send it soon to the pages that show its messages."""
+        """Record that a topic has a new message, and send it soon to the pages that show it."""
         for request in self._requests.values():
             if topic in request.opened:
                 request.due.add(topic)
@@ -200,7 +200,7 @@ class TopicsFeature(PageFeature):
     def _update_subscriptions(self, page: Page | None = None) -> None:
         """Open the subscriptions that pages need, and close all others.
 
-        `page` is a page with changed requests, which receives the last messages of its topics soon; or None.
+        `page` is a page with changed requests, or None. The page receives the last messages of its topics soon.
         """
         requests = self._requests.values()
         requested_topics = set[str]().union(*(request.measured | request.opened for request in requests))

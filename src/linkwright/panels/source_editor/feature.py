@@ -1,4 +1,4 @@
-"""The editor of source files: sends pages the files of the workspace, writes them, and runs language servers."""
+"""The editor of source files: sends, writes and watches files, and runs language servers."""
 
 from __future__ import annotations
 
@@ -25,12 +25,12 @@ from linkwright.panels.source_editor.files import FileContent, SourceFiles, with
 from linkwright.panels.source_editor.language_process import LanguageProcess
 
 _PERIOD = 0.4
-"""Seconds between two looks at the files on the disk."""
+"""Seconds between two checks of the files on the disk."""
 
 
 @dataclass(slots=True)
 class _OpenFile:
-    """A file that a page edits: its content on the disk, and the version number that the page knows it by."""
+    """A file that a page edits: its content on the disk, and its version number for the page."""
 
     version: int
     content: FileContent
@@ -62,7 +62,7 @@ class SourceEditorFeature(PageFeature):
         self._tasks: list[asyncio.Task[None]] = []
 
     def receive(self, page: Page, message: Any) -> None:
-        """Pass on a message for the language server, or queue a request about files."""
+        """Forward a message to the language server, or queue a request about files."""
         if isinstance(message, messages.AskLanguageServer):
             if (editor := self._editors.get(page)) is not None:
                 editor.process.send(message.content)
@@ -100,7 +100,7 @@ class SourceEditorFeature(PageFeature):
             try:
                 await self._do(page, message)
             except Exception as error:  # noqa: BLE001  # editing must continue after an error of this program
-                self.context.node.get_logger().error(f"A source file: {type(error).__name__}: {error}")
+                self.context.node.get_logger().error(f"A source file request failed: {type(error).__name__}: {error}")
 
     async def _do(self, page: Page, message: Any) -> None:
         if isinstance(message, messages.OpenEditor):
@@ -134,7 +134,10 @@ class SourceEditorFeature(PageFeature):
                 await self._send_file(page, editor, message.path)
 
     def _open(self, page: Page, file: str) -> messages.EditorOpened:
-        """Start the language server of a page, unless it runs or nothing can be edited."""
+        """Start a page's language server if necessary, and return the response to the page.
+
+        If no file can be edited, the language server is ended, and the response gives the reason.
+        """
         known = self._known(page)
         why_not = _refusal_reason(page, file, known)
         if why_not is not None:
@@ -163,7 +166,7 @@ class SourceEditorFeature(PageFeature):
         )
 
     async def _send_file(self, page: Page, editor: _Editor, path: str) -> None:
-        """Send a page a file, and remember its content."""
+        """Send a page a file, and store its content."""
         stamp, content = await asyncio.to_thread(_read, editor.files, path)
         open_file = editor.open_files.get(path)
         if open_file is None:
@@ -216,7 +219,10 @@ class SourceEditorFeature(PageFeature):
 
 
 def _differs(message: PageMessage, open_file: _OpenFile, refusal: Diagnostic | None) -> bool:
-    """Return whether a file that a page wrote differs from its text, because its encoding lacks some characters."""
+    """Return whether a file differs from the text of a page after a request.
+
+    The request may have been refused, or the encoding of the file may lack some characters.
+    """
     is_written = isinstance(message, messages.WriteSourceFile) and open_file.content.page_text == message.text
     return refusal is not None or not is_written
 
@@ -227,7 +233,10 @@ def _read(files: SourceFiles, path: str) -> tuple[tuple[int, ...], FileContent]:
 
 
 def _stamp(path: str) -> tuple[int, ...]:
-    """Return numbers that change with the content of a file; nothing if there is no file."""
+    """Return numbers that change with the content of a file.
+
+    The tuple is empty if there is no file.
+    """
     try:
         status = Path(path).stat()
     except (OSError, ValueError):
@@ -236,12 +245,12 @@ def _stamp(path: str) -> tuple[int, ...]:
 
 
 def _changed(stamps: dict[str, tuple[int, ...]]) -> list[str]:
-    """Return the paths of the files that no longer have their stamps."""
+    """Return the paths of the files whose stamps have changed."""
     return [path for path, stamp in stamps.items() if _stamp(path) != stamp]
 
 
 def _refusal_reason(page: Page, file: str, known: frozenset[str]) -> Phrase | None:
-    """Return why a page may not edit the workspace of a file, or None."""
+    """Return the reason why a page may not edit the workspace of a file, or None."""
     if not page.is_here:
         return elsewhere().message
     if find_spec(EXTRAS["lsp"]) is None:

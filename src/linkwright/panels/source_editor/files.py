@@ -1,4 +1,4 @@
-"""The source files that a page edits: which it may read and write, and their texts with the line end LF."""
+"""The source files that a page edits: access, and texts with the line end LF."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from linkwright.xmltree.decoding import decode
 from linkwright.xmltree.reader import read_bytes
 
 MAX_BYTES = 400_000
-"""Length of the longest file that is edited, because pages send a text as one message."""
+"""The maximum size of an edited file in bytes, because pages send a text as one message."""
 
 _MAX_NAMES = 2000
-"""In a folder."""
+"""The maximum number of names that are listed for a folder."""
 
 _GENERATED = frozenset({"build", "install", "log", "node_modules", "__pycache__"})
 """Names of folders whose files are generated."""
@@ -38,7 +38,7 @@ class FileContent:
 
     Attributes:
         text: the text with the file's line ends; None if the file cannot be read.
-        why_not: why the file cannot be read or must not be written; empty if it may be edited.
+        why_not: the reason why the file cannot be read or must not be written; empty if it may be edited.
     """
 
     text: str | None
@@ -53,8 +53,8 @@ class FileContent:
 class SourceFiles:
     """The files of a workspace, for an editor.
 
-    Readable are the files of the workspace, those of any package, and those of the shown descriptions, except hidden
-    ones. Writable are those that edits of the robot may write.
+    The editor may read the files of the workspace, of any package and of the shown descriptions, except hidden files.
+    It may write the files that edits of the robot may write.
 
     Args:
         main: a file of the workspace.
@@ -132,9 +132,9 @@ class SourceFiles:
             raise EditRefusedError(Diagnostic("EDIT108", message)) from None
 
     def names(self, folder: Path) -> tuple[list[str], list[str]]:
-        """Return the sorted names of the folders and of the files of text in a folder of the workspace.
+        """Return the sorted names of the subfolders and text files in a folder of the workspace.
 
-        Hidden and generated folders are omitted, as well as files whose suffix is that of a binary format.
+        Hidden and generated folders are omitted, and so are files with the suffix of a binary format.
         """
         real = Path(os.path.realpath(folder))
         if not real.is_relative_to(self.folder) or _is_hidden(real, self.folder):
@@ -150,7 +150,7 @@ class SourceFiles:
         return sorted(folders, key=str.lower)[:_MAX_NAMES], sorted(files, key=str.lower)[:_MAX_NAMES]
 
     def _reading_refusal(self, path: Path) -> Phrase | None:
-        """Return why a file must not be read, or None."""
+        """Return the reason why a file must not be read, or None."""
         real = Path(os.path.realpath(path))
         if str(path) in self.known:
             return None
@@ -173,13 +173,13 @@ def _is_hidden(path: Path, folder: Path) -> bool:
 
 
 def with_line_ends(text: str, before: str) -> str:
-    """Return a text with the line ends of the file's former text.
+    """Return a text with the line ends of the file's previous text.
 
-    Lines before and after the changed ones keep their line ends; the changed ones get that of most lines.
+    Lines before and after the changed lines keep their line ends. The changed lines get the most frequent line end.
 
     Args:
         text: the new text, with the line end LF.
-        before: the former text, with the file's line ends.
+        before: the previous text, with the file's line ends.
     """
     ends = _LINE_END.findall(before)
     if not any(end != "\n" for end in ends):

@@ -1,4 +1,4 @@
-"""A language server for one page, in a process of its own, so that its work does not delay the viewer."""
+"""A language server for one page, in a separate process to avoid delays of the viewer."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class LanguageProcess:
     """The language server of a page.
 
     Args:
-        language: the language of its texts, one of `LANGUAGES`; None for that of the environment.
+        language: the language of its texts, one of `LANGUAGES`; None for the language of the environment.
         receive: called on the event loop with each message of the server, as JSON.
         ended: called on the event loop when the server has ended without `close`.
 
@@ -30,7 +30,7 @@ class LanguageProcess:
 
     def __init__(self, language: str | None, receive: Callable[[str], object], ended: Callable[[], object]) -> None:
         options = () if language is None else ("--lang", language)
-        self._process = subprocess.Popen(  # noqa: S603 - our own program
+        self._process = subprocess.Popen(  # noqa: S603 - Linkwright's own program
             [sys.executable, "-m", "linkwright", *options, "lsp", "--stdio"],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
@@ -47,11 +47,11 @@ class LanguageProcess:
             thread.start()
 
     def send(self, content: str) -> None:
-        """Send the server a message, given as JSON; messages wait until the server has started."""
+        """Send a message to the server, as JSON. Messages wait until the server has started."""
         self._waiting.put(content)
 
     def close(self) -> None:
-        """End the server, which has nothing to save."""
+        """End the server. It has no unsaved data."""
         self._is_closed = True
         self._process.kill()
         self._waiting.put(None)
@@ -79,7 +79,7 @@ class LanguageProcess:
 
 
 def _message(answers: IO[bytes]) -> str | None:
-    """Return the next message of a language server; None if there is no other."""
+    """Return the next message of a language server, or None if there is none."""
     length = None
     for _ in range(_MAX_HEADER_LINES):
         line = answers.readline()

@@ -22,7 +22,7 @@ _SECONDS_BETWEEN_ERRORS = 5.0
 
 
 class DepthImageToLaserScan(SingleNode):
-    """Converts depth images to laser scans.
+    """The node that converts depth images to laser scans.
 
     Raises:
         LinkwrightError: a parameter has an invalid value (NODE433, GRAPH201).

@@ -48,7 +48,7 @@ _ENCODERS: dict[str, Callable[[Any], Any]] = {
 
 
 class ImageRepublisher(SingleNode):
-    """Republishes images with other transports.
+    """The node that republishes images with other transports.
 
     Raises:
         LinkwrightError: a transport does not exist (NODE433), or there are more than two arguments (NODE432).
@@ -116,7 +116,7 @@ class ImageRepublisher(SingleNode):
 
 
 def transport_topic(node: Node, base: str, transport: str) -> str:
-    """Return the topic of a transport: the base name, remapped if it is, with the transport appended."""
+    """Return the topic of a transport: the base name, after remapping, with the transport appended."""
     if transport == "raw":
         return base
     resolved = node.resolve_topic_name(base)

@@ -1,4 +1,4 @@
-"""Convert images to and from messages of image_transport's plugins ``compressed`` and ``compressedDepth``.
+"""The conversion of images to and from messages of the transports ``compressed`` and ``compressedDepth``.
 
 Sources: compressed_image_transport (the format text), compressed_depth_image_transport (the header, and the
 quantization of depths in metres with ``depth_max`` 10 and ``depth_quantization`` 100).
@@ -42,7 +42,7 @@ def plain_image(message: Any) -> Any:
 
 
 def compressed_depth(image: Any) -> Any | None:
-    """Encode a depth image for the transport ``compressedDepth``; return None for other images.
+    """Encode a depth image for the transport ``compressedDepth``, or return None for other images.
 
     Raises:
         BadImageError: the image has too little data.
@@ -73,7 +73,7 @@ def compressed_depth(image: Any) -> Any | None:
 
 
 def plain_depth(message: Any) -> Any:
-    """Decode a sensor_msgs/msg/CompressedImage of the transport ``compressedDepth`` to a sensor_msgs/msg/Image.
+    """Decode a CompressedImage of the transport ``compressedDepth`` to a sensor_msgs/msg/Image.
 
     Raises:
         BadImageError: the message is not such an image, or its data is damaged or missing.

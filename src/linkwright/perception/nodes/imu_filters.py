@@ -78,7 +78,7 @@ class _ImuFilter(SingleNode, ABC):
         """Create the filter from the remaining parameters."""
 
     def _begin(self, acceleration: Vector3, magnetic: Vector3 | None) -> bool:
-        """Initialise the orientation; return False if that is not possible yet."""
+        """Initialise the orientation, or return False if that is not possible yet."""
         return True
 
     def _output_orientation(self, orientation: Quaternion) -> Quaternion:
@@ -145,7 +145,7 @@ class _ImuFilter(SingleNode, ABC):
 
 
 class MadgwickNode(_ImuFilter):
-    """Estimates the orientation with the Madgwick filter.
+    """The node that estimates the orientation with the Madgwick filter.
 
     Raises:
         LinkwrightError: a parameter has an invalid value (NODE433, GRAPH201).
@@ -197,7 +197,7 @@ class MadgwickNode(_ImuFilter):
 
 
 class ComplementaryNode(_ImuFilter):
-    """Estimates the orientation with a complementary filter.
+    """The node that estimates the orientation with a complementary filter.
 
     Raises:
         LinkwrightError: a parameter has an invalid value (NODE433, GRAPH201).

@@ -25,7 +25,7 @@ from linkwright.perception.nodes.lazy import LazySubscriptions
 from linkwright.perception.scans.scan import Scan, ScanFilter
 
 GROUP = "linkwright.laser_filters"
-"""The group of entry points for filters; an entry point's name is the filter's type in a parameter file."""
+"""The group of entry points for filters. An entry point's name is the filter's type in a parameter file."""
 
 _PACKAGE_PREFIX = "laser_filters/"
 _FILTER_PATTERN = re.compile(r"filter(\d+)\.")
@@ -33,7 +33,7 @@ _QUEUE_DEPTH = 1000
 
 
 class ScanToScanFilterChain(SingleNode):
-    """Passes laser scans through a chain of filters.
+    """The node that passes laser scans through a chain of filters.
 
     Raises:
         LinkwrightError: a filter of the chain does not exist (NODE451), lacks a parameter (NODE452), or has a parameter
@@ -102,7 +102,7 @@ def to_scan(message: Any) -> Scan:
 
 
 def to_message(scan: Scan, scan_time: float) -> Any:
-    """Convert a scan to a sensor_msgs/msg/LaserScan; `scan_time` is the time between two scans in seconds."""
+    """Convert a scan to a sensor_msgs/msg/LaserScan, given the time between two scans in seconds."""
     message = get_message("sensor_msgs/msg/LaserScan")()
     message.header.stamp, message.header.frame_id = Time.from_nanoseconds(scan.stamp_ns), scan.frame
     message.angle_min, message.angle_max, message.angle_increment = scan.angle_min, scan.angle_max, scan.angle_increment

@@ -9,7 +9,7 @@ from linkwright.graph import Graph, Node, Publisher, Subscription
 
 
 class LazySubscriptions:
-    """Keeps subscriptions open while one or more of some publishers have a subscriber.
+    """Subscriptions that are open while at least one of the given publishers has a subscriber.
 
     Args:
         graph: the graph, which reports changes.

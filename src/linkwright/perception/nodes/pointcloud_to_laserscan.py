@@ -69,7 +69,7 @@ class _Converter(SingleNode, ABC):
         """Convert an input message to an output message."""
 
     def _to_target_frame(self, points: NDArray[np.float64], header: Any) -> NDArray[np.float64] | None:
-        """Return points in the target frame; None if there is no transform."""
+        """Return points in the target frame, or None if there is no transform."""
         if not self._target_frame:
             return points
         pose = self._poses.pose(self._target_frame, header.frame_id, header.stamp.nanoseconds)
@@ -80,7 +80,7 @@ class _Converter(SingleNode, ABC):
 
 
 class PointCloudToLaserScan(_Converter):
-    """Converts point clouds to laser scans.
+    """The node that converts point clouds to laser scans.
 
     Raises:
         LinkwrightError: a parameter has an invalid value (NODE433, GRAPH201).
@@ -135,7 +135,7 @@ class PointCloudToLaserScan(_Converter):
 
 
 class LaserScanToPointCloud(_Converter):
-    """Converts laser scans to point clouds.
+    """The node that converts laser scans to point clouds.
 
     Raises:
         LinkwrightError: a parameter has an invalid value (NODE433, GRAPH201).

@@ -1,4 +1,4 @@
-"""Filter scans by the positions of points: angles, sectors, boxes and polygons."""
+"""Filters of scans by the positions of points: angles, sectors, boxes and polygons."""
 
 from __future__ import annotations
 
@@ -138,7 +138,7 @@ class PolygonFilter(ScanFilter):
 
 
 def _set_beyond_range(scan: Scan, mask: Mask) -> Scan:
-    """Set some ranges beyond the maximum, and their intensities to 0; return the scan."""
+    """Set some ranges beyond the maximum and their intensities to 0, and return the scan."""
     if len(scan.intensities) == len(mask):
         scan.intensities[mask] = 0.0
     return replace_ranges(scan, mask, scan.range_max + 1.0)

@@ -20,7 +20,7 @@ Floats = NDArray[np.float32]
 Mask = NDArray[np.bool_]
 
 Lookup = Callable[[str, str, int], "Transform | None"]
-"""Returns the pose of the second frame in the first one at a time in nanoseconds; None if it is unknown."""
+"""A function that returns the pose of the second frame in the first at a time in nanoseconds, or None."""
 
 
 @dataclass(slots=True, eq=False)
@@ -62,9 +62,10 @@ class Scan:
         return (self.ranges >= self.range_min) & (self.ranges <= self.range_max)
 
     def points(self, frame: str, lookup: Lookup) -> NDArray[np.float64] | None:
-        """Return the end points of the rays in a frame, shape ``(n, 3)``, metres; None if the transform is unknown.
+        """Return the end points of the rays in a frame, shape ``(n, 3)``, metres.
 
-        The points of ranges that were not measured are meaningless.
+        The result is None if there is no transform to the frame. The points of ranges that were not measured are
+        meaningless.
         """
         ranges = np.where(self.measured, self.ranges, 0.0)
         angles = self.angles
@@ -84,7 +85,7 @@ class ScanFilter(ABC):
 
     @abstractmethod
     def apply(self, scan: Scan, lookup: Lookup) -> Scan | None:
-        """Return the filtered scan, which may be the same object; None drops the scan."""
+        """Return the filtered scan, possibly the same object, or None to drop the scan."""
 
 
 def replace_ranges(scan: Scan, mask: Mask, value: float = float("nan")) -> Scan:

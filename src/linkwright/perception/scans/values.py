@@ -1,4 +1,4 @@
-"""Filter scans by their values: ranges, intensities, indices, and values of previous scans."""
+"""Filters of scans by their values: ranges, intensities, indices, and values of previous scans."""
 
 from __future__ import annotations
 

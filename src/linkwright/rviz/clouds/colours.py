@@ -1,4 +1,4 @@
-"""The colour transformers of RViz: selects those that a cloud supports, and colours its points with them."""
+"""RViz's colour transformers: selection by the fields of a cloud, and colouring of its points."""
 
 from __future__ import annotations
 
@@ -58,7 +58,10 @@ class ColourSettings:
 
 
 def supported_transformers(points: Points) -> tuple[str, ...]:
-    """Return the transformers that can colour these points, with the one that RViz selects first."""
+    """Return the transformers that can colour these points.
+
+    The transformer that RViz selects by default is the first.
+    """
     transformers = [INTENSITY, AXIS, FLAT]
     if packed := _packed_channel(points):
         values = points.channels[packed]
@@ -73,10 +76,10 @@ def supported_transformers(points: Points) -> tuple[str, ...]:
 def coloured(
     points: Points, settings: ColourSettings, pose: NDArray[np.float64] | None = None
 ) -> tuple[Colours, tuple[float, float] | None]:
-    """Return the colours of the points, and the computed bounds, or None if none were computed.
+    """Return the colours of the points, and the computed bounds or None.
 
     With ``FlatColor`` the colours have no rows, because all points have the colour of the display. Bounds are the
-    minimum and maximum of the intensity or coordinate; they are computed if the settings do not contain them.
+    minimum and maximum of the intensity or coordinate. They are computed if the settings do not contain them.
 
     Args:
         points: the points.
@@ -132,7 +135,10 @@ def _colour_by_axis(
 
 
 def _bounds(values: NDArray[Any], limit: float) -> tuple[float, float]:
-    """Return the minimum and maximum of the finite values, clipped to ±`limit`; 0 and 0 if none is finite."""
+    """Return the minimum and maximum of the finite values, clipped to ±`limit`.
+
+    Both are 0 if no value is finite.
+    """
     if values.size == 0:
         return 0.0, 0.0
     minimum, maximum = float(values.min()), float(values.max())
@@ -178,12 +184,14 @@ def _gradient(corners: NDArray[np.float64], steps: int) -> NDArray[np.uint32]:
 
 
 def _packed_channel(points: Points) -> str | None:
-    """Return ``rgb`` or ``rgba``, whichever channel comes last in the cloud, as in RViz; None if it has neither."""
+    """Return the last channel named ``rgb`` or ``rgba``, as in RViz, or None if there is none."""
     return next((name for name in reversed(list(points.channels)) if name in ("rgb", "rgba")), None)
 
 
 def _unpacked_colours(points: Points) -> Colours:
-    """Return the colours of the channel ``rgb``, or of ``rgba`` if there is no ``rgb``, as red, green, blue, alpha.
+    """Return the packed colours of the points as red, green, blue and alpha, shape (N, 4).
+
+    The channel is ``rgb``, or ``rgba`` if there is no ``rgb``.
 
     From the lowest byte, a packed value consists of blue, green, red and alpha. The alpha of ``rgb`` is ignored.
     """

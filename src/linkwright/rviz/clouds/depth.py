@@ -157,7 +157,7 @@ class _CoveredPoints:
 
 
 def _read_depths(image: Any) -> tuple[NDArray[np.float32], NDArray[np.bool_]]:
-    """Return the depths in metres, shape (height, width), and a mask of the valid ones."""
+    """Return the depths in metres and a mask of the valid depths, each of shape (height, width)."""
     type_codes = {"32FC1": "f4", "16UC1": "u2", "mono16": "u2"}
     type_code = type_codes.get(image.encoding)
     if type_code is None:

@@ -23,7 +23,10 @@ _AXES = ("x", "y", "z")
 
 
 class BadCloudError(ValueError):
-    """Raised if a message cannot be shown as points; its text appears in the status row ``Message``."""
+    """Raised if a message cannot be shown as points.
+
+    The text of the error appears in the status row ``Message``.
+    """
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,7 +45,10 @@ class Points:
         return len(self.positions)
 
     def values(self, name: str) -> NDArray[Any] | None:
-        """Return a channel, or the coordinate ``x``, ``y`` or ``z``; None if there is no such channel."""
+        """Return a channel or the coordinate ``x``, ``y`` or ``z``.
+
+        Return None if there is no such channel.
+        """
         if name in _AXES:
             column: NDArray[Any] = self.positions[:, _AXES.index(name)]
             return column
@@ -157,7 +163,7 @@ def _column(data: NDArray[np.uint8], offset: int, kind: str, step: int, count: i
 
 
 def decimated(cloud: CloudPoints, max_bytes: int) -> CloudPoints:
-    """Return every k-th point, with the smallest k for which the arrays have about `max_bytes` bytes.
+    """Return every k-th point, so that the arrays have at most about `max_bytes` bytes.
 
     At least one point is returned.
     """
@@ -169,7 +175,10 @@ def decimated(cloud: CloudPoints, max_bytes: int) -> CloudPoints:
 
 
 class ScanProjector:
-    """Projects laser scans to points; caches the ray directions for scans of the same shape."""
+    """Projects laser scans to points.
+
+    The ray directions are cached, because successive scans usually have the same shape.
+    """
 
     def __init__(self) -> None:
         self._shape: tuple[float, float, int] = (0.0, 0.0, 0)
@@ -215,7 +224,7 @@ class ScanProjector:
 def swept(
     points: Points, fractions: NDArray[Any], first: NDArray[np.float64], last_pose: NDArray[np.float64]
 ) -> Points:
-    """Return points measured by a moving sensor, transformed with the sensor's pose at each measurement.
+    """Transform points of a moving sensor, each with the sensor's pose at its measurement.
 
     The result is in the frame in which the first and last poses are given.
 

@@ -14,7 +14,7 @@ from linkwright.files.input_files import read_file
 from linkwright.files.whole_files import write_whole_file
 
 MAX_SIZE = 16 * 1024 * 1024
-"""The largest file that is read, in bytes; files that RViz writes have about ten thousand bytes."""
+"""The largest file that is read, in bytes. Files that RViz writes have about ten thousand bytes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,7 +32,7 @@ class FileForm:
 
 @dataclass(frozen=True, slots=True)
 class FileState:
-    """The modification time (ns) and size (bytes) of a file, by which a later change is detected."""
+    """The modification time (ns) and size (bytes) of a file, used to detect later changes."""
 
     modified: int
     size: int

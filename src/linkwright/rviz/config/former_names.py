@@ -50,7 +50,10 @@ class FormerKey:
 
 
 def former_keys(cls: str) -> Mapping[Path, FormerKey]:
-    """Return the RViz 1 keys for a class by property path; an empty mapping for a class of RViz 2."""
+    """Return the RViz 1 keys of a class, by property path.
+
+    The mapping is empty for a class of RViz 2.
+    """
     if not is_former(cls):
         return _NO_KEYS
     return _KEYS_BY_CLASS.get(cls.removeprefix(_RVIZ1_PREFIX), _TOPIC_KEYS)

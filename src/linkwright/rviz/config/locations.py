@@ -1,7 +1,7 @@
 """Recently used configurations, server folders, and recovery files for unsaved edits.
 
 When the program ends, the unsaved edits of each configuration are stored in a recovery file. RViz asks the user before
-its window closes; a program that is stopped with Ctrl-C cannot ask.
+its window closes, but a program that is stopped with Ctrl-C cannot ask.
 """
 
 from __future__ import annotations
@@ -112,7 +112,10 @@ class RecentFiles:
         return self._paths
 
     def add(self, path: Path) -> None:
-        """Put a file at the top of the list, and store the list; a failure to store it is ignored."""
+        """Put a file at the top of the list, and store the list.
+
+        A failure to store the list is ignored.
+        """
         name = str(path)
         self._write([name, *(other for other in self._read() if other != name)][:_MAX_RECENT_FILES])
 
@@ -149,7 +152,7 @@ def recovery_folder() -> Path:
 
 
 def recovery_file(config: RvizConfig) -> Path:
-    """Return the path of the recovery file of a configuration, whether or not it exists.
+    """Return the path of the recovery file of a configuration. The file need not exist.
 
     A configuration that was opened from the recovery folder is its own recovery file.
     """
@@ -248,7 +251,10 @@ def _is_saved(config: RvizConfig, text: str) -> bool:
 
 
 def _recovery_file_name(name: str) -> str:
-    """Return a safe name of the recovery file for the name of a configuration, which may come from a page."""
+    """Return the name of the recovery file for a configuration.
+
+    Characters that are not safe in a file name are replaced, because the configuration's name may come from a page.
+    """
     digest = hashlib.sha256(os.fsencode(name)).hexdigest()[:8]  # distinguishes files with equal names
     stem = _UNSAFE_CHARACTERS.sub("_", Path(name).stem)[:_MAX_NAME_LENGTH]
     return f"{stem or _UNNAMED}-{digest}{EXTENSION}"

@@ -77,23 +77,26 @@ class PanelsConfig:
         if unknown_sections:
             names = ", ".join(f"'{section.text('Name') or section.text('Class')}'" for section in unknown_sections)
             message = phrase(
-                ("these panels are not shown, because the page does not have them, but stay in the file: {names}"),
+                ("the page cannot show these panels, but they stay in the file: {names}"),
                 names=names,
             )
             report(Diagnostic("RVIZ204", message, unknown_sections[0].span(), Severity.WARNING, source=document.source))
 
     @property
     def shown(self) -> list[PanelName] | None:
-        """The panels that RViz would show, in the order of the file; None if the file has no ``Panels``."""
+        """The panels that RViz shows for this file, in file order.
+
+        None if the file has no ``Panels``.
+        """
         if entries(self._document, _PANELS) is None:
             return None
         panels = (_panel_of(section) for section in self._loaded_sections() if self._is_shown(section))
         return list(dict.fromkeys(panel for panel in panels if panel is not None))
 
     def show(self, panels: Collection[PanelName]) -> bool:
-        """Open these panels and close all others in the file, and return whether that changed the file.
+        """Open exactly these panels in the file, and return whether the file changed.
 
-        Closing a panel does what RViz does: its entry stays, and the window state marks the panel as hidden. The entry
+        As in RViz, a closed panel keeps its entry, and the window state marks it as hidden. The entry
         is removed, as with RViz's *Delete Panel*, if the file has no such state or if the entry was added by
         this program. When the panel is opened again, a removed entry is restored to its position.
         """
@@ -123,7 +126,7 @@ class PanelsConfig:
                 remove_section(self._document, _PANELS, section)
 
     def _loaded_sections(self) -> list[Section]:
-        """Return the entries that RViz loads, which are the entries with a class and a name."""
+        """Return the entries that RViz loads, that is, those with a class and a name."""
         return [
             section
             for section in self._document.sections(_PANELS)
@@ -146,7 +149,9 @@ class PanelsConfig:
             self._document.put((_WINDOW_GEOMETRY, name, "collapsed"), "false")
 
     def _add(self, panel: PanelName) -> Section | None:
-        """Insert an entry for a panel and return it; None if the RViz version of the file does not have this panel.
+        """Insert an entry for a panel and return it.
+
+        Return None if the RViz version that wrote the file does not have this panel.
 
         An entry that was removed before is restored to its position.
         """
@@ -191,7 +196,9 @@ def _panel_of(section: Section) -> PanelName | None:
 
 
 def is_shown(state: str, name: str) -> bool | None:
-    """Return whether a dock is shown; None if the state does not have it, or was not written by Qt.
+    """Return whether a dock is shown, or None if it is unknown.
+
+    It is unknown if the state has no such dock or was not written by Qt.
 
     Args:
         state: the window state as hexadecimal digits.
@@ -203,7 +210,10 @@ def is_shown(state: str, name: str) -> bool | None:
 
 
 def set_dock_shown(state: str, name: str, *, is_visible: bool) -> str:
-    """Return the window state with a dock shown or hidden; unchanged if it has no such dock."""
+    """Return the window state with a dock shown or hidden.
+
+    The state is returned unchanged if it has no such dock.
+    """
     content = _decode_state(state)
     flags_index = _find_flags(content, name)
     if flags_index is None or bool(content[flags_index] & _SHOWN_FLAG) is is_visible:
@@ -213,13 +223,13 @@ def set_dock_shown(state: str, name: str, *, is_visible: bool) -> str:
 
 
 def _decode_state(state: str) -> bytes:
-    """Decode hexadecimal digits to bytes; return empty bytes for any other text."""
+    """Return the bytes that hexadecimal digits encode, or empty bytes for any other text."""
     try:
         content = bytes.fromhex(state)
     except ValueError:
         return b""
-    return content if 2 * len(content) == len(state) else b""  # the length differs if the text has spaces, which
-    # `fromhex` skips
+    return content if 2 * len(content) == len(state) else b""  # the length differs if the text has spaces,
+    # because `fromhex` skips them
 
 
 def _find_flags(content: bytes, name: str) -> int | None:
@@ -239,7 +249,7 @@ class Synchronization:
 
 
 def read_synchronization(document: Section) -> Synchronization:
-    """Return the synchronization settings of the Time panel, or the defaults if RViz would ignore them.
+    """Return the synchronization of the Time panel, or the default if RViz ignores the settings.
 
     RViz uses them only if ``Experimental`` is on. RViz 1 up to Noetic always uses them and does not write that key.
     """
@@ -253,7 +263,10 @@ def read_synchronization(document: Section) -> Synchronization:
 
 
 def write_synchronization(document: Section, synchronization: Synchronization) -> bool:
-    """Write the settings to the Time panel, if the file has one; return whether the file changed."""
+    """Write the settings to the Time panel, and return whether the file changed.
+
+    A file without a Time panel stays unchanged.
+    """
     panel = _time_panel(document)
     if panel is None or read_synchronization(document) == synchronization:
         return False

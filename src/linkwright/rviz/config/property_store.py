@@ -1,4 +1,4 @@
-"""The property values of a display, read from its section of the .rviz file and written back to it."""
+"""The property values of a display, stored in its section of the .rviz file."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _MIN_INDEXED_PROPERTIES = 30
 
 
 def property_id(owner: str, path: Iterable[str]) -> str:
-    """Return the ID that the page protocol uses for the property at a path of names.
+    """Return the ID of the property at a path, as the page protocol uses it.
 
     The path starts below a display or ``global``.
     """
@@ -25,7 +25,7 @@ def property_id(owner: str, path: Iterable[str]) -> str:
 
 
 class PropertyStore:
-    """Property values by path of names: the value that was set, the value in the file, or the default.
+    """Property values by path: the value that was set, the value in the file, or the default.
 
     Args:
         owner: the display's ID, or ``global``.
@@ -82,11 +82,11 @@ class PropertyStore:
         return str(self.get(*path))
 
     def check(self, path: Path, value: object) -> None:
-        """Raise the errors that `set` would raise, without storing a value."""
+        """Validate a value as `set` does, without storing it."""
         accept(self._spec(path), value)
 
     def set(self, path: Path, value: object) -> PropertyValue:
-        """Store a value, and return the value as it was stored: converted and clamped.
+        """Store a value, and return the stored value, which may have been converted or clamped.
 
         Raises:
             KeyError: when the schema has no such property.
@@ -160,7 +160,10 @@ class PropertyStore:
         return property_id(self._owner, path)
 
     def rows(self) -> list[Property]:
-        """Return the rows that the page shows: properties that are not hidden and meet their conditions."""
+        """Return the rows that the page shows.
+
+        Properties that are hidden, or whose condition is not met, have no row.
+        """
         return [self._row(spec, ()) for spec in self._get_schema() if self._is_shown(spec)]
 
     def is_condition(self, path: Path) -> bool:
@@ -168,7 +171,7 @@ class PropertyStore:
         return any(_depends_on(spec, path) for spec in self._get_schema())
 
     def frame_changes(self) -> list[PropertyChanged]:
-        """Return a change message for each ``frame`` property, with the frame names that it offers now."""
+        """Return a `PropertyChanged` with the current frame names for each ``frame`` property."""
         return [
             PropertyChanged(self.identity((spec.name,)), self.get(spec.name), self._get_frames())
             for spec in self._get_schema()
@@ -252,11 +255,14 @@ class PropertyStore:
         self._place().put(path, text, string=is_string, nested=is_nested)
 
     def _former_key(self, path: Path) -> FormerKey | None:
-        """Return the RViz 1 key of a property, or None if it has none or the file has the current key."""
+        """Return the RViz 1 key of a property, or None.
+
+        None means that the property has no such key, or that the file contains the current key.
+        """
         return self._former_keys.get(path) if self._section.scalar(*self._base, *path) is None else None
 
     def _place(self) -> Section:
-        """Return the mapping with the values; create it if it is missing."""
+        """Return the mapping that contains the values, creating it if it is missing."""
         section, new_sections = make_section(self._section, *self._base)
         self._new_sections += new_sections
         return section
@@ -273,7 +279,10 @@ class PropertyStore:
             return False
 
     def _find_spec(self, specs: Schema, name: str) -> PropertySpec | None:
-        """Return the first property with a name, or None; use an index for long lists."""
+        """Return the first property with a name, or None.
+
+        Long lists are searched with an index.
+        """
         if len(specs) < _MIN_INDEXED_PROPERTIES:
             return next((spec for spec in specs if spec.name == name), None)
         if self._index[0] is not specs:

@@ -137,18 +137,21 @@ class DisplayConfig:
 
     @property
     def written_class(self) -> str:
-        """The name of the display's class as written in the file; empty if the file has none."""
+        """The name of the display's class as written in the file, or empty if the file has none."""
         scalar = self.section.scalar("Class")
         return scalar.text if scalar else ""
 
     @property
     def is_group(self) -> bool:
-        """Whether the display is a group, which contains other displays and draws nothing."""
+        """Whether the display is a group. A group contains displays and draws nothing itself."""
         return self.cls == GROUP
 
     @property
     def name(self) -> str:
-        """The name of the display in the Displays panel; by default its class name without the package."""
+        """The name of the display in the Displays panel.
+
+        The default is the class name without the package.
+        """
         scalar = self.section.scalar("Name")
         return scalar.text if scalar else self.cls.rpartition("/")[2]
 
@@ -158,7 +161,10 @@ class DisplayConfig:
 
     @property
     def checked(self) -> bool:
-        """Whether the check box is on: the value of ``Enabled`` or, if it is missing, of ``Value``; off by default."""
+        """Whether the check box is on.
+
+        The value is that of ``Enabled`` or, if it is missing, of ``Value``. The default is off.
+        """
         text = self.section.text("Enabled")
         if text is None:
             text = self.section.text("Value")
@@ -174,7 +180,7 @@ class DisplayConfig:
 
     @property
     def box(self) -> list[Memory]:
-        """The current entries of the check box in the file, which can be assigned later to restore them."""
+        """The current entries of the check box in the file, to restore the check box later."""
         return [self.section.memory(key) for key in _CHECK_BOX_KEYS]
 
     @box.setter
@@ -184,7 +190,7 @@ class DisplayConfig:
 
     @property
     def enabled(self) -> bool:
-        """Whether the display is drawn: its check box is on, and so are the check boxes of all enclosing groups."""
+        """Whether the check boxes of the display and of all enclosing groups are on."""
         return self.checked and (self.group is None or self.group.enabled)
 
     def walk(self) -> Iterator[DisplayConfig]:
@@ -232,7 +238,7 @@ _MODEL_GRID = {"Alpha": "0.6", "Color": "136; 142; 150", "Plane Cell Count": "20
 """A grid that is visible on the ground of both themes, and extends beyond the visible area."""
 _MODEL_DISTANCE = 3.0
 _MODEL_PITCH = 0.5
-"""A view from slightly above, in rad: the robot hides less of itself than at the default pitch of RViz, 45 degrees."""
+"""The pitch of the view, in rad. The robot hides less of itself than at RViz's default pitch of 45 degrees."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -240,8 +246,8 @@ class Arrangement:
     """The order and grouping of the displays.
 
     Attributes:
-    displays: the displays in each group, and at the top level under the key None.
-    memories: the ``Displays`` sequences of the file, by the same keys.
+        displays: the displays in each group, and at the top level under the key None.
+        memories: the ``Displays`` sequences of the file, by the same keys.
     """
 
     displays: dict[DisplayConfig | None, list[DisplayConfig]]
@@ -253,7 +259,7 @@ class RvizConfig:
 
     Keys, their order, Qt's window state and displays of unknown classes are preserved and written back. Missing keys
     have RViz's defaults and stay missing until they are set. A file without changes is written back exactly as it was
-    read; a changed file loses its comments, as in RViz.
+    read. A changed file loses its comments, as in RViz.
 
     Attributes:
         path: the file that the configuration was read from or saved to, or None.
@@ -306,7 +312,9 @@ class RvizConfig:
     def parse(
         cls, text: str, name: str = "<rviz>", path: Path | None = None, form: FileForm | None = None
     ) -> RvizConfig:
-        """Return the configuration parsed from text; findings refer to it as `name`.
+        """Parse a configuration from text.
+
+        Findings refer to the text as `name`.
 
         Raises:
             LinkwrightError: RVIZ102, the text is not YAML; RVIZ103, it is not a configuration.
@@ -359,7 +367,10 @@ class RvizConfig:
         return config
 
     def propose_view(self, values: Mapping[str, Any]) -> None:
-        """Set provisional view values, which apply until a page fits the camera to the scene."""
+        """Set provisional view values.
+
+        They apply until a page fits the camera to the scene.
+        """
         view = self.views.current
         view.values |= values
         self.views.current = view
@@ -389,7 +400,7 @@ class RvizConfig:
 
     @property
     def spacing(self) -> float | None:
-        """The typical distance in m between the frames of a link and its parent; None if it is unknown.
+        """The typical distance between the frames of a link and its parent in m, or None if unknown.
 
         The distance is also None after `take_sizes` was called.
         """
@@ -429,7 +440,7 @@ class RvizConfig:
             yield from display.walk()
 
     def make(self, cls: str, name: str) -> DisplayConfig:
-        """Return a new enabled display with the defaults of its class, which `insert` can add to the file."""
+        """Return a new enabled display with the defaults of its class, to be added with `insert`."""
         section = yaml_tree.new_section(self.document.source)
         section.put(("Class",), cls, string=True)
         section.put(("Enabled",), "true")
@@ -439,11 +450,13 @@ class RvizConfig:
         return DisplayConfig(section, None)
 
     def duplicate(self, display: DisplayConfig) -> DisplayConfig:
-        """Return a copy of the entry of a display, which `insert` can add to the file."""
+        """Return a copy of a display's entry, to be added with `insert`."""
         return DisplayConfig(yaml_tree.copy_section(display.section), None)
 
     def insert(self, display: DisplayConfig, group: DisplayConfig | None = None, index: int | None = None) -> None:
-        """Insert a display into a group or at the top level, before the display at `index` or at the end.
+        """Insert a display into a group or at the top level.
+
+        It is placed before the display at `index`, or at the end.
 
         Raises:
             ValueError: the target is not a group, or it is the display itself or a group inside the display.
@@ -459,7 +472,7 @@ class RvizConfig:
         remove_display(display, self._parent(display.group), self.siblings(display.group))
 
     def make_group(self, name: str) -> DisplayConfig:
-        """Return an empty group, which `insert` can add to the file."""
+        """Return an empty group, to be added with `insert`."""
         return self.make(GROUP, name)
 
     def arrangement(self) -> Arrangement:
@@ -501,7 +514,10 @@ class RvizConfig:
     # --- file --------------------------------------------------------------------------------------------------
 
     def text(self) -> str:
-        """Return the file's text with all edits; the original text if nothing changed."""
+        """Return the text of the file with all edits.
+
+        Without edits, this is exactly the text that was read.
+        """
         source = self.document.source
         if yaml_tree.same(self.document, yaml_tree.parse(source.text, source.name)):
             return source.text
@@ -518,7 +534,7 @@ class RvizConfig:
         """
         target = Path(path) if path is not None else self.path
         if target is None:
-            raise ValueError("no file to save to")
+            raise ValueError("the configuration has no file: give the path to save to")
         configuration_file.write(target, self.text(), self._form)
         self.path = target
         self._state = configuration_file.state_of(target)
@@ -561,7 +577,9 @@ _UNKNOWN_SIZE = ModelSize(1.0, 1.0)
 def _fitted_sizes(
     displays: Sequence[DisplayConfig], size: ModelSize, ground: float = 0.0
 ) -> list[tuple[DisplayConfig, PropertyPath, float]]:
-    """Return the sizes of grid and axes for a robot, given the displays of `RvizConfig.for_model`.
+    """Return the sizes of grid and axes that fit a robot.
+
+    `displays` are the displays of `RvizConfig.for_model`.
 
     Each item is a display, the path of a property and its value. The height of the ground is included unless it is 0.
     """

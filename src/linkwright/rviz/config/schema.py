@@ -1,7 +1,7 @@
 """Property declarations: names, kinds, defaults and bounds, and the validation of values.
 
-A `PropertySpec` determines the property's row in the page, how the .rviz file is read and written, and how values
-from the page are checked. Names and defaults are RViz's, and so is the clamping of numbers to their bounds.
+A `PropertySpec` determines the row of the property in the page, its form in the .rviz file, and the valid values. Names
+and defaults are the same as in RViz, and so is the clamping of numbers to their bounds.
 """
 
 from __future__ import annotations
@@ -117,7 +117,10 @@ def line_style_spec(*children: PropertySpec) -> PropertySpec:
 
 
 def line_width_spec() -> PropertySpec:
-    """Return the declaration of ``Line Width`` in metres, which is shown for billboards."""
+    """Return the declaration of ``Line Width`` in metres.
+
+    The property is shown only for lines drawn as billboards.
+    """
     return PropertySpec(
         "Line Width", "float", 0.03, "Width of the lines, in metres.", minimum=0.001, when=IS_BILLBOARDS
     )
@@ -132,7 +135,7 @@ def accept(spec: PropertySpec, value: object) -> PropertyValue:
         ValueError: the property does not accept the value; the message states the expected value.
     """
     if spec.read_only:
-        raise ValueError("only the program sets it")
+        raise ValueError("the property is read-only")
     accepted_value = _validate(spec, value)
     if accepted_value is None:
         raise ValueError(
@@ -155,7 +158,7 @@ def from_text(spec: PropertySpec, text: str) -> PropertyValue:
 
 
 def fallback_value(spec: PropertySpec) -> PropertyValue:
-    """Return the value used for an invalid text in a file: true for a ``bool``, the default for other kinds.
+    """Return the value used for invalid text: true for a ``bool``, otherwise the default.
 
     Qt, and therefore RViz, reads every text as true except ``false``, ``0`` and an empty text; even ``no`` is true.
     """
@@ -229,7 +232,10 @@ def _accept_number(spec: PropertySpec, value: object) -> int | float | None:
 
 
 def _read_as_qt(spec: PropertySpec, text: str) -> object:
-    """Return the value that Qt reads from a text; if Qt cannot read it, return the text, which `accept` rejects."""
+    """Return the value that Qt reads from a text.
+
+    Text that Qt cannot read is returned unchanged, and `accept` rejects it.
+    """
     kind = spec.kind
     if kind == "bool":
         return _BOOLEANS.get(text.lower(), text)
@@ -259,7 +265,7 @@ def _parse_colour(text: str) -> str:
     if _SHORT_COLOUR.fullmatch(text):
         return "#" + "".join(2 * digit for digit in text[1:])
     if text.isalpha():
-        import webcolors  # type: ignore[import-untyped]  # it ships no types; here, because names are rare
+        import webcolors  # type: ignore[import-untyped]  # untyped; imported late, because names are rare
 
         with suppress(ValueError):
             return str(webcolors.name_to_hex(text))  # webcolors and Qt both know the colour names of SVG

@@ -1,4 +1,4 @@
-"""The display of a simulated world, and the topics on which a simulation describes the world."""
+"""The display entry of a simulated world, and the topics that describe the world."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """RViz's tools: the properties of each class, and the tools of a .rviz file.
 
-The page implements what the mouse does in each tool, see `frontend/src/scene/tools`. Names, topics and defaults are
+The page implements the mouse actions of each tool, see `frontend/src/scene/tools`. Names, topics and defaults are
 the same as in rviz_default_plugins and nav2_rviz_plugins.
 """
 
@@ -109,7 +109,7 @@ _MANAGER = "Visualization Manager"
 _TOOLS = "Tools"
 
 MAX_TOOLS = 100
-"""The number of tools up to which pages may add one; it is limited because each tool may have a publisher."""
+"""The number of tools up to which pages may add one. It is limited because each tool may have a publisher."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -167,9 +167,9 @@ class ToolsConfig:
             ValueError: there is no such class, or there are `MAX_TOOLS` tools already.
         """
         if len(self._entries) >= MAX_TOOLS:
-            raise ValueError(f"there are {MAX_TOOLS} tools already")
+            raise ValueError(f"there are already {MAX_TOOLS} tools, the maximum")
         if cls not in TOOL_KINDS:
-            raise ValueError(f"no tool is of the class {cls!r}")
+            raise ValueError(f"there is no tool class {cls!r}")
         self.write_defaults()
         section = self._new(cls)
         insert_section(self._manager(), _TOOLS, section)
@@ -188,7 +188,10 @@ class ToolsConfig:
         return entry
 
     def write_defaults(self) -> None:
-        """Write the default tools to the file if it lists no tools; to be called before one of them is changed."""
+        """Write the default tools to the file if it lists no tools.
+
+        Call this before changing a tool.
+        """
         if not self._is_listed_in_file:
             for entry in self._entries.values():
                 insert_section(self._manager(), _TOOLS, entry.section)

@@ -1,8 +1,8 @@
-"""RViz's views: the properties of each class, the views of a .rviz file, and sizes for a robot.
+"""RViz's views: property declarations by class, views in .rviz files, and sizes for a robot.
 
-The properties determine the rows of the Views panel, how ``Views`` is read and written, and how values from pages are
-checked. The page implements the camera of each class and what the mouse does, see `frontend/src/state/views`. Names
-and defaults are the same as in rviz_common (``ViewController``) and rviz_default_plugins.
+The declarations determine the rows of the Views panel, the keys of ``Views`` in the file, and the values accepted from
+pages. The page implements cameras and mouse actions, see `frontend/src/state/views`. Names and defaults are the same as
+in rviz_common (``ViewController``) and rviz_default_plugins.
 """
 
 from __future__ import annotations
@@ -45,12 +45,15 @@ class ModelSize:
 
     @property
     def distance(self) -> float:
-        """The camera distance in m that shows all of the robot, used until a page has measured its meshes."""
+        """The camera distance in m at which the whole robot is visible.
+
+        It is used until a page has measured the robot's meshes.
+        """
         return _rounded(2.0 * self.diagonal)
 
     @property
     def marker_scale(self) -> float:
-        """The TF display's marker scale at which the axes are visible but do not cover the links."""
+        """The marker scale of the TF display at which axes are visible but do not cover links."""
         axis = min(max(self.spacing / 2, self.diagonal / 40), self.diagonal / 10)
         return _rounded(axis / _AXIS_LENGTH)
 
@@ -61,7 +64,10 @@ class ModelSize:
 
     @property
     def cell(self) -> float:
-        """The grid's cell size in metres: the largest power of ten that is at most 1.5 times the diagonal."""
+        """The cell size of the grid in m.
+
+        It is the largest power of ten that is at most 1.5 times the diagonal.
+        """
         return float(10.0 ** math.floor(math.log10(self.diagonal * 1.5)))
 
 
@@ -239,7 +245,9 @@ class ViewEntry:
         return View(self._view.cls, self._view.name, dict(self._view.values))
 
     def set(self, view: View) -> None:
-        """Write a view to the file; values that have not changed keep their spelling.
+        """Write a view to the file.
+
+        Values that have not changed keep their spelling.
 
         Raises:
             ValueError: the name is too long, the class is unknown or has no such value, or a value is not accepted.
@@ -249,7 +257,7 @@ class ViewEntry:
         if len(view.name) > MAX_TEXT_LENGTH:
             raise ValueError(f"the name of a view has at most {MAX_TEXT_LENGTH} characters")
         if view.cls not in VIEW_SCHEMAS:
-            raise ValueError(f"no view is of the class {view.cls!r}")
+            raise ValueError(f"there is no view class {view.cls!r}")
         paths = value_paths(VIEW_SCHEMAS[view.cls])
         store = self._store if view.cls == self._cls else self._make_store(view.cls)
         for name, value in view.values.items():
@@ -352,7 +360,7 @@ class ViewsConfig:
             ValueError: the view is not valid, or there are too many saved views.
         """
         if len(self._saved) >= MAX_SAVED_VIEWS:
-            raise ValueError(f"there are {MAX_SAVED_VIEWS} saved views already")
+            raise ValueError(f"there are already {MAX_SAVED_VIEWS} saved views, the maximum")
         section = new_section(self._document.source)
         entry = ViewEntry(section, (), _ignore_finding)
         entry.set(view)

@@ -1,7 +1,7 @@
-"""YAML as a tree that is edited in place: values without edits are written back as they were read.
+"""YAML as a tree that is edited in place. Values without edits keep their spelling.
 
-RViz's files contain many keys that this program does not know. The tree consists of PyYAML's nodes, so that key order,
-quoting and the spelling of every scalar survive, and every value has its line number.
+RViz's files contain many keys that this program does not use. The tree consists of PyYAML's nodes, which preserve the
+order of keys, the quoting and the spelling of every scalar, and the line number of every value.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ MAX_DEPTH = 100
 """The deepest nesting that is read. PyYAML builds nodes by recursion, without a limit."""
 
 MAXIMUM_NODES = 1_000_000
-"""The largest number of nodes after aliases are expanded; a few lines of YAML can expand to billions of nodes."""
+"""The largest number of nodes after aliases are expanded. A few lines of YAML can expand to billions of nodes."""
 
 _STRING = "tag:yaml.org,2002:str"
 _NULL = "tag:yaml.org,2002:null"
@@ -51,7 +51,7 @@ class Section:
     """A mapping in the file.
 
     A path of keys identifies a scalar. If a value has children, RViz stores the value itself under ``Value`` in the
-    mapping of the children; a path that ends at such a mapping refers to that value.
+    mapping of the children. A path that ends at such a mapping refers to that value.
     """
 
     def __init__(self, node: yaml.MappingNode, source: SourceText) -> None:
@@ -74,7 +74,10 @@ class Section:
         return None if node is None else Scalar(node.value, self.span(node))
 
     def text(self, *path: str) -> str | None:
-        """Return the text of the scalar at a path, or None; faster than `scalar`, which adds the position."""
+        """Return the text of the scalar at a path, or None.
+
+        This is faster than `scalar`, which adds the position.
+        """
         node = self._scalar_node(path)
         return None if node is None else str(node.value)
 
@@ -145,7 +148,7 @@ class Section:
 
 
 def parse(text: str, name: str) -> Section:
-    """Return the root of a document, which must be a mapping.
+    """Return the root mapping of a document.
 
     Raises:
         LinkwrightError: RVIZ102, the text is not YAML or is nested too deep; RVIZ103, its root is not a mapping.
@@ -193,7 +196,9 @@ def copy_section(section: Section) -> Section:
 
 
 def insert_section(parent: Section, key: str, section: Section, before: Section | None = None) -> None:
-    """Insert a mapping into the sequence under a key, which is created if it is missing.
+    """Insert a mapping into the sequence under a key.
+
+    The sequence is created if it is missing.
 
     Args:
         parent: the mapping with the key.
@@ -268,7 +273,7 @@ class NewSection:
 
 
 def make_section(section: Section, *path: str) -> tuple[Section, list[NewSection]]:
-    """Return the mapping at a path, creating it if it is missing, and the list of created mappings."""
+    """Return the mapping at a path, and the list of mappings that were created for it."""
     new_sections = []
     for key in path:
         child_section = section.section(key)
@@ -281,7 +286,7 @@ def make_section(section: Section, *path: str) -> tuple[Section, list[NewSection
 
 
 def remove_unchanged(new_sections: list[NewSection]) -> list[NewSection]:
-    """Remove new mappings that got no further keys, and return the remaining ones.
+    """Remove new mappings without further keys, and return the remaining new mappings.
 
     The mappings are removed from the last to the first, up to the first that has further keys.
     """
@@ -437,7 +442,7 @@ def _text_in_layout(node: yaml.Node, source: str) -> str:
 
 
 def _default_text(node: yaml.Node) -> str:
-    """Return a document as text in libyaml's default layout, which is fast."""
+    """Return a document as text in libyaml's default layout. The conversion is fast."""
     return _serialize(node, _PlainDumper)
 
 
@@ -454,7 +459,10 @@ class _IndentingDumper(yaml.SafeDumper):
 
 
 class _RvizDumper(_IndentingDumper):
-    """A YAML dumper with the layout of RViz, which puts even an empty mapping on a separate line."""
+    """A YAML dumper with the layout of RViz.
+
+    Even an empty mapping is on a separate line.
+    """
 
     def expect_block_mapping_simple_value(self) -> None:
         if not (isinstance(self.event, yaml.MappingStartEvent) and self.check_empty_mapping()):

@@ -1,9 +1,8 @@
 """The registry of display classes, by the names that .rviz files use for them.
 
 Displays are registered as entry points of the group ``linkwright.displays``. The name of an entry point is the name of
-the class in .rviz files. A
-display class is imported when its first display is created: most configurations use only a few classes, and the program
-must start quickly.
+the class in .rviz files. A display class is imported when its first display is created, because most configurations use
+only a few classes and the program must start quickly.
 """
 
 from __future__ import annotations
@@ -25,7 +24,10 @@ class GroupDisplay(ViewerDisplay):
 
 
 class UnsupportedDisplay(ViewerDisplay):
-    """A display whose class is not available; its entry stays in the file, but nothing is drawn."""
+    """A display whose class is not available.
+
+    The entry stays in the file, but nothing is drawn.
+    """
 
     CLASS = ""
     SUPPORTED = False
@@ -48,7 +50,7 @@ GROUP = "linkwright.displays"
 
 
 def has_display(cls: str) -> bool:
-    """Return whether a display class has an entry point, as every available class has, including groups."""
+    """Return whether a display class is available, that is, has an entry point."""
     return cls in extensions(GROUP)
 
 
@@ -58,7 +60,10 @@ def display_classes() -> list[type[ViewerDisplay]]:
 
 
 def make_display(host: DisplayHost, identity: str, config: DisplayConfig) -> ViewerDisplay:
-    """Return a new display for an entry of the file; an `UnsupportedDisplay` if its class is not available."""
+    """Return a new display for an entry of the file.
+
+    If the class is not available, the display is an `UnsupportedDisplay`.
+    """
     if not has_display(config.cls):
         return UnsupportedDisplay(host, identity, config)
     display_class = _display_class(config.cls)
@@ -73,7 +78,7 @@ def _display_class(cls: str) -> type[ViewerDisplay] | str:
     """Return the class that an entry point names, or the reason why the class cannot be loaded."""
     try:
         display_class = extensions(GROUP)[cls].load()
-    except Exception as error:  # noqa: BLE001  # of a package that is not ours anything may be wrong
+    except Exception as error:  # noqa: BLE001  # a third-party package may raise any exception
         return f"{type(error).__name__}: {error}"
     if not (isinstance(display_class, type) and issubclass(display_class, ViewerDisplay)):
         return f"{display_class!r} is not a class derived from ViewerDisplay"

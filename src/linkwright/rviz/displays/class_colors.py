@@ -1,4 +1,4 @@
-"""The colours of detection classes, which are the same in all displays."""
+"""The colours of detection classes, the same in all displays."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ KNOWN: dict[str, Color] = {
     "cyclist": (255, 255, 0),
     "motorcycle": (230, 230, 250),
 }
-"""The classes to which vision_msgs_rviz_plugins gives fixed colours."""
+"""The classes with fixed colours in vision_msgs_rviz_plugins."""
 
 UNCLASSIFIED_COLOR: Color = (255, 22, 80)
 """The colour of detections without a class, as in vision_msgs_rviz_plugins."""

@@ -1,4 +1,4 @@
-"""The properties shared by all displays of points, as in RViz's PointCloudCommon and its transformers."""
+"""The properties of displays of points, as in RViz's PointCloudCommon and its transformers."""
 
 from __future__ import annotations
 
@@ -113,7 +113,7 @@ TRANSFORMER_SPECS: Schema = (
 )
 
 COLOUR_PROPERTIES = frozenset(spec.name for spec in TRANSFORMER_SPECS) - {"Color", POSITION_TRANSFORMER}
-"""The properties that affect the computed colours of points; the page itself applies ``Color``."""
+"""The properties that affect the computed colours of points. The page itself applies ``Color``."""
 
 
 def scalar_specs(channel: str, minimum: float, maximum: float, *, inverted: bool | None = None) -> Schema:
@@ -125,7 +125,7 @@ def scalar_specs(channel: str, minimum: float, maximum: float, *, inverted: bool
         channel: the channel that contains the number.
         minimum: the default of ``Min Intensity``.
         maximum: the default of ``Max Intensity``.
-        inverted: the fixed value of ``Invert Rainbow``, whose row is hidden; None to let the user choose.
+        inverted: the fixed value of ``Invert Rainbow``, whose row is then hidden; None to let the user choose.
     """
     changes: dict[str, dict[str, Any]] = {
         POSITION_TRANSFORMER: {"hidden": True},

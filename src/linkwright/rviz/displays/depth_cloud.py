@@ -145,12 +145,15 @@ class DepthCloudDisplay(CloudDisplay):
         self._camera_pose: Pose | None = None
 
     def subscription(self) -> tuple[str, str, QoSProfile]:
-        """Return the message type, topic and QoS of the depth image, which depend on its transport."""
+        """Return the message type, topic and QoS of the depth image, according to its transport."""
         source = self._depth_source()
         return source.message_type, source.topic, self._qos()
 
     def most_waiting(self) -> int:
-        """Return the maximum number of queued depth images, which is also that of stored colour images."""
+        """Return the maximum number of queued depth images.
+
+        The same limit applies to stored colour images.
+        """
         return int(self.properties.number(QUEUE_SIZE))
 
     def pixel_size(self) -> float:
@@ -172,7 +175,10 @@ class DepthCloudDisplay(CloudDisplay):
         self._show_depths(message, pose, colour)
 
     def schema(self) -> Schema:
-        """Return the properties; with ``Topic Filter``, only topics with suitable names are offered."""
+        """Return the properties.
+
+        With ``Topic Filter``, only topics with suitable names are offered.
+        """
         return DEPTH_SCHEMA if self._is_filtered else DEPTH_SCHEMA_UNFILTERED
 
     def changed(self, path: Path) -> None:
@@ -278,7 +284,7 @@ class DepthCloudDisplay(CloudDisplay):
         return bool(self.properties.text(COLOUR_TOPIC).strip())
 
     def _nearest_colour(self, depth: Any) -> Any:
-        """Return the colour image that is nearest in time to a depth image, or None if none is close enough."""
+        """Return the colour image nearest in time to a depth image, or None if none is close enough."""
         stamp_ns = self.frame_of(depth)[1]
         nearest = min(self._recent_colours, key=lambda image: abs(self.frame_of(image)[1] - stamp_ns), default=None)
         if nearest is None or abs(self.frame_of(nearest)[1] - stamp_ns) > _MAX_TIME_DIFFERENCE_NS:

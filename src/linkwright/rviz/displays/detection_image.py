@@ -36,8 +36,8 @@ class DetectionImageDisplay(ImageDisplay):
     """A display of images in a separate panel, with boxes around the detected objects.
 
     While detections arrive, each image is stored until the detections with the same stamp arrive. Images are therefore
-    delayed by the time that the detector
-    needs. Detections for an image that is no longer stored are drawn over the current image.
+    delayed by the processing time of the detector. Detections for an image that is no longer stored are drawn over the
+    current image.
     """
 
     CLASS = "linkwright/Detections"

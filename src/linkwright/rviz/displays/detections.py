@@ -77,7 +77,10 @@ class BoundingBox3DArrayDisplay(_BoxDisplay):
     SCHEMA = (topic_spec(description=MESSAGE, filter_size=10), *_BOX_PROPERTIES, _COLOUR_PROPERTY)
 
     def content(self, message: Any) -> DataContent | None:
-        """Return the boxes of a message in white, which pages replace with the colour of the property."""
+        """Return the boxes of a message, all in white.
+
+        Pages replace white with the colour of the property.
+        """
         boxes = self.boxes_of(message)
         return self._content(boxes, [(255, 255, 255)] * len(boxes), [-1.0] * len(boxes), [""] * len(boxes))
 
@@ -144,7 +147,10 @@ class Detection3DArrayDisplay(_BoxDisplay):
             self.show_again()
 
     def process_message(self, message: Any, pose: Pose | None) -> None:
-        """Show the boxes until the next message or, if ``Lifetime`` is set, for this number of seconds."""
+        """Show the boxes until the next message.
+
+        If ``Lifetime`` is set, they are hidden after this number of seconds.
+        """
         super().process_message(message, pose)
         self._cancel_end()
         seconds = int(self.properties.number(LIFETIME))

@@ -22,7 +22,7 @@ StatusReport = Callable[[StatusLevel, str], None]
 class DetectorThreshold:
     """Sets the minimum score as a parameter of a detector node.
 
-    Requests are sent one at a time; a new value replaces a value that was not sent yet.
+    Requests are sent one at a time. A new value replaces a value that was not sent yet.
 
     Args:
         node: the node that sends requests.
@@ -35,7 +35,10 @@ class DetectorThreshold:
         self._task: asyncio.Task[None] | None = None
 
     def set(self, topic: str, value: float) -> None:
-        """Set the minimum score at the node that publishes a topic, if that node has such a parameter."""
+        """Set the minimum score at the node that publishes a topic.
+
+        Nothing is set if several nodes publish the topic, or if the node has no such parameter.
+        """
         self._pending_request = topic, value
         if self._task is None or self._task.done():
             self._task = asyncio.get_running_loop().create_task(self._send_requests())
@@ -61,7 +64,7 @@ class DetectorThreshold:
             for info in self._node.get_publishers_info_by_topic(resolved_topic)
         }
         if len(publishers) != 1:
-            return "ok", f"Filtered here: {len(publishers)} nodes publish {resolved_topic}"
+            return "ok", f"The display filters: {len(publishers)} nodes publish {resolved_topic}"
         (name,) = publishers
         client = AsyncParameterClient(self._node, name)
         try:
@@ -69,14 +72,14 @@ class DetectorThreshold:
             names = (await answer(client, client.list_parameters())).result.names
             parameter_name = next((name for name in _PARAMETER_NAMES if name in names), None)
             if parameter_name is None:
-                return "ok", f"Filtered here: {name} has no parameter 'threshold'"
+                return "ok", f"The display filters: {name} has no parameter 'threshold'"
             parameter = Parameter(parameter_name, ParameterType.DOUBLE, value)
             result = (await answer(client, client.set_parameters([parameter]))).results[0]
         except NoAnswerError as error:
-            return "warn", f"Filtered here: {error}"
+            return "warn", f"The display filters: {error}"
         finally:
             with suppress(ValueError):  # the node may already have been destroyed
                 client.destroy()
         if not result.successful:
-            return "warn", f"Filtered here: {name} refuses '{parameter_name}': {result.reason}"
+            return "warn", f"The display filters: {name} rejects '{parameter_name}': {result.reason}"
         return "ok", f"Parameter '{parameter_name}' of {name}"

@@ -29,7 +29,9 @@ _ROTATING_TYPES = ("revolute", "continuous")
 
 
 class EffortDisplay(RecentDisplay):
-    """A display of joint torques as rings about the joint axes; a larger ring is closer to the limit.
+    """A display of joint torques as rings about the joint axes.
+
+    The larger the ring, the closer the torque is to the effort limit.
 
     Revolute and continuous joints are drawn. RViz draws the torques of revolute joints only, and orients the rings
     incorrectly for axes other than z.
@@ -65,7 +67,7 @@ class EffortDisplay(RecentDisplay):
         super().__init__(host, identity, config)
 
     def schema(self) -> Schema:
-        """Return the fixed properties, and a check box for each revolute or continuous joint with limits."""
+        """Return the fixed properties, and a check box for each joint whose effort can be drawn."""
         names = sorted(self._joints or ())
         joint_specs = tuple(
             PropertySpec(name, "bool", True, "Draw the ring of this joint.", nested=True, details="effort")
@@ -101,7 +103,9 @@ class EffortDisplay(RecentDisplay):
         self._follow()
 
     def frame_of(self, message: Any) -> tuple[str, int]:
-        """Return the frame of the first known joint of the message, because joint states have no frame.
+        """Return the frame of the first known joint in the message, and the stamp in ns.
+
+        The joint determines the frame, because joint states have none.
 
         If no joint is known, the frame is the Fixed Frame.
         """

@@ -54,7 +54,10 @@ class GridCellsDisplay(TopicDisplay):
 
 
 class PointStampedDisplay(RecentDisplay):
-    """A display of the last points of a topic as spheres, which keep their positions in the Fixed Frame."""
+    """A display of the last points of a topic as spheres.
+
+    They keep their positions in the Fixed Frame.
+    """
 
     CLASS = "rviz_default_plugins/PointStamped"
     MESSAGE = "geometry_msgs/msg/PointStamped"
@@ -105,15 +108,16 @@ class RangeDisplay(RecentDisplay):
     )
 
     def content(self, message: Any) -> DataContent | None:
-        """Return the cone of a measurement; its length is zero if the measurement is not valid."""
+        """Return the cone of a measurement, with length 0 if the measurement is not valid."""
         angle = float(message.field_of_view)
         return RangeCone(_cone_length(message), angle if math.isfinite(angle) else 0.0)
 
 
 def _cone_length(message: Any) -> float:
-    """Return the length of the cone in metres by the rule of RViz, which follows REP 117.
+    """Return the length of the cone in metres, as in RViz, according to REP 117.
 
-    Sensors for a fixed distance have equal minimum and maximum ranges, and a different rule applies to them.
+    A fixed-distance ranger has equal minimum and maximum ranges. It reports -Inf for a detection, which is drawn at the
+    fixed distance.
     """
     distance, minimum, maximum = float(message.range), float(message.min_range), float(message.max_range)
     if minimum <= distance <= maximum and math.isfinite(distance):

@@ -18,16 +18,19 @@ from linkwright.rviz.displays.base.topic_display import RecentDisplay
 _LAYER_MODE = "GridMapLayer"
 _HEIGHT_MODES = (_LAYER_MODE, "Layer", "Flat")
 _COLOR_MODES = (_LAYER_MODE, "IntensityLayer", "ColorLayer", "FlatColor", "None")
-"""The first option is the initial value in RViz, which has the meaning of the second; RViz does not offer it."""
+"""The first option is RViz's initial value. It has the meaning of the second, and RViz does not offer it."""
 
 _MAX_CELLS = 400_000
-"""The largest number of cells that are drawn; some rows and columns of larger maps are skipped."""
+"""The largest number of cells that are drawn. Some rows and columns of larger maps are skipped."""
 
 _SIZE_ROW = "Size"
 
 
 class BadGridError(ValueError):
-    """Raised when a grid map cannot be drawn; the message gives the reason."""
+    """Raised when a grid map cannot be drawn.
+
+    The message gives the reason.
+    """
 
 
 class GridMapDisplay(RecentDisplay):
@@ -227,7 +230,9 @@ class _Grid:
             )
 
     def layer(self, name: str) -> NDArray[np.float32]:
-        """Return the values of a layer, shape (rows, columns); cells without a value are not finite.
+        """Return the values of a layer, shape (rows, columns).
+
+        The value of an unknown cell is not finite.
 
         Raises:
             BadGridError: there is no such layer, or it does not have one number for each cell.

@@ -1,4 +1,4 @@
-"""The displays Image and Camera, which show the images of a topic, raw or compressed."""
+"""The displays Image and Camera, for raw and compressed images."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ class ImageTopicDisplay(TopicDisplay):
         return (cls.MESSAGE, "sensor_msgs/msg/CompressedImage")
 
     def subscription(self) -> tuple[str, str, QoSProfile]:
-        """Return the message type, topic and QoS to subscribe with, which depend on the transport."""
+        """Return the message type, topic and QoS to subscribe with, according to the transport."""
         source = self._selected_source()
         return source.message_type, source.topic, super().subscription()[2]
 
@@ -109,7 +109,10 @@ class ImageTopicDisplay(TopicDisplay):
         self.send(content, frame=frame.removeprefix("/"), pose=pose, stamp_ns=stamp_ns, shrink=shrink)
 
     def reduction(self, width: int, height: int) -> int:
-        """Return the side length in pixels of the blocks that are averaged to one pixel before an image is sent."""
+        """Return the block size by which an image is reduced before it is sent.
+
+        Each square block of this side length, in pixels, is averaged to one pixel.
+        """
         return 1
 
     def _selected_source(self) -> ImageSource:
@@ -222,7 +225,7 @@ class ImageDisplay(ImageTopicDisplay):
         return self._panel is not None and (self._panel.width <= 0 or self._panel.height <= 0)
 
     def receive(self, message: Any) -> None:
-        """Handle the size of the largest panel, which limits the pixels that are sent.
+        """Handle the size of the largest panel, the limit for the pixels to send.
 
         While no panel is visible, the display unsubscribes after its first image, so that a camera that publishes only
         to subscribers does not publish for a hidden panel.
@@ -248,7 +251,10 @@ class ImageDisplay(ImageTopicDisplay):
         return max(1, int(max(width / panel.width, height / panel.height)))
 
     def schema(self) -> Schema:
-        """Return the properties; the value range is hidden unless the last image has more than 8 bits."""
+        """Return the properties.
+
+        The value range is hidden unless the last image has more than 8 bits.
+        """
         if self._has_range:
             return self.SCHEMA
         return (_TOPIC_SPEC, *(replace(spec, hidden=True) for spec in _RANGE_SPECS))
@@ -342,7 +348,7 @@ class CameraDisplay(ImageTopicDisplay):
             self.publish_properties()
 
     def _make_check_boxes(self, displays: Sequence[ViewerDisplay], group: DisplayConfig | None) -> Schema:
-        """Return a check box for each other display in a group, with the check boxes of subgroups as children.
+        """Return a check box for each other display in a group, including its subgroups.
 
         Of several displays with the same name, only the first has a check box. `group` is None for the top level.
         """
@@ -359,7 +365,7 @@ class CameraDisplay(ImageTopicDisplay):
         return tuple(specs.values())
 
     def most_waiting(self) -> int:
-        """Return the maximum number of queued messages, which is fixed as in RViz."""
+        """Return the maximum number of queued messages, a constant as in RViz."""
         return _MAX_QUEUED
 
     def process_image(self, message: Any, pose: Pose | None) -> None:

@@ -28,7 +28,10 @@ _EVENT_TYPES = {"pose_update": 1, "menu_select": 2, "button_click": 3, "mouse_do
 
 
 class InteractiveMarkersDisplay(DataDisplay):
-    """A display of the markers of an interactive marker server; it sends the actions of the user to the server."""
+    """A display of the markers of an interactive marker server.
+
+    It sends the user's actions to the server.
+    """
 
     CLASS = "rviz_default_plugins/InteractiveMarkers"
     MESSAGE = "visualization_msgs/msg/InteractiveMarkerUpdate"
@@ -69,7 +72,7 @@ class InteractiveMarkersDisplay(DataDisplay):
         self.context.meshes.replace(self.id, {})
 
     def changed(self, path: Path) -> None:
-        """Connect again if the namespace or the transparency changed, which also recreates the markers."""
+        """Connect again and recreate the markers if the namespace or the transparency changed."""
         if path in ((_NAMESPACE_PROPERTY,), (_TRANSPARENCY_PROPERTY,)):
             self.reset()
 

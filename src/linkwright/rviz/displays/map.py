@@ -91,15 +91,18 @@ class MapDisplay(TopicDisplay):
         self._follow_topic(replace_in_file=False)
 
     def frame_of(self, message: Any) -> tuple[str, int]:
-        """Return the map's frame, by default ``map``, and the time of the frame's pose in nanoseconds.
+        """Return the map's frame, by default ``map``, and the time of the frame's pose in ns.
 
-        The time is 0, which means the latest transform, unless the timestamp is used.
+        Without ``Use Timestamp`` the time is 0, the latest transform.
         """
         frame, stamp_ns = super().frame_of(message)
         return frame or "map", stamp_ns if self.properties.flag(_USE_TIMESTAMP) else 0
 
     def process_message(self, message: Any, pose: Pose | None) -> None:
-        """Show a map; if the same map is shown again, the updates applied to it are preserved."""
+        """Show a map.
+
+        If it is the current map, the updates applied to it are preserved.
+        """
         self._pose = pose
         if message is not self._map and not self._load(message):
             return
@@ -122,7 +125,7 @@ class MapDisplay(TopicDisplay):
         self._follow_topic(replace_in_file=False)
 
     def frames_changed(self) -> None:
-        """Place the map in a new Fixed Frame, and show in the status whether the map's pose is known."""
+        """Place the map in a new Fixed Frame, and show whether the map's pose is known."""
         super().frames_changed()
         if self._map is None or self.properties.flag(_USE_TIMESTAMP):
             return
@@ -136,7 +139,10 @@ class MapDisplay(TopicDisplay):
         self._updates.resume()
 
     def reset(self) -> None:
-        """Remove the map from the pages; if the topic has changed, also discard the map itself."""
+        """Remove the map from the pages.
+
+        If the topic has changed, the map itself is also discarded.
+        """
         if self._send_timer is not None:
             self._send_timer.cancel()
             self._send_timer = None
@@ -265,7 +271,10 @@ def _size_mismatch(grid: Any, cells: NDArray[np.uint8]) -> Phrase:
 
 
 def _pose_of(origin: Any) -> list[float]:
-    """Return a pose message as x y z qx qy qz qw; a zero quaternion becomes the identity rotation."""
+    """Return a pose message as x y z qx qy qz qw.
+
+    A zero quaternion becomes the identity rotation.
+    """
     p, q = origin.position, origin.orientation
     quaternion = [q.x, q.y, q.z, q.w]
     return [p.x, p.y, p.z, *(quaternion if any(quaternion) else [0.0, 0.0, 0.0, 1.0])]

@@ -1,4 +1,4 @@
-"""The displays rviz_default_plugins/Marker and MarkerArray, and a base class for displays drawn as markers."""
+"""The displays Marker and MarkerArray, and a base class for displays drawn as markers."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class MarkerDisplay(StoredMarkersDisplay):
     """A display of the markers of a topic.
 
     A marker whose frame has no known pose is shown once the pose is known. At most ``Filter size`` markers are queued
-    until their poses are known; the oldest ones are dropped first.
+    until their poses are known. The oldest are dropped first.
     """
 
     CLASS = "rviz_default_plugins/Marker"
@@ -64,7 +64,7 @@ class MarkerDisplay(StoredMarkersDisplay):
         self._clock = host.context.node.get_clock()
 
     def schema(self) -> Schema:
-        """Return the topic property, and a check box for each namespace of the markers received so far."""
+        """Return the topic property, and a check box for each namespace received so far."""
         check_boxes = tuple(
             PropertySpec(name, "bool", True, "Show the markers of this namespace.") for name in self._namespaces
         )
@@ -273,7 +273,9 @@ class MessageMarkersDisplay(MarkerArrayDisplay, ABC):
 
     @abstractmethod
     def markers(self, message: Any) -> Iterable[Any]:
-        """Return the markers for a message, which replace the markers of the previous message.
+        """Return the markers for a message.
+
+        They replace the markers of the previous message.
 
         Args:
             message: a message of the type `MESSAGE`; it must not be changed.

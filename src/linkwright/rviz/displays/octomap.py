@@ -34,7 +34,7 @@ _MAP_ROW = "Octomap"
 
 
 class OctomapDisplay(StoredMarkersDisplay):
-    """A display of an octomap as boxes, at the current pose of the frame in the message's header."""
+    """A display of an octomap as boxes, at the current pose of the message's frame."""
 
     CLASS = "octomap_rviz_plugins/OccupancyGrid"
     MESSAGE = "octomap_msgs/msg/Octomap"
@@ -116,9 +116,9 @@ class OctomapDisplay(StoredMarkersDisplay):
         self.frames_changed()
 
     def _cells_to_draw(self, cells: Cells, resolution: float) -> Cells:
-        """Return the cells of the selected kind and height, at the resolution that the maximum depth allows.
+        """Return the cells of the selected kind and height, at the selected maximum depth.
 
-        Smaller cells are merged; a merged cell has the largest probability of its parts.
+        Smaller cells are merged. A merged cell has the largest probability of its parts.
         """
         cells = select_rendered(cells, self.properties.text("Voxel Rendering"))
         height = cells.centers[:, 2]

@@ -1,4 +1,4 @@
-"""The displays LaserScan, PointCloud and PointCloud2, and displays of one value such as FluidPressure."""
+"""The displays LaserScan, PointCloud and PointCloud2, and displays of scalars."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ class _ShownCloud:
 class CloudDisplay(TopicDisplay):
     """The base class of displays that draw points.
 
-    The colours are computed here and sent with the positions; the page applies style, size and opacity. With a Decay
+    The colours are computed here and sent with the positions. The page applies style, size and opacity. With a Decay
     Time, the points of each message are sent separately, and are removed after that time.
     """
 
@@ -78,7 +78,10 @@ class CloudDisplay(TopicDisplay):
         self._computed_bounds: dict[str, tuple[float, float]] = {}
 
     def pixel_size(self) -> float:
-        """Return the width of a point in m per metre of its distance, or 0 to use the size in the properties."""
+        """Return the width of a point in m per metre of distance.
+
+        With 0, the size in the properties applies.
+        """
         return 0.0
 
     def choose_transformer(self, transformer: str) -> None:
@@ -205,7 +208,10 @@ class CloudDisplay(TopicDisplay):
     # --- decay -------------------------------------------------------------------------------------------------
 
     def _remove_expired(self) -> None:
-        """Remove points older than the Decay Time; if it is 0, keep only the points of the newest message."""
+        """Remove points older than the Decay Time.
+
+        If it is 0, keep only the points of the newest message.
+        """
         if self._decay_timer is not None:
             self._decay_timer.cancel()
             self._decay_timer = None
@@ -269,11 +275,14 @@ class PointsDisplay(CloudDisplay):
         """
 
     def lack_of_points(self, message: Any) -> Phrase | None:
-        """Return a warning that explains why a message has no points, or None if no warning is needed."""
+        """Return a warning that explains why a message has no points, or None."""
         return None
 
     def placed(self, points: Points, message: Any, pose: Pose) -> tuple[Points, Pose]:
-        """Return the points and the pose of their frame, after a correction for the scanner's motion."""
+        """Return the points and the pose of their frame, corrected for the scanner's motion.
+
+        By default, both are returned unchanged.
+        """
         return points, pose
 
     def process_message(self, message: Any, pose: Pose | None) -> None:
@@ -317,7 +326,7 @@ class LaserScanDisplay(PointsDisplay):
     def lack_of_points(self, message: Any) -> Phrase | None:
         """Return a warning if all ranges are invalid, or None.
 
-        By REP 117, an infinite range means that no object is in range, which is not a reason for a warning.
+        By REP 117, an infinite range means that no object is in range. This is not a reason for a warning.
         """
         ranges = np.frombuffer(message.ranges, np.float32)
         finite = ranges[np.isfinite(ranges)]
@@ -335,7 +344,7 @@ class LaserScanDisplay(PointsDisplay):
         return None
 
     def placed(self, points: Points, message: Any, pose: Pose) -> tuple[Points, Pose]:
-        """Return the points and the pose of their frame, after a correction for the scanner's motion.
+        """Return the points and the pose of their frame, corrected for the scanner's motion.
 
         If the scanner moved during the scan, the points are in the Fixed Frame and the pose is the identity. Otherwise
         the points are in the frame of the scanner.
@@ -395,7 +404,7 @@ class PointCloud2Display(PointsDisplay):
 
 
 class ScalarDisplay(PointsDisplay):
-    """The base class of displays of one measured value, as a coloured point at the sensor's origin."""
+    """The base class of displays of a scalar, as a coloured point at the sensor's origin."""
 
     FIELD: ClassVar[str]
     """The field of the message with the number, and the channel of the point."""
@@ -443,7 +452,7 @@ class RelativeHumidityDisplay(ScalarDisplay):
 
 
 class TemperatureDisplay(ScalarDisplay):
-    """A display of the temperature, in degrees Celsius; cold is violet and hot is red."""
+    """A display of the temperature in degrees Celsius, from violet for cold to red for hot."""
 
     CLASS = "rviz_default_plugins/Temperature"
     MESSAGE = "sensor_msgs/msg/Temperature"

@@ -30,7 +30,7 @@ _IS_AXES = (("Shape",), "Axes")
 
 
 def pose_shape_specs(*, nested: bool = False) -> Schema:
-    """Return the declarations of the properties that select how a pose is drawn.
+    """Return the declarations of the properties for the shape of a pose.
 
     With `nested`, the sizes are below ``Shape``, as in Odometry.
     """
@@ -115,7 +115,7 @@ def pose_row(pose: Any) -> tuple[float, ...]:
 
 
 def pose_rows(poses: Iterable[Any]) -> Floats:
-    """Return the poses as rows x y z qx qy qz qw; shape (N, 7)."""
+    """Return poses as rows x y z qx qy qz qw, shape (N, 7)."""
     return np.array([pose_row(pose) for pose in poses], dtype=np.float32).reshape(-1, 7)
 
 
@@ -198,7 +198,7 @@ class ParticleCloudDisplay(RecentDisplay):
         length("Min Arrow Length", 0.02, "Length of the arrow of an unlikely pose, in metres."),
         length("Max Arrow Length", 0.3, "Length of the arrow of a certain pose, in metres."),
         PropertySpec(
-            "Arrow Height Scale", "float", 5.0, "Height in metres at which a certain pose is drawn.", minimum=0.0
+            "Arrow Height Scale", "float", 5.0, "Height in metres at which a pose of weight 1 is drawn.", minimum=0.0
         ),
     )
 
@@ -213,7 +213,10 @@ _NORM_TOLERANCE = 10e-3
 
 
 class OdometryDisplay(RecentDisplay):
-    """A display of the path of a robot, with a mark whenever the robot has moved or turned by a tolerance."""
+    """A display of the path of a robot.
+
+    A mark is added whenever the robot has moved or turned by a tolerance.
+    """
 
     CLASS = "rviz_default_plugins/Odometry"
     MESSAGE = "nav_msgs/msg/Odometry"
@@ -244,7 +247,10 @@ class OdometryDisplay(RecentDisplay):
         self._last_mark: tuple[float, ...] | None = None
 
     def content(self, message: Any) -> DataContent | None:
-        """Return the pose and its covariance, or None if the pose is not valid or too close to the last mark."""
+        """Return the pose and its covariance, or None.
+
+        None means that the pose is not valid, or too close to the last mark.
+        """
         pose_values = pose_row(message.pose.pose)
         covariance_values = np.asarray(message.pose.covariance, dtype=np.float64)
         if not self.is_finite(pose_values, covariance_values):

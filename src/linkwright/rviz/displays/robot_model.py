@@ -52,7 +52,7 @@ NO_ROWS = (PropertySpec(LINKS, "group", children=_OPTIONS),)
 class RobotRows:
     """The property rows of a robot's links and joints.
 
-    The page arranges the rows by the Link Tree Style; the style does not affect the file. A link has a check box if it
+    The page arranges the rows by the Link Tree Style. The style does not affect the file. A link has a check box if it
     has shapes. A joint has a check box if its child link or, in a tree, any descendant link has shapes.
     """
 
@@ -139,7 +139,7 @@ _FIXED_PROPERTIES = (
         "group",
         description="How masses are drawn.",
         children=(
-            PropertySpec("Mass", "bool", False, "Draw each link's mass as a ball of lead at its centre of mass."),
+            PropertySpec("Mass", "bool", False, "Draw each link's mass as a sphere of lead at its centre of mass."),
             PropertySpec("Inertia", "bool", False, "Draw each link's inertia as a box of the same inertia."),
         ),
     ),
@@ -233,7 +233,7 @@ class RobotModelDisplay(ViewerDisplay):
             self._box_changed(self._rows, path)
 
     def frames_changed(self) -> None:
-        """Update the status of the links, which shows whether their poses are known."""
+        """Show in the status which links have a known pose."""
         self._show_status()
 
     def time_changed(self) -> None:
@@ -300,7 +300,9 @@ class RobotModelDisplay(ViewerDisplay):
         self._show_robot(reading.robot)
 
     def _topic_row(self, *, is_changed: bool) -> StatusRow:
-        """Return the status row of the topic, which names the publisher if there are several.
+        """Return the status row of the topic.
+
+        The row names the publisher if there are several.
 
         If a different description from another publisher replaces the current one, a warning is logged.
         """
@@ -373,7 +375,7 @@ class RobotModelDisplay(ViewerDisplay):
             self.publish_properties()
 
     def _box_changed(self, rows: RobotRows, path: Path) -> None:
-        """Set the check boxes that depend on a changed check box, directly or indirectly, as in RViz."""
+        """Set the check boxes that depend on a changed check box, as in RViz."""
         style = self.properties.text(*STYLE)
         dependent_paths: list[Path] = []
         if path == STYLE:

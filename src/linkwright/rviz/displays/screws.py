@@ -1,4 +1,4 @@
-"""The displays TwistStamped, AccelStamped and Wrench, which draw a linear and an angular vector."""
+"""The displays TwistStamped, AccelStamped and Wrench: a linear and an angular vector."""
 
 from __future__ import annotations
 
@@ -25,7 +25,10 @@ def _screw_specs(linear: str, angular: str) -> Schema:
 
 
 class ScrewDisplay(RecentDisplay):
-    """The base class of displays that draw a linear and an angular vector as arrows at the frame's origin."""
+    """The base class of displays of a linear and an angular vector.
+
+    Both are drawn as arrows at the frame's origin.
+    """
 
     LENGTH = ("History Length",)
 

@@ -1,4 +1,4 @@
-"""The display linkwright/World: the models of a simulated world, at the poses that the simulation publishes."""
+"""The display linkwright/World: the models of a simulated world."""
 
 from __future__ import annotations
 
@@ -48,11 +48,11 @@ _MOVE_TOLERANCE = 1e-6
 
 
 class WorldDisplay(TopicDisplay):
-    """A display of all models of a world with their visuals, each link at its pose in the simulation.
+    """A display of all models of a world, with each link at its pose in the simulation.
 
-    The poses are in the frame ``world``. If tf has no such frame, a link that is also a frame of tf connects both. The
-    world is then placed so that this link is at the pose of its frame; but if the Fixed Frame is ``world``, the frames
-    of tf are placed instead.
+    The poses are in the frame ``world``. If tf has no such frame, a link with the name of a tf frame connects both: the
+    world is placed so that this link is at the pose of the tf frame. If the Fixed Frame is ``world``, the frames of tf
+    are placed instead.
     """
 
     CLASS = WORLD_DISPLAY
@@ -110,7 +110,7 @@ class WorldDisplay(TopicDisplay):
         self._link_indices: dict[str, int] = {}
         self._poses: NDArray[np.float64] = np.empty((0, 7))
         self._moving_links: Sequence[str] = ()
-        """The links in the last message of poses, which are all links that move."""
+        """The links in the last message of poses: all links that move."""
         self._stamp_ns = 0
         self._anchors: tuple[int, ...] = ()
         self._places_tf_frames = False
@@ -161,7 +161,7 @@ class WorldDisplay(TopicDisplay):
         self._rays.forget()
 
     def reset(self) -> None:
-        """Discard the world; nothing is shown until another description arrives."""
+        """Discard the world. The display stays empty until another description arrives."""
         self._cancel_reading()
         self._content, self._link_indices, self._last_sent = WorldContent(), {}, ()
         self._page_problems.clear()
@@ -174,7 +174,10 @@ class WorldDisplay(TopicDisplay):
         self._show_poses()
 
     def transforms_received(self) -> None:
-        """Place the world if it could not be placed before; afterwards each message of poses updates its pose."""
+        """Place the world, if it has not been placed yet.
+
+        Once it is placed, each message with poses updates its pose.
+        """
         world_frame = self.context.transforms.own(WORLD)
         is_placed = (
             self._world_pose[1] is not None
@@ -224,7 +227,10 @@ class WorldDisplay(TopicDisplay):
     # --- descriptions ------------------------------------------------------------------------------------------
 
     def process_message(self, message: Any, pose: Pose | None) -> None:
-        """Start to read a description; the previous world is shown until the new one has been read."""
+        """Start reading a description.
+
+        The previous world is shown until the new one has been read.
+        """
         self._cancel_reading()
         self._reading_task = asyncio.get_running_loop().create_task(self._read(message.data))
 
@@ -401,7 +407,7 @@ class WorldDisplay(TopicDisplay):
         )
 
     def _find_anchor(self, frames: frozenset[str]) -> tuple[int, str, Transform] | None:
-        """Return a link that is also a frame of tf with a known pose, or None if there is no such link.
+        """Return a link with the name of a tf frame whose pose is known, or None.
 
         Returns:
             The index of the link, its frame, and the pose of the frame. The pose is in the root frame of the tf tree
@@ -476,6 +482,6 @@ def _frame_name(name: str) -> str:
 
 
 def _anchors(content: WorldContent) -> tuple[int, ...]:
-    """Return the indices of the links with unique frame names, which can be anchors, in file order."""
+    """Return the indices of the possible anchors: links with a unique frame name, in file order."""
     counts = Counter(_frame_name(link.name) for link in content.links)
     return tuple(row for row, link in enumerate(content.links) if counts[_frame_name(link.name)] == 1)

@@ -48,12 +48,12 @@ class LidarRays:
             self._on_measurement(message)
 
     def forget(self) -> None:
-        """Discard and hide all rays; nothing is drawn until new measurements arrive."""
+        """Discard and hide all rays. No rays are drawn until new measurements arrive."""
         self._last_messages.clear()
         self._hide_except(set())
 
     def follow(self, topic: str, choice: str) -> Phrase | None:
-        """Subscribe to the ray topics of exactly those lidars whose rays are drawn.
+        """Subscribe to the ray topics of exactly the lidars whose rays are drawn.
 
         Args:
             topic: the topic of the rays; empty for no rays.

@@ -22,7 +22,7 @@ _IDENTITY = np.array([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0])
 
 @dataclass(frozen=True)
 class PlacedFrame:
-    """A frame that a display places and that tf does not know.
+    """A frame that is not in tf, placed by a display.
 
     Attributes:
         name: the name of the frame.
@@ -36,9 +36,11 @@ class PlacedFrame:
 
 
 class FrameHistory:
-    """A tf2 buffer that subscribes only while it has listeners; the view of a robot does not need it.
+    """A tf2 buffer that subscribes only while it has listeners.
 
-    Displays may place frames that tf does not know. Such a frame can be the Fixed Frame. Other programs do not see it.
+    A page with only a robot does not need it.
+
+    Displays may place frames that are not in tf. Such a frame can be the Fixed Frame. Other programs do not receive it.
 
     Args:
         node: the node that subscribes.
@@ -85,7 +87,7 @@ class FrameHistory:
 
         Args:
             fixed_frame: the Fixed Frame.
-            frame: the frame; tf need not know it if it is the Fixed Frame.
+            frame: the frame; it need not be in tf if it is the Fixed Frame.
             stamp_ns: the time in ns since the epoch; 0 for the latest transform.
 
         Raises:
@@ -104,15 +106,18 @@ class FrameHistory:
         return frozenset(self._buffer.frame_names())
 
     def own(self, name: str) -> PlacedFrame | None:
-        """Return the frame with a name that a display has placed; None if there is none or tf has the frame."""
+        """Return the frame that a display has placed under a name, or None.
+
+        None is also returned if tf has a frame with this name.
+        """
         placed_frame = next((own for own in self._placed_frames.values() if own.name == name), None)
         return None if placed_frame is None or name in self._buffer.frame_names() else placed_frame
 
     def known(self, frame: str, pose: ArrayLike) -> tuple[str, NDArray[np.float64]]:
-        """Return the pose in a frame that other programs know, given a pose in any frame.
+        """Return a frame that other programs can use and the pose in it, for a pose in any frame.
 
-        The result is the name of the frame and the pose in it. If a display has placed the given frame, the pose is
-        converted to a frame of tf. Otherwise frame and pose are returned unchanged.
+        If a display has placed the given frame, the pose is converted to a frame of tf. Otherwise frame and pose are
+        returned unchanged.
 
         Args:
             frame: the frame that the pose is in.

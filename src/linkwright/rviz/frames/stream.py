@@ -63,8 +63,8 @@ class FrameView:
     """The frames, their parents, and the set of frames with a known pose in the Fixed Frame.
 
     Attributes:
-        fixed_frame: the Fixed Frame, which may be unknown to tf.
-        names: the frames that tf knows.
+        fixed_frame: the Fixed Frame, which may be missing in tf.
+        names: the frames in tf.
         parents: the index of each frame's parent in `names`, -1 for a root.
         placed: the frames with a transform to the Fixed Frame; the Fixed Frame is always included, as in RViz.
     """
@@ -99,7 +99,7 @@ class TimeControl:
     """The state of RViz's Time panel: Pause, Synchronization and its Source.
 
     While time is paused, displays process no messages and frames do not move. Exact shows the frames at the time of the
-    source's last message; Approximate uses the current time minus the source's delay.
+    source's last message. Approximate uses the current time minus the source's delay.
 
     Args:
         clock: the viewer's clock.
@@ -148,7 +148,7 @@ class TimeControl:
         self._on_signal()
 
     def lookup_ns(self) -> int | None:
-        """Return the time at which frames are shown, in ns since the epoch; None for the latest transforms."""
+        """Return the time at which frames are shown, in ns since the epoch, or None for the latest."""
         if self.paused and self.mode != "Off":
             return self._paused_ns
         if self.mode == "Exact":
@@ -178,7 +178,7 @@ class FrameAudience(Protocol):
     """The pages that receive frames."""
 
     def __len__(self) -> int:
-        """Return the number of pages, without which frames are not updated regularly."""
+        """Return the number of pages. Without pages, frames are not updated regularly."""
 
     def publish(self, message: FrameTable, /) -> None:
         """Send a new frame table, before the transforms that refer to it."""
@@ -190,10 +190,10 @@ class FrameAudience(Protocol):
 class FrameStream:
     """Maintains the viewer's tf buffer, and sends the changes of frame poses to pages.
 
-    A frame that tf does not know can be the Fixed Frame if a display places it (`FrameHistory.place`).
+    A frame that is not in tf can be the Fixed Frame if a display places it (`FrameHistory.place`).
 
-    A robot with a single link has no transforms, so that tf does not know its frame. If this frame is the Fixed Frame,
-    it is sent with the identity as its pose, as RViz draws it too.
+    A robot with a single link has no transforms, so its frame is not in tf. If this frame is the Fixed Frame, it is
+    sent with the identity as its pose, because RViz draws it too.
 
     Args:
         node: the node that subscribes.
@@ -201,7 +201,7 @@ class FrameStream:
         time: whether time is paused, and the time at which frames are shown.
         history: the history of transforms, for poses at earlier times.
         on_frames: called with a new `FrameView` when the frames, or the set of frames with a known pose, have changed.
-        own_frames: returns the frames of the links of robots, which tf may not know.
+        own_frames: returns the frames of the links of robots, including frames that are not in tf.
 
     Attributes:
         fixed_frame: the Fixed Frame.
@@ -309,7 +309,10 @@ class FrameStream:
 
     @property
     def opening(self) -> tuple[FrameTable, bytes]:
-        """The frame table and the last binary frame for a page that opens; both are empty at first."""
+        """The frame table and the last binary frame, for a page that opens.
+
+        Both are empty at first.
+        """
         return self._table, self._frame
 
     def _add_transforms(self, message: TFMessage, *, static: bool) -> None:
@@ -360,7 +363,10 @@ class FrameStream:
         self._notify_displays(snapshot, rows, fixed_frame, has_new_structure=has_new_structure)
 
     def _snapshot(self, fixed_frame: str, now_ns: int) -> FrameSnapshot:
-        """Return the poses of all frames in the Fixed Frame, which may be a frame placed by a display."""
+        """Return the poses of all frames in the Fixed Frame.
+
+        A display may have placed the Fixed Frame.
+        """
         # The buffer is asked first, because the history may not have received the latest transforms yet.
         placed_frame = None if self._buffer.knows(fixed_frame) else self._history.own(fixed_frame)
         if placed_frame is None or placed_frame.parent is None:
@@ -369,7 +375,7 @@ class FrameStream:
         return replace(snapshot, poses=compose(placed_frame.pose, snapshot.poses))
 
     def _is_unconnected(self, frame: str) -> bool:
-        """Return whether a frame belongs to a robot, or is placed by a display without a connection to tf."""
+        """Return whether a frame is a robot's, or is placed by a display without a connection to tf."""
         placed_frame = self._history.own(frame)
         return frame in self._own_frames() or (placed_frame is not None and placed_frame.parent is None)
 
@@ -389,7 +395,7 @@ class FrameStream:
         return poses
 
     def _follow(self, *, needed: bool) -> None:
-        """Subscribe to the history while an earlier time is shown, and unsubscribe when it is no longer needed."""
+        """Subscribe to the history of transforms while it is needed to show an earlier time."""
         if needed and self._release is None:
             self._release = self._history.use(lambda: None)
         elif not needed and self._release is not None:

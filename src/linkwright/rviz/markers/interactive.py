@@ -296,7 +296,10 @@ def _default_markers(
 
 
 def _axis_color(orientation: list[float]) -> list[float]:
-    """Return the colour of the x axis of an orientation: red along x, green along y, blue along z, or a mixture."""
+    """Return the colour of an axis: red for x, green for y, blue for z, or a mixture.
+
+    The axis is the x axis of an orientation.
+    """
     axis = np.abs(rotation_matrix(orientation)[:, 0])
     color: list[float] = (axis / axis.max()).tolist()
     return color

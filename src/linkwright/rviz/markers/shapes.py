@@ -1,4 +1,4 @@
-"""Conversion of visualization_msgs/msg/Marker to the page's shapes, and a store of such markers.
+"""Conversion of visualization_msgs/msg/Marker to the page's shapes, and a store of markers.
 
 The rules and the texts of errors are the same as in RViz.
 """
@@ -29,7 +29,10 @@ _NO_UVS = np.empty((0, 2), dtype=np.float32)
 
 
 class BadMarkerError(ValueError):
-    """Raised when a marker cannot be drawn; the message gives the reason."""
+    """Raised when a marker cannot be drawn.
+
+    The message gives the reason.
+    """
 
 
 @dataclass(slots=True)
@@ -296,7 +299,7 @@ def _extension(name: str) -> str:
 
 
 _MOST_GONE = 5000
-"""The number of stored removals; a page that missed more of them receives all markers again."""
+"""The number of stored removals. A page that missed more of them receives all markers again."""
 
 
 class MarkerStore:
@@ -354,7 +357,9 @@ class MarkerStore:
         self._gone.clear()
 
     def since(self, seen: int) -> tuple[bytes | None, int]:
-        """Return the packed changes since a revision and the current revision; None if nothing changed.
+        """Return the packed changes since a revision, or None, and the current revision.
+
+        None means that nothing has changed.
 
         `seen` is the last revision that the page has. If it is 0 or too old, all markers are packed.
         """

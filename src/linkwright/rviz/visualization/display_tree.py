@@ -29,8 +29,8 @@ class Edit(Generic[State]):
         name: the name of the edit, for menus.
         swap: restores a state, and returns the state that it replaced.
         before: the state before the edit.
-        subject: identifies the edited value; quick successive edits of one value are merged, see `History.would_merge`.
-            None for an edit that is never merged.
+        subject: identifies the edited value, or None. Quick successive edits of the same value are merged, see
+            `History.would_merge`.
     """
 
     def __init__(
@@ -47,7 +47,7 @@ class Edit(Generic[State]):
 
 
 class History:
-    """The edits that can be undone and redone, and the number of edits that the saved file contains.
+    """The undo history: the edits to undo and redo, and the state that was last saved.
 
     Args:
         changed: called whenever `undoable`, `redoable` or `unsaved` may have changed.
@@ -153,9 +153,9 @@ MAXIMUM_NESTING = 20
 
 
 class DisplayTree:
-    """The displays, which correspond to the entries of the configuration.
+    """The displays for the entries of a configuration.
 
-    Changes made through this class can be undone. A removed display is stopped; undoing the removal creates another
+    Changes made through this class can be undone. A removed display is stopped. Undoing the removal creates another
     display with the same ID and section of the file.
 
     Args:
@@ -208,7 +208,10 @@ class DisplayTree:
     # --- edits -------------------------------------------------------------------------------------------------
 
     def check(self, display: ViewerDisplay, value: bool) -> None:
-        """Set the check box of a display; for a group, this also enables or disables its contents."""
+        """Set the check box of a display.
+
+        The check box of a group also enables or disables its contents.
+        """
         if value == display.config.checked:
             return
         before, enabled = display.config.box, self._enabled_states()
@@ -258,7 +261,7 @@ class DisplayTree:
         self._rearrange(_edit_name("duplicate", displays), copy)
 
     def remove(self, displays: Sequence[ViewerDisplay]) -> None:
-        """Remove displays; a group is removed with its contents."""
+        """Remove displays, including the contents of groups."""
 
         def take_away() -> None:
             for entry in _outermost(displays):
@@ -347,7 +350,7 @@ class DisplayTree:
         return replaced
 
     def _notify_check_box(self, display: ViewerDisplay, enabled: dict[DisplayConfig, bool]) -> None:
-        """Send a display's check box to pages, and notify the displays that were enabled or disabled.
+        """Send a display's check box to pages, and notify the displays that it affects.
 
         `enabled` contains whether each display was enabled before the change.
         """
@@ -375,7 +378,7 @@ class DisplayTree:
         return {display.config: display.enabled for display in self.displays}
 
     def _follow(self, enabled: dict[DisplayConfig, bool], new_displays: Sequence[ViewerDisplay] = ()) -> None:
-        """Update the displays to match the configuration: start new displays and stop removed displays.
+        """Create, start and stop displays to match the configuration.
 
         Args:
             enabled: whether each display was enabled before the change.
@@ -427,12 +430,15 @@ def _check_nesting(group: DisplayConfig | None, entries: Sequence[DisplayConfig]
 
 
 def _depth(group: DisplayConfig | None) -> int:
-    """Return the number of groups that enclose the contents of a group; 0 for None, the top level."""
+    """Return the number of groups that enclose the contents of a group.
+
+    The top level, None, has depth 0.
+    """
     return 0 if group is None else 1 + _depth(group.group)
 
 
 def _height(entry: DisplayConfig) -> int:
-    """Return the number of nested groups in an entry, including the entry itself if it is a group."""
+    """Return the nesting depth of the groups in an entry, including the entry itself."""
     return 1 + max(map(_height, entry.displays), default=0) if entry.is_group else 0
 
 

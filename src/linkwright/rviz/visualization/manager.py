@@ -32,14 +32,14 @@ if TYPE_CHECKING:
 
 
 GLOBAL = "global"
-"""The owner of the Global Options, which takes the place of the ID of a display."""
+"""The owner of the Global Options, used instead of the ID of a display."""
 
 _FIXED_FRAME = "Fixed Frame"
 _FRAME_RATE = "Frame Rate"
 
 
 class ManagerOwner(Protocol):
-    """The owner of visualization managers, which receives their events."""
+    """The owner of visualization managers, to be notified of their events."""
 
     def edited(self, manager: VisualizationManager) -> None:
         """Handle a change of undo, redo or the unsaved state."""
@@ -70,7 +70,7 @@ class VisualizationManager:
         config: the current configuration.
         opened: the number of configurations opened so far.
         frames: the current frames.
-        time: whether time is paused, and what it is synchronized with.
+        time: whether time is paused, and its synchronization.
         tree: the displays, and the operations on them.
         history: the undo history.
     """
@@ -147,7 +147,7 @@ class VisualizationManager:
         self.pages.publish(message)
 
     def opening(self) -> tuple[list[ServerMessage], FrameTable, list[Payload]]:
-        """Return the messages, the frame table and the binary frames to send to a new page, in this order."""
+        """Return the messages, frame table and binary frames for a new page, to send in this order."""
         self._stream.refresh()
         table, transforms = self._stream.opening
         messages: list[ServerMessage] = [self.tree_message()]
@@ -194,7 +194,10 @@ class VisualizationManager:
         return display.properties
 
     def set_property(self, page: Page, identity: str, value: object) -> None:
-        """Set a property for a page; if the value is not accepted, send the current value back to the page."""
+        """Set a property at the request of a page.
+
+        If the value is not accepted, the current value is sent back to the page.
+        """
         owner, _, property_name = identity.partition("/")
         display = self.display(owner)
         if display is None and owner != GLOBAL:
@@ -223,7 +226,10 @@ class VisualizationManager:
             self._set_option(path[0], value)
 
     def _edit_property(self, identity: str, path: Path, change: Callable[[], None]) -> None:
-        """Change a property so that it can be undone; quick successive changes, as in a drag, are one edit."""
+        """Change a property so that it can be undone.
+
+        Quick successive changes, such as the steps of a drag, are one edit.
+        """
         if self.history.would_merge(identity):
             change()
             self.history.merge_change()
@@ -256,7 +262,7 @@ class VisualizationManager:
                 self._option_changed(path[0])
 
     def measured(self, diagonal: float, ground: float) -> None:
-        """Fit the sizes of grid and axes to a measured robot, except sizes that the user has changed.
+        """Fit grid and axes to a measured robot, except sizes that the user has changed.
 
         Args:
             diagonal: the diagonal of the robot's bounding box, m.
@@ -283,7 +289,7 @@ class VisualizationManager:
             display.time_changed()
 
     def reset_time(self) -> None:
-        """Reset time: discard the messages of displays, and all transforms except static ones."""
+        """Reset time: discard displayed messages, and all transforms except static ones."""
         self.time.reset()
         self.context.transforms.forget()
         self._stream.forget()
@@ -355,7 +361,10 @@ class VisualizationManager:
             self.publish(DisplayStatus(GLOBAL, row.level, [row]))
 
     def robot_changed(self, gone: set[str]) -> None:
-        """Handle a display's new robot; `gone` contains the frames that only the previous robot had."""
+        """Handle a display's new robot.
+
+        `gone` contains the frames that only the previous robot had.
+        """
         self._stream.robot_changed(gone - self._robot_frames())
         self._owner.robot_changed()
 
@@ -399,7 +408,7 @@ class Managers:
         return [self.shared, *self._own_managers.values()]
 
     def of(self, page: Page) -> VisualizationManager:
-        """Return the manager of a page, which is either its own or the shared manager."""
+        """Return the manager of a page: a separate manager, or the shared one."""
         return self._own_managers.get(page.own, self.shared)
 
     def enter(self, page: Page) -> VisualizationManager:
@@ -416,7 +425,10 @@ class Managers:
         return self.of(page)
 
     def leave(self, page: Page) -> None:
-        """Handle the closing of a page; its own manager is closed if the page does not return."""
+        """Handle the closing of a page.
+
+        A separate manager is closed if the page does not return.
+        """
         manager = self.of(page)
         manager.pages.discard(page)
         if manager is not self.shared and not len(manager.pages):

@@ -24,9 +24,9 @@ LightKind = Literal["point", "directional", "spot"]
 
 @dataclass(frozen=True, slots=True)
 class NewShape:
-    """The defaults of a new shape: its size in m, its colour as red, green and blue from 0 to 1, and its mass in kg.
+    """The defaults of a new shape: its size in m, its colour and its mass in kg.
 
-    A mass of None makes the shape static.
+    The colour is red, green and blue from 0 to 1. A mass of None makes the shape static.
     """
 
     size: tuple[float, ...]

@@ -1,4 +1,4 @@
-"""Changes, copies and deletes the models and lights of a world.
+"""Changes, copies and deletions of the models and lights of a world.
 
 In a world that Gazebo classic saved, ``<state>`` repeats all poses and takes precedence. Therefore moving, renaming or
 deleting an entity also changes the state, including the poses of the entity's links.
@@ -41,7 +41,9 @@ _INCLUDE_HEAD = ("uri", "name")
 
 @dataclass(frozen=True, slots=True)
 class Change:
-    """The properties of an entity to change; a property that is None keeps its value.
+    """The properties of an entity to change.
+
+    A property that is None keeps its value.
 
     Attributes:
         name: the name of the entity.
@@ -133,7 +135,9 @@ def delete(world: WorldText, names: Iterable[str]) -> WorldText:
 
 
 def pose_in_world(numbers: Sequence[float]) -> Pose:
-    """Return a pose from six numbers that a user has entered: x, y, z in m, roll, pitch, yaw in rad.
+    """Return a pose from six numbers that a user has entered.
+
+    The numbers are x, y, z in m, and roll, pitch, yaw in rad.
 
     Raises:
         EditError: the numbers are not finite, or there are not six of them.
@@ -145,7 +149,10 @@ def pose_in_world(numbers: Sequence[float]) -> Pose:
 
 
 def pose_of_entity(entity: Entity) -> Pose:
-    """Return the pose of an entity in the world; a pose that is written in that frame keeps its exact numbers."""
+    """Return the pose of an entity in the world.
+
+    A pose that is written in the frame of the world keeps its exact numbers.
+    """
     written_pose = entity.pose
     if (
         written_pose.pose.quaternion is None
@@ -172,7 +179,7 @@ def moved(world: WorldText, entity: Entity, pose: Pose) -> list[Replacement]:
 
 
 def place(entity: Entity, pose: Pose) -> list[Replacement]:
-    """Return the edits that write the ``<pose>`` of an entity, in the frame that the pose declares."""
+    """Return the edits that write the ``<pose>`` of an entity, in its declared frame."""
     element = entity.element.first("pose")
     if element is not None:
         return writing.set_pose(element, pose)
@@ -188,7 +195,10 @@ def state_of(world: WorldText, name: str) -> list[Element]:
 
 
 def referenced_name(element: Element, attribute: str | None) -> str:
-    """Return the name to which an element refers, in an attribute or, if it is None, in the text."""
+    """Return the name to which an element refers, in an attribute or in the text.
+
+    The name is in the text if `attribute` is None.
+    """
     return element.text().strip() if attribute is None else element.attributes[attribute]
 
 

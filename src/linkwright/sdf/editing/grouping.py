@@ -1,4 +1,4 @@
-"""Groups models into one model, and ungroups them."""
+"""Grouping of models into one model, and ungrouping."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _CDATA = re.compile(r"<!\[CDATA\[.*?\]\]>", re.DOTALL)
 
 
 def group(world: WorldText, names: Sequence[str], name: str) -> WorldText:
-    """Return a world with several models grouped into one model, whose origin is their mean position.
+    """Return a world with several models grouped into one, at their mean position.
 
     The models keep their poses in the world. Their entries in a saved state are removed, and the poses from there are
     written into the models.
@@ -253,12 +253,12 @@ def _release_edits(
 
 
 def _indent(text: str, step: str) -> str:
-    """Return a text with all lines except the first indented by `step`; CDATA is not changed."""
+    """Return a text with all lines except the first indented by `step`, but CDATA unchanged."""
     return _outside_cdata(text, lambda part: _LINE_START.sub(step, part))
 
 
 def _unindent(text: str, step: str) -> str:
-    """Return a text with one indentation by `step` removed from each line; CDATA is not changed."""
+    """Return a text with `step` removed from the start of each line, but CDATA unchanged."""
     pattern = re.compile(rf"(?<=\n){re.escape(step)}")
     return _outside_cdata(text, lambda part: pattern.sub("", part)) if step else text
 

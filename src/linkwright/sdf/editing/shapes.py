@@ -1,4 +1,4 @@
-"""Models of one simple shape: recognises them, creates their elements, and computes their masses.
+"""Models of one simple shape: their recognition, elements and masses.
 
 A wall is a box whose link is called ``wall``. A ramp is a wedge that rises along x, a ``<polyline>`` with three corners
 in a link called ``ramp``. In this way, a plain SDF file preserves the kind of these shapes.
@@ -49,7 +49,7 @@ class SimpleShape:
 
 
 def simple_shape(model: Model) -> SimpleShape | None:
-    """Return the shape of a model that consists of one simple shape, or None for any other model.
+    """Return the shape of a model that consists of one simple shape, or None for others.
 
     Such a model has one link, whose visuals and collisions all have this shape.
     """
@@ -126,7 +126,10 @@ def ramp_pose(size: tuple[float, ...]) -> Pose:
 
 
 def solid(kind: str, size: tuple[float, ...]) -> MassProperties:
-    """Return the mass properties of a solid shape with a density of 1 kg/m3, in the frame of its link."""
+    """Return the mass properties of a solid shape in the frame of its link.
+
+    The density is 1 kg/m3.
+    """
     if kind == "cylinder":
         return shape_properties(Cylinder(*size))
     if kind == "sphere":
@@ -183,7 +186,7 @@ def inertial(kind: str, size: tuple[float, ...], mass: float) -> Element:
 
 
 def geometry(kind: str, size: tuple[float, ...]) -> list[Element]:
-    """Return the ``<geometry>`` element of a shape, after its ``<pose>`` element if it needs one."""
+    """Return the ``<geometry>`` element of a shape, preceded by any required ``<pose>``."""
     if kind == "ramp":
         outline = wedge(size)
         points = (new_element("point", lengths(point)) for point in outline.points)

@@ -71,7 +71,7 @@ class Entity:
 
     @property
     def parts(self) -> tuple[str, ...]:
-        """The names of the nested models in a group; empty for any other entity."""
+        """The names of the nested models in a group, or no names for any other entity."""
         if not isinstance(self.written, Model) or self.model is None or self.written.links:
             return ()
         return tuple(model.name for model in self.model.models)
@@ -168,7 +168,7 @@ class WorldText:
             ) from None
 
     def free_name(self, preferred_name: str, used_names: AbstractSet[str] | None = None) -> str:
-        """Return the preferred name if it is free, or else the name with the first free number appended.
+        """Return the preferred name if it is free, or else with the first free number.
 
         `used_names` are the names in use; None for those of this world.
         """

@@ -49,7 +49,10 @@ def range_of(element: Element) -> tuple[int, int]:
 
 
 def content_of(element: Element) -> tuple[int, int]:
-    """Return the start and end offsets of an element's content; for ``<a/>`` an empty range after the tag."""
+    """Return the start and end offsets of an element's content.
+
+    For ``<a/>``, the range is empty and after the tag.
+    """
     start, end = range_of(element)
     tag = find_start_tag(element)
     assert tag is not None, "its range is known"
@@ -57,7 +60,7 @@ def content_of(element: Element) -> tuple[int, int]:
 
 
 def set_text(element: Element, value: str) -> list[Replacement]:
-    """Return the edits that set the text of an element; surrounding whitespace is kept."""
+    """Return the edits that set the text of an element, and keep surrounding whitespace."""
     text, (start, end) = text_of(element), content_of(element)
     tag = find_start_tag(element)
     assert tag is not None, "its content is known"
@@ -70,7 +73,10 @@ def set_text(element: Element, value: str) -> list[Replacement]:
 
 
 def set_numbers(element: Element, numbers: Sequence[float]) -> list[Replacement]:
-    """Return the edits that set the numbers of an element; unchanged numbers are kept as written."""
+    """Return the edits that set the numbers of an element.
+
+    Unchanged numbers are kept as written.
+    """
     text, (start, end) = text_of(element), content_of(element)
     uncommented_text = _COMMENT.sub(lambda comment: " " * len(comment[0]), text[start:end])
     number_matches = list(re.finditer(r"\S+", uncommented_text))
@@ -129,7 +135,7 @@ def inserted_in(
 
 
 def set_attribute(element: Element, name: str, value: str) -> list[Replacement]:
-    """Return the edits that set an attribute; existing quote characters are kept.
+    """Return the edits that set an attribute, and keep existing quote characters.
 
     A missing attribute is appended to the start tag.
     """
@@ -167,12 +173,15 @@ def remove_attribute(element: Element, name: str) -> list[Replacement]:
 
 
 def removed(element: Element) -> Replacement:
-    """Return the edit that removes an element; lines that would become empty are also removed."""
+    """Return the edit that removes an element, and lines that would become empty."""
     return Replacement(*whole_lines(text_of(element), *range_of(element)), "")
 
 
 def replace_element(element: Element, new_elements: list[Element]) -> Replacement:
-    """Return the edit that replaces an element with other elements, or removes it if `new_elements` is empty."""
+    """Return the edit that replaces an element with other elements.
+
+    The element is removed if `new_elements` is empty.
+    """
     if not new_elements:
         return removed(element)
     text, (start, end) = text_of(element), range_of(element)
@@ -193,7 +202,7 @@ def set_pose(element: Element, pose: Pose) -> list[Replacement]:
 
 
 def _nearest(element: Element, quaternion: Quaternion) -> Quaternion:
-    """Return the quaternion or its negation, whichever is nearer to the quaternion in an element."""
+    """Return a quaternion or its negation, whichever is nearer to an element's quaternion."""
     try:
         written_quaternion = [float(word) for word in element.text().split()[3:]]
     except ValueError:
@@ -205,7 +214,10 @@ def _nearest(element: Element, quaternion: Quaternion) -> Quaternion:
 
 
 def pose_from(transform: Transform) -> Pose:
-    """Return a transform as a pose with roll, pitch and yaw, exact even at a pitch of 90 degrees."""
+    """Return a transform as a pose with roll, pitch and yaw.
+
+    The result is exact even at a pitch of 90 degrees.
+    """
     x, y, z, w = transform[3:]
     cos_yaw_term, sin_yaw_term = 1 - 2 * (y * y + z * z), 2 * (x * y + z * w)
     pitch = atan2(-2 * (x * z - y * w), hypot(cos_yaw_term, sin_yaw_term))
@@ -222,9 +234,9 @@ def pose_element(pose: Pose) -> Element:
 
 
 def references(world: Element) -> Iterator[tuple[Element, str | None]]:
-    """Yield each element of a world that refers to another by name, with the attribute that contains the name.
+    """Yield each element of a world that refers to another by name, with its attribute.
 
-    The attribute is None if the name is the text of the element.
+    The attribute contains the name. It is None if the name is the text of the element.
     """
     for child in world.elements():
         for element in (child, *child.elements("sensor")):

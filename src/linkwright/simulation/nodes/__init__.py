@@ -1,1 +1,1 @@
-"""Nodes of gazebo_ros, ros_gz_sim and ros_gz_bridge, which spawn models and bridge topics."""
+"""Nodes that spawn models and bridge topics, as in gazebo_ros, ros_gz_sim and ros_gz_bridge."""

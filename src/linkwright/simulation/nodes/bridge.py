@@ -66,7 +66,7 @@ class BridgedTopic:
 
 
 class _BridgeDirection:
-    """One direction of a bridge, which forwards messages from a topic of one node to a topic of another.
+    """One direction of a bridge, from a topic of one node to a topic of another.
 
     Args:
         create_subscription: creates and returns the subscription to the input topic.
@@ -145,7 +145,7 @@ class _Bridge(SingleNode):
         (source_node, source_topic, source_type), (target_node, target_topic, target_type) = source, target
         convert = conversion(source_type, target_type)
         if convert is None:
-            text = f"{topic.ros_topic} is not bridged: {source_type} does not become {target_type}"
+            text = f"{topic.ros_topic} is not bridged: {source_type} cannot be converted to {target_type}"
             self._node.get_logger().warning(text)
             return
         lazy = self._lazy if topic.lazy is None else topic.lazy
@@ -207,7 +207,7 @@ class ParameterBridge(_Bridge):
             self._connect(graph, topics)
 
     def _is_service(self, argument: str) -> bool:
-        """Return whether an argument describes a service, ``SERVICE@ROS_TYPE``; log a warning if it does.
+        """Return whether an argument describes a service (``SERVICE@ROS_TYPE``), with a warning.
 
         Services are not bridged.
         """
@@ -219,7 +219,7 @@ class ParameterBridge(_Bridge):
 
 
 class StaticBridge(_Bridge):
-    """The node of ``static_bridge``, which bridges ``chatter``, the string topic of the examples."""
+    """The node of ``static_bridge``, which bridges the string topic ``chatter``."""
 
     DEFAULT_NAME = "ros_gz_bridge"
 

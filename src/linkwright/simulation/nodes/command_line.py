@@ -1,4 +1,4 @@
-"""Convert the command lines of Gazebo's programs to parameters of the substitute nodes.
+"""Conversion of the command lines of Gazebo's programs to parameters of substitute nodes.
 
 Of the many options of `gazebo`, `gzserver` and `gz sim`, only the world, the paused start, the random seed and the ROS
 arguments have an effect here. The node's parameters are ``world``, ``pause`` and ``seed``, and ``gui`` for a server
@@ -25,7 +25,7 @@ _ROS_ARGUMENTS = "--ros-args"
 
 
 def simulator_command(words: Sequence[str]) -> NodeCommand | None:
-    """Parse the command line of one of Gazebo's programs; return None for any other program."""
+    """Parse the command line of one of Gazebo's programs, or return None for other programs."""
     program, *arguments = words
     name = PurePath(program).name
     if name in ("gazebo", "gzserver"):
@@ -50,7 +50,10 @@ def classic_server(words: Sequence[str], *, window: bool = False) -> NodeCommand
 
 
 def gz_server(words: Sequence[str]) -> NodeCommand:
-    """Parse the arguments of ``gz sim``; without ``-r`` the simulation starts paused."""
+    """Parse the arguments of ``gz sim``.
+
+    Without ``-r``, the simulation starts paused.
+    """
     gazebo_arguments, ros_arguments = _split_ros_arguments(words)
     options, positional = _read(gazebo_arguments, _GZ_VALUES.split())
     if "-g" in options:

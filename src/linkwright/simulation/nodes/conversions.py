@@ -22,7 +22,7 @@ DEFAULT_ROS_TYPES = {
 
 
 def conversion(source: str, target: str) -> Conversion | None:
-    """Return the function that converts messages from one type to another, or None if they are not convertible."""
+    """Return the function that converts messages between two types, or None if there is none."""
     if source == target:
         return lambda message: message
     source_payload = _PAYLOADS.get(source)

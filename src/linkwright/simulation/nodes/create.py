@@ -1,4 +1,4 @@
-"""The program ``create`` of ros_gz_sim, which spawns a model."""
+"""ros_gz_sim's program ``create``, which spawns a model."""
 
 from __future__ import annotations
 
@@ -77,7 +77,9 @@ class Create(EntitySpawner):
 
 
 def _with_free_name(entity: Entity, names: Sequence[str]) -> Entity:
-    """Return the entity under a name that is not in `names`, with a number appended if necessary.
+    """Return the entity with a name that is not in `names`.
+
+    A number is appended to the name if necessary.
 
     As in gz, the numbers begin with 0: ``box``, ``box_0``, ``box_1``.
     """
@@ -88,7 +90,10 @@ def _with_free_name(entity: Entity, names: Sequence[str]) -> Entity:
 
 
 def _options(words: Sequence[str]) -> Iterator[tuple[str, str]]:
-    """Yield the names and values of options like gflags: one or two dashes, a value after ``=`` or as next argument."""
+    """Yield the names and values of options, in the syntax of gflags.
+
+    A name follows one or two dashes. Its value follows ``=`` or is the next argument.
+    """
     remaining = list(words)
     while remaining:
         argument = remaining.pop(0)

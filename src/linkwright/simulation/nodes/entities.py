@@ -77,7 +77,9 @@ class DeleteEntity(Remove):
 
 
 class SetEntityPose(Remove):
-    """The node of ``set_entity_pose``, which sets the pose of the model or link that ``--name`` names.
+    """The node of ``set_entity_pose``, which sets the pose of a model or link.
+
+    The option ``--name`` names the model or link.
 
     Raises:
         LinkwrightError: NODE812, the command line is invalid.

@@ -1,4 +1,4 @@
-"""Reload the files of a running simulation when any program saves them."""
+"""Reloading of the files of a running simulation when any program saves them."""
 
 from __future__ import annotations
 
@@ -51,7 +51,10 @@ def follow_files(node: Node, server: SimulationServer, services: Services, host:
 
 
 async def _load_world(path: str, launcher: Node, services: Services) -> list[Diagnostic]:
-    """Load a saved world file unless the page has unsaved changes; return the findings if it was not loaded."""
+    """Load a saved world file, unless the page has unsaved changes.
+
+    Returns findings if the world was not loaded.
+    """
     if services.worlds.is_unsaved:
         message = phrase("'{path}' has changed; the simulation continues with the edited world instead", path=path)
         hint = phrase("save the edited world to another file, or undo its changes")

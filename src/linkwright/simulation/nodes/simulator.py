@@ -1,4 +1,4 @@
-"""The program gzserver: the node ``gazebo``, a simulated world with its plugins, topics and services.
+"""The program gzserver: the node ``gazebo`` with a simulated world and its services.
 
 The node behaves like the gzserver of Gazebo classic with the libraries of gazebo_ros, and like the server of gz.
 The world is simulated in a separate thread, see `linkwright.simulation.server`.
@@ -44,8 +44,7 @@ _PARAMETERS: dict[str, Any] = {
 }
 
 _PAUSED_NOTICE = (
-    "The simulation is paused, and nothing moves or measures: resume it in the page, or call /unpause_physics. "
-    "'gz sim' begins at once with -r"
+    "The simulation is paused: resume it in the page, or call /unpause_physics. 'gz sim -r' starts without a pause"
 )
 
 

@@ -1,4 +1,4 @@
-"""The program spawn_entity.py of gazebo_ros, which spawns a model with the service ``/spawn_entity``."""
+"""The program spawn_entity.py of gazebo_ros, which calls ``/spawn_entity``."""
 
 from __future__ import annotations
 

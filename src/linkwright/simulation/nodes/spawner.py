@@ -42,7 +42,10 @@ class Entity:
 
 
 def spawn_request(entity: Entity, text: str) -> Any:
-    """Return a request of ``/spawn_entity`` for an entity; `text` is the entity's URDF or SDF."""
+    """Return a request of ``/spawn_entity`` for an entity.
+
+    `text` is the URDF or SDF of the entity.
+    """
     request = get_service(SPAWN_SERVICE).Request(
         name=entity.name, xml=text, robot_namespace=entity.namespace, reference_frame=entity.reference_frame
     )
@@ -53,7 +56,9 @@ def spawn_request(entity: Entity, text: str) -> Any:
 
 
 class SimulatorClient(SingleNode):
-    """A node that calls a service of the simulator and then ends, with status 1 if the call failed.
+    """A node that calls a service of the simulator and then ends.
+
+    The exit status is 1 if the call failed.
 
     Derived classes create `_node` and call `_connect`.
     """
@@ -130,14 +135,20 @@ class EntitySpawner(SimulatorClient):
     # --- getting a description ------------------------------------------------------------------------------------
 
     def _wait_for(self, topic: str) -> None:
-        """Spawn the first description that arrives on a topic; a latched one arrives at once."""
+        """Spawn the first description that arrives on a topic.
+
+        A latched description arrives at once.
+        """
         self._log(f"Waiting for entity xml on {topic}")
         self._node.create_subscription(String, topic, lambda message: self._spawn(message.data), DESCRIPTION_QOS)
 
     # --- the request ----------------------------------------------------------------------------------------------
 
     def _spawn(self, text: str) -> None:
-        """Spawn the entity from its URDF or SDF once the simulator is available; ignore later calls."""
+        """Spawn the entity from its URDF or SDF once the simulator is available.
+
+        Later calls have no effect.
+        """
         if self._described:
             return
         self._described = True
@@ -160,12 +171,14 @@ class EntitySpawner(SimulatorClient):
         self._spawned()
 
     def _spawned(self) -> None:
-        """End with status 0; `_answered` calls this after the simulator reports that it spawned the entity."""
+        """End with status 0, after the simulator has spawned the entity."""
         self._end(0)
 
 
 def read_description(address: str, environment: Mapping[str, str]) -> str:
-    """Read the description at a path or URI (``file://``, ``package://``, ``model://``), or of a model on Fuel.
+    """Read the description at a path or URI, or of a model on Fuel.
+
+    The schemes of URIs are ``file://``, ``package://`` and ``model://``.
 
     Args:
         address: the path or URI as the user wrote it.

@@ -1,4 +1,4 @@
-"""The simulation bar, and the dragging of models in a simulated world, with topics and services only.
+"""The simulation bar and the dragging of models, with topics and services only.
 
 Source of the topic and service names: gazebo_ros and simulation_interfaces.
 """
@@ -71,7 +71,7 @@ class _Drag:
 
 
 class SimulationFeature(PageFeature):
-    """The feature that sends the state of a simulation to pages, and forwards the pages' requests.
+    """The feature that sends the state of a simulation to pages, and forwards their requests.
 
     The topics are subscribed only while pages are open.
     """
@@ -213,7 +213,9 @@ class SimulationFeature(PageFeature):
         self._services.ask(page, "gazebo_msgs/srv/GetModelList", "/get_model_list", {}, listed)
 
     def _model_at(self, address: str) -> tuple[str, str] | None:
-        """Return the name and description of the model at an address; None if the file is a world without a model.
+        """Return the name and description of the model at an address.
+
+        Returns None if the file is a world without a model.
 
         Raises:
             LinkwrightError: there is no file at the address, or the file cannot be read.

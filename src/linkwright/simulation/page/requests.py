@@ -1,4 +1,4 @@
-"""The page features of simulated worlds, which are created on demand."""
+"""The page features of simulated worlds, created on demand."""
 
 from linkwright.page.protocol.simulation import NO_SIMULATION, NO_WORLD
 from linkwright.panels.page_feature import OnDemand, messages

@@ -1,4 +1,4 @@
-"""Calls of simulation services for pages, which receive a notice if a call fails."""
+"""Calls of simulation services on behalf of pages, with a notice if a call fails."""
 
 from __future__ import annotations
 
@@ -66,7 +66,10 @@ class SimulationServices:
         future.add_done_callback(done)
 
     def close(self) -> None:
-        """Destroy the clients; later calls create new ones."""
+        """Destroy the clients.
+
+        Later calls create new clients.
+        """
         with suppress(ValueError):  # the node may have been destroyed before
             for client in self._clients.values():
                 self._node.destroy_client(client)

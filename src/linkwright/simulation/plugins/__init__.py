@@ -1,4 +1,4 @@
-"""Plugins and sensors of models, which replace the libraries of Gazebo classic and gz.
+"""Plugins and sensors that replace the libraries of Gazebo classic and gz.
 
 The registry finds them through entry points.
 """

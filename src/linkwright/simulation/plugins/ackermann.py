@@ -117,7 +117,10 @@ class ClassicAckermann(SimulatedPlugin[AckermannParameters]):
         return radius
 
     def _measure_car(self, front: list[str], rear: list[str]) -> None:
-        """Measure the track of the front wheels and the wheelbase, in m; raise if either is zero."""
+        """Measure the track of the front wheels and the wheelbase, in m.
+
+        Raises an error if either is zero.
+        """
         simulation = self.simulation
         left, right, rear_left, rear_right = (
             simulation.link_pose(simulation.scene.joints[joint].child)[:3] for joint in (*front, *rear)
@@ -141,7 +144,10 @@ class ClassicAckermann(SimulatedPlugin[AckermannParameters]):
         self._angle = min(max(angle, -parameters.max_steer), parameters.max_steer)
 
     def _stop_motion(self) -> bool:
-        """Stop the car but keep the steering angle; return whether it was commanded to move."""
+        """Stop the car but keep the steering angle.
+
+        Returns whether the car was commanded to move.
+        """
         old_speed, self._speed = self._speed, 0.0
         return old_speed != 0.0
 

@@ -32,5 +32,5 @@ _ALTERNATIVES = {
 
 
 def alternative_to(name: str) -> Phrase | None:
-    """Return the alternative to a plugin's library or a sensor type; None if there is no alternative."""
+    """Return the alternative to a plugin's library or a sensor type, or None."""
     return _ALTERNATIVES.get(library_name(name))

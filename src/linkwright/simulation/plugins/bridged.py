@@ -1,4 +1,4 @@
-"""gz topics that need a hidden name, because a bridge offers their name in ROS with another type.
+"""gz topics with hidden names, because a bridge offers the same name with another type.
 
 In Linkwright, gz topics are topics of the graph under their own names. A bridge from
 ``geometry_msgs/msg/TwistStamped`` to ``gz.msgs.Twist`` with one name for both sides, as in the robots of Jazzy, would
@@ -17,7 +17,7 @@ _HIDDEN_PREFIX = "/_gz"
 
 
 def hidden_gz_topic(topic: str) -> str:
-    """Return the hidden name of a gz topic, which it gets if a bridge uses its name for another type.
+    """Return the hidden name of a gz topic, for use beside a bridge with another type.
 
     Both names are absolute.
     """
@@ -48,7 +48,10 @@ class BridgedTopics:
         return topic in self._bridged_topics([topic])
 
     def notify(self, topic: str, callback: Callable[[], None]) -> None:
-        """Register a function that is called once, when a bridge starts to offer a topic with another type."""
+        """Register a function that is called when a bridge offers a topic with another type.
+
+        The function is called once.
+        """
         self._callbacks.setdefault(topic, []).append(callback)
 
     def forget(self, topic: str, callback: Callable[[], None]) -> None:

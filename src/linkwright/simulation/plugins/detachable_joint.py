@@ -1,4 +1,4 @@
-"""A joint that holds a link of another model until it is detached: ``gz-sim-detachable-joint-system``.
+"""A joint that holds another model's link: ``gz-sim-detachable-joint-system``.
 
 Source: gz-sim (parameters, topic names; the state is published when it changes). As in gz, an attached link does not
 collide with the model that holds it.
@@ -67,7 +67,7 @@ class GzDetachableJoint(SimulatedPlugin[DetachableJointParameters]):
             self._attach()
 
     def resume(self, before: SimulatedPlugin[DetachableJointParameters]) -> None:
-        """Attach the child if the previous instance was attached or waited for the child; otherwise detach it."""
+        """Attach the child if the previous instance held or awaited it, and detach it otherwise."""
         assert isinstance(before, GzDetachableJoint)
         if before._is_attached or before._should_attach:
             self._on_attach(None)
@@ -75,7 +75,7 @@ class GzDetachableJoint(SimulatedPlugin[DetachableJointParameters]):
             self._detach()
 
     def stop(self) -> None:
-        """Detach the child without publishing the state, because the model may be about to be removed."""
+        """Detach the child without publishing the state, because the model may be removed next."""
         self._unweld()
 
     def _on_attach(self, _: Any) -> None:
@@ -87,7 +87,7 @@ class GzDetachableJoint(SimulatedPlugin[DetachableJointParameters]):
         self._detach()
 
     def _attach_if_found(self) -> None:
-        """Attach the child if attaching was requested and the child is in the world; warn once if it is not.
+        """Attach the child if this was requested, or warn once if the child is not in the world.
 
         If an attached child was replaced by a new instance, the new instance is attached.
         """
@@ -104,7 +104,10 @@ class GzDetachableJoint(SimulatedPlugin[DetachableJointParameters]):
             self.node.logger.warning(message)
 
     def _find_child(self) -> bool:
-        """Store the name of the child link, which may be in a nested model; return whether the link exists."""
+        """Store the name of the child link, and return whether the link exists.
+
+        The link may be in a nested model.
+        """
         parameters, bodies = self.parameters, self.simulation.scene.bodies
         model = self.place.path if parameters.child_model == _OWN_MODEL else parameters.child_model
         link = f"{model}{SEPARATOR}{parameters.child_link}"

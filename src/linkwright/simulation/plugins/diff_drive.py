@@ -1,4 +1,4 @@
-"""Differential drive: ``libgazebo_ros_diff_drive.so`` of ROS 2 and ROS 1, and ``gz-sim-diff-drive-system``.
+"""Differential drive: ``libgazebo_ros_diff_drive.so`` and ``gz-sim-diff-drive-system``.
 
 Source: gazebo_ros_pkgs for ROS 2 and gz-sim (parameters, topics, defaults, the limiter, odometry). In gazebo_ros_pkgs,
 the wheel odometry of a robot that drives backward has a positive velocity. Here the velocity is negative, unless
@@ -97,7 +97,7 @@ class _WheelPair:
 
 
 class _DiffDrive(SimulatedPlugin[P], Generic[P]):
-    """A differential drive that follows a commanded velocity, with odometry from the wheels' rotation."""
+    """A differential drive that follows a commanded velocity, with wheel odometry."""
 
     CARRIED: ClassVar[tuple[str, ...]] = ("_wanted", "_now", "_place")
     _pairs: tuple[_WheelPair, ...]
@@ -111,7 +111,9 @@ class _DiffDrive(SimulatedPlugin[P], Generic[P]):
     def _create_motors(
         self, left: tuple[str, ...], right: tuple[str, ...], sizes: list[tuple[float, float]], torque: float
     ) -> None:
-        """Create motors for the wheels; `sizes` holds the separation and radius of each pair, in m.
+        """Create motors for the wheels.
+
+        `sizes` contains the separation and radius of each pair, in m.
 
         Raises:
             LinkwrightError: SIM160, a size is not positive, or the numbers of left and right wheels differ.
@@ -143,7 +145,7 @@ class _DiffDrive(SimulatedPlugin[P], Generic[P]):
         self._wanted = (float(twist.linear.x), float(twist.angular.z))
 
     def _rest(self) -> bool:
-        """Stop the robot; return whether it was commanded to move."""
+        """Stop the robot, and return whether it was commanded to move."""
         old_command, self._wanted = self._wanted, (0.0, 0.0)
         return old_command != self._wanted
 
@@ -153,14 +155,20 @@ class _DiffDrive(SimulatedPlugin[P], Generic[P]):
             pair.left.target, pair.right.target = pair.drive.wheel_speeds(forward, angular)
 
     def _read_angles(self) -> tuple[float, float]:
-        """Return the angles of the first wheel pair in rad, and store the wheel velocities for `_measured_velocity`."""
+        """Return the angles of the first wheel pair in rad.
+
+        The wheel velocities are stored for `_measured_velocity`.
+        """
         state, (left, right) = self.simulation.joint_state, self._pairs[0].joints
         (left_angle, left_speed), (right_angle, right_speed) = state(left), state(right)
         self._wheel_velocities = left_speed, right_speed
         return left_angle, right_angle
 
     def _measured_velocity(self) -> tuple[float, float]:
-        """Return the forward velocity in m/s and the yaw rate in rad/s at the last call of `_read_angles`."""
+        """Return the forward velocity in m/s and the yaw rate in rad/s.
+
+        They are the values at the last call of `_read_angles`.
+        """
         return self._pairs[0].drive.motion(*self._wheel_velocities)
 
     def _update_odometry(self) -> None:
@@ -245,7 +253,10 @@ class ClassicDiffDrive(_DiffDrive[ClassicParameters]):
             self._topics.publish(stamp, self._place.transform, published_forward, 0.0, angular)
 
     def _drive(self) -> None:
-        """Accelerate the wheels towards the commanded velocity, within the limit of the rims in m/s2."""
+        """Accelerate the wheels towards the commanded velocity, within a limit in m/s2.
+
+        The limit applies to the rims of the wheels.
+        """
         forward, angular = self._wanted
         for index, pair in enumerate(self._pairs):
             target_speeds, current_speeds = pair.drive.wheel_speeds(forward, angular), self._wheel_speeds[index]
@@ -330,5 +341,8 @@ def _step_towards(value: float, target: float, max_step: float) -> float:
 
 
 def _one_per_pair(values: tuple[float, ...], count: int) -> tuple[float, ...]:
-    """Return exactly `count` values: repeat the last value if there are too few, and drop surplus ones."""
+    """Return exactly `count` values.
+
+    The last value is repeated if there are too few, and surplus values are dropped.
+    """
     return (*values, *(values[-1:] * count))[:count]

@@ -1,4 +1,4 @@
-"""Poses and velocities of models and links under the names that the services of gazebo_ros use.
+"""Poses and velocities of models and links, by the names in gazebo_ros's services.
 
 Source: gazebo_ros_pkgs for ROS 2 (``gazebo_ros_state``) and its messages.
 """
@@ -20,7 +20,7 @@ _WORLD_FRAMES = ("", WORLD, "map", "/map")
 
 
 class Entities:
-    """Access to the models and links of a simulation by the names that gazebo_ros's services use.
+    """Access to models and links of a simulation by the names in gazebo_ros's services.
 
     Args:
         simulation: the simulation of the world.
@@ -30,7 +30,7 @@ class Entities:
         self._simulation = simulation
 
     def link(self, name: str) -> str:
-        """Return the full name, ``model::link``, of a link, given this name or only the link name.
+        """Return the full name, ``model::link``, of a link from this name or the link name.
 
         The link name is sufficient if only one model has such a link.
 
@@ -40,7 +40,7 @@ class Entities:
         return self._full_name(name, self._simulation.scene.bodies)
 
     def joint(self, name: str) -> str:
-        """Return the full name, ``model::joint``, of a joint, given this name or only the joint name.
+        """Return the full name, ``model::joint``, of a joint from this name or the joint name.
 
         The joint name is sufficient if only one model has such a joint.
 
@@ -60,7 +60,9 @@ class Entities:
         return name
 
     def frame(self, name: str) -> Transform:
-        """Return the pose of a model or link in the world; the identity if `name` is a name of the world's frame.
+        """Return the pose of a model or link in the world.
+
+        For a name of the world's frame, this is the identity.
 
         Raises:
             LinkwrightError: SIM141, there is no such entity.
@@ -138,7 +140,7 @@ def _not_found_error(name: str, names: Collection[str]) -> LinkwrightError:
 
 
 def fill_response(response: Any, work: Callable[[], str]) -> Any:
-    """Call `work`, and set `success` and `status_message` of the response, which is returned.
+    """Call `work`, and return the response with `success` and `status_message`.
 
     `status_message` is the text that `work` returns, or the reason for a failure.
     """
@@ -152,7 +154,10 @@ def fill_response(response: Any, work: Callable[[], str]) -> Any:
 def _respond_without_message(
     response: Any, work: Callable[[], object], service: str, log: Callable[[Phrase], object]
 ) -> Any:
-    """Call `work`, set `success` of the response and return it; `log` receives the reason for a failure."""
+    """Call `work`, and return the response with `success`.
+
+    `log` receives the reason for a failure.
+    """
     try:
         work()
         response.success = True
@@ -184,7 +189,10 @@ def pose_message(pose: Transform) -> Any:
 
 
 def transform_in(message: Any) -> Transform:
-    """Return the pose in a message as a transform; a quaternion of zeros means no rotation."""
+    """Return the pose in a message as a transform.
+
+    A quaternion of zeros means no rotation.
+    """
     orientation = message.orientation
     quaternion = (orientation.x, orientation.y, orientation.z, orientation.w)
     if not any(quaternion):

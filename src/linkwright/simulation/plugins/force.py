@@ -67,7 +67,7 @@ class ClassicForce(SimulatedPlugin[ForceParameters]):
         self._apply_wrench()
 
     def _stop_motion(self) -> bool:
-        """Set the force to zero; return whether it was nonzero."""
+        """Set the force to zero, and return whether it was nonzero."""
         old_wrench = self._wrench
         self.reset()
         return old_wrench != _NO_WRENCH

@@ -1,4 +1,4 @@
-"""True poses as odometry: ``libgazebo_ros_p3d.so``, and ``gz-sim-odometry-publisher-system``.
+"""True poses as odometry: ``libgazebo_ros_p3d.so``, ``gz-sim-odometry-publisher-system``.
 
 Source: gazebo_ros_pkgs and gz-sim (parameters, topics, frames, defaults).
 """
@@ -60,7 +60,7 @@ class GzOdometryParameters:
 
 
 class ClassicPose(SimulatedPlugin[ClassicPoseParameters]):
-    """The substitute for ``libgazebo_ros_p3d.so``: publishes the pose of a link.
+    """The substitute for ``libgazebo_ros_p3d.so``: the pose and velocity of a link.
 
     The pose is expressed in the world or in the frame of another link, and the velocities in the axes of the same
     frame. gazebo_ros_p3d rotates velocities in the wrong direction into the axes of another link. The plugin does the
@@ -105,7 +105,7 @@ class ClassicPose(SimulatedPlugin[ClassicPoseParameters]):
 
 
 class GzOdometry(SimulatedPlugin[GzOdometryParameters]):
-    """The substitute for ``gz-sim-odometry-publisher-system``: publishes a model's pose and velocity.
+    """The substitute for ``gz-sim-odometry-publisher-system``: a model's pose and velocity.
 
     The pose is expressed in the world, and the velocity in the axes of the model.
     """

@@ -139,7 +139,10 @@ class GzAckermann(SimulatedPlugin[SteeringParameters]):
     # --- the wheels ---------------------------------------------------------------------------------------------------
 
     def _drive(self) -> None:
-        """Drive and steer as commanded; the inner wheels turn slower and are steered further than the outer ones."""
+        """Drive and steer as commanded.
+
+        The inner wheels turn slower and are steered further than the outer wheels.
+        """
         self._update_odometry()
         parameters = self.parameters
         forward, _, angular = self._commands.next_velocity()
@@ -149,7 +152,10 @@ class GzAckermann(SimulatedPlugin[SteeringParameters]):
         self._steer(*ackermann_angles(parameters.wheel_base * curvature, parameters.kingpin_width * curvature))
 
     def _curvature(self, forward: float, angular: float) -> float:
-        """Return the commanded curvature in 1/m, positive to the left, clipped to the steering limit."""
+        """Return the commanded curvature in 1/m, clipped to the steering limit.
+
+        A curvature to the left is positive.
+        """
         parameters = self.parameters
         max_curvature = sin(parameters.steering_limit) / parameters.wheel_base
         if abs(angular) < _MIN_YAW_RATE:

@@ -34,7 +34,9 @@ class GzDriveParameters(SpeedLimits):
 
 
 class DriveCommands:
-    """The commanded velocity of a drive, with limits: forward and left in m/s, and the yaw rate in rad/s.
+    """The commanded velocity of a drive, with limits.
+
+    Its components are forward and left in m/s, and the yaw rate in rad/s.
 
     Args:
         limits: the limits of velocity, acceleration and jerk.
@@ -55,7 +57,10 @@ class DriveCommands:
             limiter.restart()
 
     def resume(self, previous: DriveCommands) -> None:
-        """Take over the velocity, the command and the enabled state of a previous instance with equal limits."""
+        """Adopt the velocity, the command and the enabled state of a previous instance.
+
+        Both instances have equal limits.
+        """
         self.is_enabled, self._wanted, self._limiters = previous.is_enabled, previous._wanted, previous._limiters
 
     def set_command(self, twist: Any) -> None:
@@ -64,7 +69,7 @@ class DriveCommands:
             self._wanted = (float(twist.linear.x), float(twist.linear.y), float(twist.angular.z))
 
     def rest(self) -> bool:
-        """Set the command to zero; return whether it was nonzero."""
+        """Set the command to zero, and return whether it was nonzero."""
         old_command, self._wanted = self._wanted, (0.0, 0.0, 0.0)
         return old_command != self._wanted
 

@@ -1,4 +1,6 @@
-"""Joint controllers of gz: ``gz-sim-joint-position-controller-system`` and ``gz-sim-joint-controller-system``.
+"""Joint controllers of gz, for positions and for velocities.
+
+The systems are ``gz-sim-joint-position-controller-system`` and ``gz-sim-joint-controller-system``.
 
 Source: gz-sim (parameters, topics, defaults, meaning of velocity commands). Commands are ``std_msgs/msg/Float64``,
 which a bridge converts to messages of gz.
@@ -98,7 +100,7 @@ class _JointController(SimulatedPlugin[P], Generic[P]):
             simulation.keep_awake(simulation.scene.joints[joint].child)
 
     def _subscribe_to_commands(self, topic_suffix: str) -> None:
-        """Subscribe to the commands, on the configured topic or on the default topic of the first joint.
+        """Subscribe to the commands, on the configured topic or the first joint's default topic.
 
         `topic_suffix` is the end of the default topic's name.
         """
@@ -174,7 +176,7 @@ class GzJointPosition(_JointController[PositionParameters]):
 
 
 class GzJointVelocity(_JointController[VelocityParameters]):
-    """The substitute for ``gz-sim-joint-controller-system``, which controls the velocity of joints.
+    """The substitute for ``gz-sim-joint-controller-system``: velocity control of joints.
 
     A motor holds the velocity, or with ``use_force_commands`` a PID controller applies forces to the joint.
     """

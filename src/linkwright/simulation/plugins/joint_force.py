@@ -48,7 +48,7 @@ class GzJointForce(SimulatedPlugin[JointForceParameters]):
         self._force = float(message.data)
 
     def _stop_motion(self) -> bool:
-        """Set the force to zero; return whether it was nonzero."""
+        """Set the force to zero, and return whether it was nonzero."""
         old_force = self._force
         self.reset()
         return old_force != 0.0

@@ -1,4 +1,4 @@
-"""Joints that are set to the positions of a trajectory: ``libgazebo_ros_joint_pose_trajectory.so``.
+"""Joints set to a trajectory's positions: ``libgazebo_ros_joint_pose_trajectory.so``.
 
 Source: gazebo_ros_pkgs for ROS 2 and ROS 1 (topic, parameters). Joints jump from point to point, and the
 ``time_from_start`` of a point is the time until the next point.

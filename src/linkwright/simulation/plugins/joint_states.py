@@ -1,4 +1,6 @@
-"""Joint states: ``libgazebo_ros_joint_state_publisher.so``, and ``gz-sim-joint-state-publisher-system``.
+"""Publishers of joint states in simulations of Gazebo classic and gz.
+
+The libraries are ``libgazebo_ros_joint_state_publisher.so`` and ``gz-sim-joint-state-publisher-system``.
 
 Source: gazebo_ros_pkgs for ROS 2 and gz-sim (parameters, topics, defaults). gz sends its message Model, which a bridge
 converts to the message published here.
@@ -59,7 +61,10 @@ class ClassicJointStates(_JointStates[ClassicParameters]):
     PARAMETERS = ClassicParameters
 
     def start(self) -> None:
-        """Find the joints, and publish their states; skip fixed and missing joints with a warning."""
+        """Find the joints, and publish their states.
+
+        Fixed and missing joints are skipped with a warning.
+        """
         requested_names = [name for entry in self.parameters.joint_name for name in entry.replace(",", " ").split()]
         joints_by_name = [(name, joint) for name in requested_names if (joint := self._joint(name)) is not None]
         names, joints = [name for name, _ in joints_by_name], [joint for _, joint in joints_by_name]
@@ -80,7 +85,7 @@ class GzJointStates(_JointStates[GzParameters]):
     PARAMETERS = GzParameters
 
     def start(self) -> None:
-        """Find the joints that the parameters name, or all movable joints if the parameters do not name any."""
+        """Find the joints named by the parameters, or all movable joints if none is named."""
         prefix = f"{self.place.path}::"
         movable_joints = [
             name

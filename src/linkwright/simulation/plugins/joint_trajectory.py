@@ -22,7 +22,10 @@ Floats = tuple[float, ...]
 
 @dataclass(frozen=True, kw_only=True)
 class TrajectoryParameters:
-    """Parameters of ``gz-sim-joint-trajectory-controller-system``; each list has one item per joint."""
+    """Parameters of ``gz-sim-joint-trajectory-controller-system``.
+
+    Each list has one item per joint.
+    """
 
     joint_name: tuple[str, ...] = ()
     topic: str = ""
@@ -67,7 +70,10 @@ class TrajectoryParameters:
 
 
 class _Joint:
-    """A joint and its targets: position in rad (or m), velocity in rad/s (or m/s), effort in N m (or N)."""
+    """A joint with its target position, velocity and effort.
+
+    Units are rad, rad/s and N m, or m, m/s and N.
+    """
 
     def __init__(self, name: str, index: int, parameters: TrajectoryParameters) -> None:
         self.name = name
@@ -110,7 +116,7 @@ class _Trajectory:
         return self.index + 1 >= len(self.message.points)
 
     def advance(self, time: int) -> bool:
-        """Advance to the current point for a time in ns; return whether the point has changed."""
+        """Advance to the current point for a time in ns, and return whether the point has changed."""
         old_index = self.index
         while not self.is_at_last_point and self.start + _nanoseconds(self._point.time_from_start) < time:
             self.index += 1

@@ -111,7 +111,10 @@ class GzMecanum(PlanarDrive[MecanumParameters]):
         return [self.simulation.joint_state(joint)[derivative] for joint in self._wheels]
 
     def _robot_motion(self, wheel_values: list[float]) -> tuple[float, float, float]:
-        """Return the robot's displacement for wheel angles in rad, or its velocity for wheel velocities in rad/s."""
+        """Return the robot's displacement for wheel angles, or its velocity for wheel velocities.
+
+        Wheel angles are in rad, and wheel velocities in rad/s.
+        """
         return self._drive_train.motion(*wheel_values)
 
     def _move(self) -> None:

@@ -1,4 +1,6 @@
-"""Multicopters: ``gz-sim-multicopter-motor-model-system`` and ``gz-sim-multicopter-control-system``.
+"""Rotors and velocity control of multicopters.
+
+The systems are ``gz-sim-multicopter-motor-model-system`` and ``gz-sim-multicopter-control-system``.
 
 The thrust of a rotor acts along the z axis of its link and grows with the square of its speed. The rotor exerts a
 reaction torque on its parent link, and air drag acts on a rotor that moves across its axis. The controller tilts the
@@ -55,7 +57,7 @@ class MotorParameters:
 
 
 class GzMulticopterMotor(SimulatedPlugin[MotorParameters]):
-    """A rotor that follows the speed commands of a controller or a topic, with the delay of a motor.
+    """A rotor that follows speed commands of a controller or topic, with a motor's delay.
 
     The topic contains the speeds of all rotors in rad/s. The commands of a controller in the model take precedence.
 
@@ -259,7 +261,7 @@ class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
         self._wanted = (linear, min(max(float(twist.angular.z), -max_yaw_rate), max_yaw_rate))
 
     def _stop_motion(self) -> bool:
-        """Replace the command, if there is one, by hovering; return whether a motion was commanded."""
+        """Replace the command by hovering, and return whether a motion was commanded."""
         old_command = self._wanted
         if old_command is None:
             return False
@@ -309,7 +311,10 @@ class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
 
 
 def _attitude(rotation: Array, acceleration: Array) -> Array:
-    """Return the rotation matrix whose z axis is opposite to an acceleration, keeping the heading."""
+    """Return the rotation matrix whose z axis is opposite to an acceleration.
+
+    The heading stays the same.
+    """
     up = -acceleration / max(float(np.linalg.norm(acceleration)), 1e-9)
     heading = next(
         (axis for axis in rotation.T if np.sum(np.cross(axis, up) ** 2) >= _MIN_SQUARED_SINE), rotation[:, 0]

@@ -78,7 +78,10 @@ class PluginNode(SteppedNode):
         rest: Callable[[], object] | None = None,
         usual: str = "",
     ) -> None:
-        """Subscribe to a topic; the arguments are those of `publisher` and of `SteppedNode.subscribe`."""
+        """Subscribe to a topic.
+
+        The arguments are those of `publisher` and of `SteppedNode.subscribe`.
+        """
         received = self._make_callback(topic, callback, rest, commander)
         self._subscribe_to(msg_type, self._topic_names(topic, usual), received, qos, commander)
 
@@ -91,7 +94,7 @@ class PluginNode(SteppedNode):
             self._usual.difference_update(self._usual_names)
 
     def _listen(self, topic: str, create_subscription: Callable[[str], Endpoint]) -> None:
-        """Subscribe to a topic, and switch to its hidden name when a bridge offers the topic with another type."""
+        """Subscribe to a topic, or to its hidden name while a bridge offers another type."""
         bridged = self._bridged
         if bridged is None or bridged.has(topic):
             create_subscription(topic if bridged is None else hidden_gz_topic(topic))

@@ -1,8 +1,8 @@
-"""Parameters of plugins; a dataclass declares their names, types and defaults.
+"""Parameters of plugins: a dataclass declares their names, types and defaults.
 
     @dataclass(frozen=True, kw_only=True)
     class Parameters:
-        left_joint: tuple[str, ...] = parameter(aliases=("leftJoint",))  # required, as it has no default
+        left_joint: tuple[str, ...] = parameter(aliases=("leftJoint",))  # required, because it has no default
         wheel_separation: tuple[float, ...] = parameter((0.34,), aliases=("wheelSeparation",))
         update_rate: float = 100.0
         publish_odom: bool = False
@@ -42,7 +42,7 @@ class NoParameters:
 
 
 def parameter(default: Any = MISSING, *, aliases: Sequence[str] = ()) -> Any:
-    """Return a dataclass field for a parameter, with its default and its names in older simulators.
+    """Return a dataclass field for a parameter, with its default and its other names.
 
     A parameter without a default is required.
     """

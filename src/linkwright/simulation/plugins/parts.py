@@ -1,4 +1,4 @@
-"""The parts of a model that have poses: nested models, links, and objects that are fixed to links."""
+"""The parts of a model with poses: nested models, links, and objects fixed to links."""
 
 from __future__ import annotations
 
@@ -45,7 +45,9 @@ class Part:
 
 
 def parts_of(simulation: Simulation, model: Model, path: str) -> Iterator[Part]:
-    """Yield the parts of a model of a simulation; each model and link precedes its own parts.
+    """Yield the parts of a model of a simulation.
+
+    Each model and link precedes its parts.
 
     Args:
         simulation: the simulation that contains the model.
@@ -71,7 +73,7 @@ def _frame_of(simulation: Simulation, model: Model, path: str) -> Pose:
 
 
 def _pose_on_link(simulation: Simulation, link: str, place: Transform) -> Pose:
-    """Return a function that returns the current pose in the world of a frame that is fixed to a link.
+    """Return a function that returns the pose in the world of a frame fixed to a link.
 
     `link_pose` is the pose of the link in this frame.
     """
@@ -80,7 +82,10 @@ def _pose_on_link(simulation: Simulation, link: str, place: Transform) -> Pose:
 
 
 def _parts(simulation: Simulation, model: Model, path: str, frames: Frames, place: Pose) -> Iterator[Part]:
-    """Yield the parts of a model; `frame_pose` returns the pose of the model's frame in the world."""
+    """Yield the parts of a model.
+
+    `frame_pose` returns the pose of the model's frame in the world.
+    """
     for link in model.links:
         name = f"{path}{SEPARATOR}{link.name}"
         yield Part(PartKind.LINK, name, path, partial(_relative_pose, place, partial(simulation.link_pose, name)))

@@ -31,7 +31,10 @@ class Pid:
         self._before: float | None = None
 
     def force(self, error: float, seconds: float) -> float:
-        """Return the force in N m (or N) for an error; `seconds` is the time since the last call."""
+        """Return the force in N m (or N) for an error.
+
+        `seconds` is the time since the last call.
+        """
         gains = self._gains
         self._integral = _clip(self._integral + gains.i * error * seconds, gains.i_min, gains.i_max)
         change = 0.0 if self._before is None else (error - self._before) / seconds

@@ -44,7 +44,7 @@ class PlanarDrive(SimulatedPlugin[P], Generic[P]):
     """A plugin that sets the velocity of a model in its horizontal plane."""
 
     def require_free_model(self) -> None:
-        """Raise if the model cannot move; otherwise prevent it from sleeping.
+        """Raise an error if the model cannot move, or else prevent it from sleeping.
 
         Raises:
             LinkwrightError: SIM160, the model is fixed to the world.

@@ -113,7 +113,10 @@ class Environment(Protocol):
 
     @property
     def left(self) -> dict[str, Any]:
-        """The values that plugins store by name for later instances, which read them after a model is changed."""
+        """The values that plugins store by name for later instances.
+
+        Later instances read the values after a model is changed.
+        """
 
     def random(self, name: str) -> np.random.Generator:
         """Return a random number generator that depends only on the seed and a name."""
@@ -162,7 +165,7 @@ class SimulatedPlugin(Generic[P]):
         """Restore the initial state, because simulated time restarts."""
 
     def resume(self, before: SimulatedPlugin[P]) -> None:
-        """Take over the state of the previous instance, which has the same parameters.
+        """Adopt the state of the previous instance with the same parameters.
 
         The simulation calls this after `start` when it has replaced a model.
 
@@ -190,7 +193,10 @@ class SimulatedPlugin(Generic[P]):
 
     @property
     def sensor(self) -> PlacedSensor:
-        """The sensor that the plugin is or belongs to; only for sensors and their plugins."""
+        """The sensor that the plugin is or belongs to.
+
+        Use this only in sensors and their plugins.
+        """
         assert self.place.sensor is not None
         return self.place.sensor
 
@@ -204,7 +210,10 @@ class SimulatedPlugin(Generic[P]):
         return self._environment.random(owner)
 
     def every(self, rate: float, function: Callable[[], None]) -> None:
-        """Register a function to be called `rate` times per simulated second; 0 means after each step."""
+        """Register a function to be called `rate` times per simulated second.
+
+        A rate of 0 means after each step.
+        """
         period = round(NANOSECONDS_PER_SECOND / rate) if rate > 0 else 0
         self._tasks.append(self.simulation.call_every(period, partial(self.node.calls.call, function)))
 
@@ -230,12 +239,15 @@ class SimulatedPlugin(Generic[P]):
 
     @property
     def first_link(self) -> str:
-        """The full name of the first link of the plugin's top-level model, with which the model moves."""
+        """The full name of the first link of the top-level model that contains the plugin."""
         top_model, _, _ = self.place.path.partition(SEPARATOR)
         return self.simulation.scene.models[top_model].structure.links[0].link.name
 
     def parameter_error(self, message: Phrase) -> LinkwrightError:
-        """Return the error (SIM160) to raise in `start` if the parameters contradict each other or the model."""
+        """Return the error SIM160, to raise in `start` for contradictory parameters.
+
+        Parameters may contradict each other or the model.
+        """
         element = self.place.element
         if element is None:
             return LinkwrightError(Diagnostic("SIM160", message))

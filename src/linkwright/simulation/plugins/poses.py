@@ -97,7 +97,7 @@ class GzPoses(SimulatedPlugin[PoseParameters]):
             output.publish(message)
 
     def _links_with_joints(self, model: Model) -> set[str]:
-        """Return the links of the model's movable joints, except the link that carries the model's frame."""
+        """Return the links of the model's movable joints, except the link with the model's frame."""
         prefix = f"{self.place.path}{SEPARATOR}"
         moving = {
             link

@@ -1,4 +1,6 @@
-"""Services that get and set physical properties of models, links and joints: ``libgazebo_ros_properties.so``.
+"""Services for physical properties of models, links and joints.
+
+The library is ``libgazebo_ros_properties.so``.
 
 Source: gazebo_ros_pkgs for ROS 2 (services and their responses). The services do not cover lights, nor settings that
 only the physics engine ODE has.
@@ -151,7 +153,7 @@ class ClassicProperties(SimulatedPlugin[NoParameters]):
 
     def _set_physics(self, request: Any, response: Any) -> Any:
         self.simulation.set_gravity(numbers(request.gravity))
-        response.success, response.status_message = True, "gravity is set, nothing else"
+        response.success, response.status_message = True, "gravity is set; other settings have no effect"
         return response
 
 

@@ -67,7 +67,9 @@ def is_built_in(filename: str) -> bool:
 
 
 def plugin_class(library: str) -> PluginClass | None:
-    """Return the class that simulates the plugin in a library (`library_name`), or None if there is none.
+    """Return the class that simulates the plugin in a library, or None if there is none.
+
+    The name of the library has the form of `library_name`.
 
     Raises:
         LinkwrightError: SIM136, the class cannot be imported.
@@ -95,6 +97,10 @@ def _load(entry: EntryPoint) -> PluginClass:
         class_: PluginClass = entry.load()
     except Exception as error:
         message = phrase("the plugin '{name}' cannot be imported", name=entry.name)
-        hint = phrase("it is part of '{place}': {problem}", place=entry.distribution, problem=foreign(error))
+        hint = phrase(
+            "the Python package '{place}' provides it, but its import fails: {problem}",
+            place=entry.distribution,
+            problem=foreign(error),
+        )
         raise LinkwrightError(Diagnostic("SIM136", message, hint=hint)) from error
     return class_

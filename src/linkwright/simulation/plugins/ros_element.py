@@ -1,4 +1,4 @@
-"""The element ``<ros>`` of Gazebo classic's plugins: node name, remappings, parameters and QoS.
+"""The element ``<ros>`` of Gazebo classic: node name, remappings, parameters and QoS.
 
 Source: ``gazebo_ros::Node`` of gazebo_ros_pkgs for ROS 2.
 """
@@ -82,7 +82,10 @@ def node_of(name: str, element: Element | None, namespace: str) -> NodeDescripti
 
 
 def overridden(profile: QoSProfile, element: Element) -> QoSProfile:
-    """Return a copy of a QoS profile with the policies that an element sets; invalid values have no effect."""
+    """Return a copy of a QoS profile with the policies that an element sets.
+
+    Invalid values have no effect.
+    """
     result = QoSProfile(profile.depth, profile.reliability, profile.durability, profile.history)
     for child in element.elements():
         value = child.text().strip().upper()
@@ -98,7 +101,10 @@ def overridden(profile: QoSProfile, element: Element) -> QoSProfile:
 
 
 def _namespace(element: Element | None) -> str:
-    """Return the namespace in ``<ros>``, or in the plugin's element as in ROS 1; empty if neither declares one."""
+    """Return the namespace in ``<ros>``, or in the plugin's element as in ROS 1.
+
+    Returns an empty string if neither declares one.
+    """
     for namespace in _declared_namespaces(element):
         if namespace.strip("/ "):
             return "/" + namespace.strip("/ ")

@@ -77,7 +77,10 @@ class GzSceneBroadcaster(SimulatedPlugin[SceneParameters]):
         output.publish(TFMessage(batch=TransformBatch(("",) * count, entities.names, self.simulation.time, poses)))
 
     def _collect_entities(self) -> None:
-        """Update the list of all entities and the list of moving entities; static entities get constant poses."""
+        """Update the list of all entities and the list of moving entities.
+
+        Static entities get constant poses.
+        """
         self.simulation.refresh()
         self._revision = self.simulation.revision
         models = self.simulation.scene.models.values()

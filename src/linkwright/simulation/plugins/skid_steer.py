@@ -1,4 +1,6 @@
-"""Skid steering: ``libgazebo_ros_skid_steer_drive.so`` of ROS 1, a differential drive with two pairs of wheels.
+"""Skid steering of ROS 1: ``libgazebo_ros_skid_steer_drive.so``.
+
+Skid steering is a differential drive with two pairs of wheels.
 
 Source: gazebo_ros_pkgs for ROS 1 (parameters, topics, defaults; the odometry is the robot's true pose in the world).
 """

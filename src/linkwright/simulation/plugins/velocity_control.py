@@ -1,4 +1,4 @@
-"""Moves a model with a commanded velocity: ``gz-sim-velocity-control-system``.
+"""Motion of a model at a commanded velocity: ``gz-sim-velocity-control-system``.
 
 Source: gz-sim (parameters, topic; velocities are in the frame of the model and apply until the next message).
 """
@@ -23,7 +23,10 @@ class VelocityControlParameters:
 
 
 class GzVelocityControl(PlanarDrive[VelocityControlParameters]):
-    """The substitute for ``gz-sim-velocity-control-system``; it controls models but not single links."""
+    """The substitute for ``gz-sim-velocity-control-system``.
+
+    It controls models, but not single links.
+    """
 
     PARAMETERS = VelocityControlParameters
     IGNORED = ("link_name",)

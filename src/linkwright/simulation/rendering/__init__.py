@@ -1,1 +1,1 @@
-"""Rendering of a simulated world, by OpenGL or, if no OpenGL library is available, by ray casting."""
+"""Rendering of a simulated world by OpenGL, or by ray casting without an OpenGL library."""

@@ -1,4 +1,4 @@
-"""Creates the first renderer that works on this machine."""
+"""Creation of the first renderer that works on this machine."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def make_renderer(simulation: Simulation, method: str = "") -> Renderer:
     for candidate in candidates:
         try:
             return _create_renderer(simulation, candidate)
-        except Exception:  # noqa: BLE001, PERF203, S112 - a missing library fails in many ways
+        except Exception:  # noqa: BLE001, PERF203, S112 - a missing library raises many exceptions
             continue
     raise AssertionError("MuJoCo's rays need nothing, and never fail")
 

@@ -36,7 +36,7 @@ class PlacedLight:
 
 
 def lights_of(simulation: Simulation, forwards: Array) -> list[PlacedLight]:
-    """Return the lights of a world and its links at their current poses, or a sun if there are none.
+    """Return the lights of a world and its links at their current poses, or else a sun.
 
     The first light is a faint light in the viewing direction of the camera, `forwards`. It replaces indirect light:
     without it, everything in the shade would have the same colour.

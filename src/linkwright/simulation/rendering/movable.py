@@ -1,4 +1,4 @@
-"""Movable geoms: detects which geoms are at rest, and which moving geoms appear in an image."""
+"""Movable geoms: detection of geoms at rest, and of moving geoms in an image."""
 
 from __future__ import annotations
 
@@ -65,7 +65,9 @@ class MovableGeoms:
         self._has_contained_camera: Any = np.zeros(count, dtype=bool)
 
     def settle(self, origin: Array) -> bool:
-        """Update `resting` before a camera's image is rendered; return whether `resting` has changed.
+        """Update `resting`, and return whether it has changed.
+
+        Call this before each image is rendered, with the camera's position.
 
         A box that contained a camera never rests, because it is invisible to that camera but not to others.
         """
@@ -108,7 +110,7 @@ class MovableGeoms:
 
 
 def pixels_towards(optics: Optics, boxes: list[Array]) -> Any:
-    """Return the indices of the pixels in which bounding boxes may appear; None means all pixels.
+    """Return the indices of the pixels in which bounding boxes may appear, or None for all.
 
     The result is None if there are many boxes, or if a box is too close to the camera.
 

@@ -114,7 +114,7 @@ class OpenGlRenderer:
         )
 
     def close(self) -> None:
-        """Free the OpenGL context; in any thread but the one that created the renderer, do nothing."""
+        """Free the OpenGL context, if this thread created the renderer."""
         if self._thread == threading.get_ident():
             self._gl.make_current()
             if self._draw_context is not None:
@@ -222,7 +222,7 @@ class OpenGlRenderer:
             camera.frustum_width = pinhole.width / 2 * scale
 
     def _flatten_planes(self, pinhole: Optics, origin: Array) -> None:
-        """Draw infinite planes without textures that the camera sees from above as the tops of boxes.
+        """Draw infinite planes without textures, as seen from above, as the tops of boxes.
 
         MuJoCo draws 40 000 squares for each plane, but only nonuniform light and textures require them.
         """
@@ -362,7 +362,7 @@ def _context_class(backend: str) -> Any:
 
 
 def _resample_nearest(pixels: Pixels, optics: Optics) -> Pixels:
-    """Return a pinhole image as it appears through the lens, with nearest-neighbour interpolation."""
+    """Return a pinhole image as seen through the lens, with nearest-neighbour interpolation."""
     column, row = optics.sources
     column = np.clip(np.round(column).astype(int), 0, optics.pinhole.width - 1)
     row = np.clip(np.round(row).astype(int), 0, optics.pinhole.height - 1)
@@ -371,7 +371,7 @@ def _resample_nearest(pixels: Pixels, optics: Optics) -> Pixels:
 
 
 def _resample_interpolated(pixels: Pixels, optics: Optics) -> Pixels:
-    """Return the colours of a pinhole image as they appear through the lens, with bilinear interpolation."""
+    """Return a colour image as seen through the lens, with bilinear interpolation."""
     column = np.clip(optics.sources[0], 0, optics.pinhole.width - 1.001)
     row = np.clip(optics.sources[1], 0, optics.pinhole.height - 1.001)
     left, top = column.astype(int), row.astype(int)

@@ -39,7 +39,7 @@ class Caster(Protocol):
     way: Phrase
 
     def cast(self, view: View, *, normals: bool) -> Hits:
-        """Cast the rays of an image into the current world, starting at the camera's near clip plane.
+        """Cast the rays of an image into the current world, from the camera's near clip plane.
 
         Args:
             view: the camera's view, with the rays of its pixels.
@@ -48,7 +48,7 @@ class Caster(Protocol):
 
 
 class MujocoCaster:
-    """Ray casting with MuJoCo, which is exact but slow."""
+    """Exact but slow ray casting with MuJoCo."""
 
     way = phrase("slow ray casting with MuJoCo, because EGL, OSMesa and embreex are not available")
 
@@ -82,7 +82,10 @@ class MujocoCaster:
         return Hits(relative_distances.astype(np.float32), geoms, surface_normals.astype(np.float32))
 
     def _hit_beyond_near(self, origin: Array, ray: Array, length: float, start: float) -> tuple[int, float, Array]:
-        """Return a ray's first hit beyond the near clip plane: geom (-1 for none), distance in m and normal."""
+        """Return a ray's first hit beyond the near clip plane: geom, distance and normal.
+
+        The geom is -1 if there is no hit. The distance is in m.
+        """
         model, data, geom, normal = self._simulation.model, self._simulation.data, np.zeros(1, np.int32), np.zeros(3)
         near_point, direction = origin + start * ray, ray / length
         remaining_distance = self._mujoco.mj_ray(model, data, near_point, direction, self._groups, 1, -1, geom, normal)
@@ -138,7 +141,9 @@ class _Triangles:
 
 
 class EmbreeCaster:
-    """Ray casting with Embree against triangles; one tree of all static geoms is reused for many images.
+    """Ray casting with Embree against triangles.
+
+    One tree of all static geoms is reused for many images.
 
     Raises:
         ImportError: embreex is not installed.

@@ -83,7 +83,7 @@ def _background_colour(colour: Sequence[float]) -> Any:
 
 
 def _received_light(placed_light: PlacedLight, hits: Hits, facing_signs: Any, origin: Array, rays: Any) -> Any:
-    """Return the fraction of a light's intensity that the surface at each hit receives, shape (n,)."""
+    """Return the fraction of a light's intensity that each hit receives, shape (n,)."""
     if placed_light.light.type == "directional":
         fractions = (hits.normals @ -placed_light.direction.astype(np.float32)) * facing_signs
         return np.maximum(fractions, 0, out=fractions)

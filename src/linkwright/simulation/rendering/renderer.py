@@ -20,7 +20,7 @@ _IMAGE_AXES = np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
 
 
 class Channels(Flag):
-    """The channels of a rendered image, of which a caller requests some."""
+    """The channels of a rendered image that a caller can request."""
 
     COLOUR = auto()
     DEPTH = auto()
@@ -29,7 +29,9 @@ class Channels(Flag):
 
 @dataclass(frozen=True, slots=True)
 class RenderedImage:
-    """A rendered image; channels that were not requested are None.
+    """A rendered image.
+
+    Channels that were not requested are None.
 
     Attributes:
         colour: the red, green and blue of each pixel, shape (height, width, 3), uint8.
@@ -44,7 +46,10 @@ class RenderedImage:
 
 
 class Renderer(Protocol):
-    """The interface of renderers; all methods are called in the thread of the simulation."""
+    """The interface of renderers.
+
+    All methods are called in the thread of the simulation.
+    """
 
     way: Phrase
     """The method of rendering, as a phrase for log messages."""
@@ -63,6 +68,9 @@ class Renderer(Protocol):
 
 
 def axes_of(pose: Transform) -> Array:
-    """Return the image axes of a camera in the world as columns: right, down, forwards; shape (3, 3)."""
+    """Return the image axes of a camera in the world as columns, shape (3, 3).
+
+    The axes point right, down and forwards.
+    """
     axes: Array = rotation_matrix(np.array(pose[3:])) @ _IMAGE_AXES
     return axes

@@ -1,4 +1,4 @@
-"""Shares one renderer among all cameras of a simulation."""
+"""Sharing of one renderer among all cameras of a simulation."""
 
 from __future__ import annotations
 
@@ -32,7 +32,10 @@ class SharedRenderer:
     def render(
         self, optics: Optics, pose: Transform, channels: Channels, report: Callable[[Phrase], object]
     ) -> RenderedImage:
-        """Render the current view of a camera; the first call passes the method of rendering to `report`."""
+        """Render the current view of a camera.
+
+        The first call passes the method of rendering to `report`.
+        """
         if self._renderer is None or self._thread != threading.get_ident():
             self._renderer, self._thread = make_renderer(self._simulation), threading.get_ident()
         if not self._reported:
@@ -41,7 +44,7 @@ class SharedRenderer:
         return self._renderer.render(optics, pose, channels)
 
     def release(self) -> None:
-        """Unregister a camera; after the last camera, close the renderer."""
+        """Unregister a camera, and close the renderer after the last one."""
         self._camera_count -= 1
         if self._camera_count == 0:
             if self._renderer is not None:
@@ -50,7 +53,10 @@ class SharedRenderer:
             _renderers.pop(self._simulation, None)
 
     def use(self) -> SharedRenderer:
-        """Register a camera, which must call `release` when it stops, and return this object."""
+        """Register a camera, and return this object.
+
+        The camera must call `release` when it stops.
+        """
         self._camera_count += 1
         return self
 

@@ -56,7 +56,10 @@ def _box(half: Array) -> Mesh:
 
 
 def _grid(rows: int, columns: int, *, closed: bool) -> Any:
-    """Return the triangles between successive rows of vertices; if `closed`, each row is a closed ring."""
+    """Return the triangles between successive rows of vertices.
+
+    If `closed`, each row is a closed ring.
+    """
     row, column = np.meshgrid(np.arange(rows - 1), np.arange(columns if closed else columns - 1), indexing="ij")
     right = (column + 1) % columns
     lower_left, lower_right = row * columns + column, row * columns + right
@@ -70,7 +73,9 @@ def _grid(rows: int, columns: int, *, closed: bool) -> Any:
 
 
 def _ellipsoid(radii: Array, half: float) -> Mesh:
-    """Return the mesh of an ellipsoid whose upper and lower halves are each moved outwards along z by `half`.
+    """Return the mesh of an ellipsoid whose two halves are moved apart along z.
+
+    Each half moves by `half`.
 
     With equal radii, the mesh is a capsule.
     """

@@ -51,7 +51,7 @@ _DEFAULT_DENSITY = 1000.0
 
 
 class BodyWriter:
-    """Writes links into a MuJoCo specification.
+    """A writer that adds links to a MuJoCo specification.
 
     Args:
         meshes: the library of meshes.
@@ -70,7 +70,9 @@ class BodyWriter:
         self._mujoco = load_mujoco()
 
     def set_mass(self, body: Any, link: Link, frames: Frames) -> None:
-        """Set the mass properties of a body from its link; by default 1 kg and 1 kg m2, as in SDF.
+        """Set the mass properties of a body from its link.
+
+        As in SDF, the defaults are 1 kg and 1 kg m2.
 
         Impossible values are replaced and reported.
         """
@@ -229,7 +231,7 @@ class BodyWriter:
 
 
 def _inertial_from_shapes(link: Link, frames: Frames) -> Inertial | None:
-    """Return the mass properties of a link's simple collision shapes; None if they have no mass."""
+    """Return the mass properties of a link's simple collision shapes, or None for no mass."""
     assert link.inertial is not None
     properties = []
     for collision in link.collisions:

@@ -86,7 +86,7 @@ def rejected_models(world: World, finder: ResourceFinder) -> dict[str, Phrase]:
 
 
 def _rejection_message(world: World, finder: ResourceFinder) -> Phrase | None:
-    """Return the message if a world cannot be compiled; None otherwise."""
+    """Return MuJoCo's message if a world cannot be compiled, or else None."""
     try:
         compile_scene(Scene(world, MeshLibrary(finder)))
     except LinkwrightError as error:
@@ -95,7 +95,9 @@ def _rejection_message(world: World, finder: ResourceFinder) -> Phrase | None:
 
 
 def step_in_nanoseconds(step: float, world: World) -> int:
-    """Return a time step in ns, given in s; `world` locates an invalid value.
+    """Return a time step in ns from a time step in s.
+
+    `world` locates an invalid value.
 
     Raises:
         LinkwrightError: SIM106, the time step is not positive, or shorter than a nanosecond.

@@ -1,4 +1,4 @@
-"""Joints of a world, which connect links of its models (SDF 1.7 and later).
+"""Joints of a world that connect links of its models (SDF 1.7 and later).
 
 If a link of a model can become the child of the other link, the joint moves the model as the model's own joints move
 its links. If both links already have parents, the joint closes a loop.
@@ -56,13 +56,13 @@ class Connections:
         return Connected(replace(structure, links=links), loops, hangs_on)
 
     def in_order(self, names: Sequence[str]) -> list[str]:
-        """Return model names in the given order, except that each follows the models to which it is attached."""
+        """Return model names in the given order, but each after the models that it is attached to."""
         parents: dict[str, list[str]] = {}
         for joint in self.hanging.values():
             parents.setdefault(model_of(joint.child), []).append(model_of(joint.parent))
         selected_names = set(names)
         ordered: dict[str, None] = {}
-        visited: set[str] = set()  # joints may connect the models in a cycle
+        visited: set[str] = set()  # Joints may connect the models in a cycle.
         pending = list(reversed(names))
         while pending:
             name = pending[-1]
@@ -83,8 +83,8 @@ class Connections:
 class Connected:
     """A model with the joints that connect it to other models.
 
-    structure: the links, each attached by a joint of the model or of the world.
-        structure: the links, attached by their own joints or by joints of the world.
+    Attributes:
+        structure: the links, each attached by a joint of the model or of the world.
         loops: joints of the world that close loops with links of other models, or within the model.
         hangs_on: the names of the models to which joints of the world connect this model.
     """
@@ -142,7 +142,7 @@ def connections_of(world: World) -> Connections:
 
 
 def model_of(link: str) -> str:
-    """Return the top-level model of a link or joint name; ``world`` for the world itself."""
+    """Return the top-level model of a link or joint name, or ``world`` for the world itself."""
     return link.partition(SEPARATOR)[0]
 
 
@@ -163,6 +163,9 @@ def _placed_joints(world: World, frames: Frames) -> list[PlacedJoint]:
 
 
 def _reversed_joint(joint: PlacedJoint) -> PlacedJoint:
-    """Return a joint with its parent and child exchanged; positions keep their signs."""
+    """Return a joint with its parent and child exchanged.
+
+    Positions keep their signs.
+    """
     axes = tuple((axis, (-x, -y, -z)) for axis, (x, y, z) in reversed(joint.axes))
     return replace(joint, parent=joint.child, child=joint.parent, axes=axes)

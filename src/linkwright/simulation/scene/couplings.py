@@ -60,6 +60,6 @@ def _rotate_to_world(joint: PlacedJoint, direction: Vector3) -> Vector3:
 
 
 def _axis_sign(direction: Vector3, joint: PlacedJoint) -> float:
-    """Return 1 if a joint's axis points in a direction in the world, or -1 if it points in the opposite direction."""
+    """Return 1 if a joint's axis points along a direction in the world, or else -1."""
     axis = _rotate_to_world(joint, joint.axes[0][1])
     return -1.0 if sum(a * b for a, b in zip(axis, direction, strict=True)) < 0.0 else 1.0

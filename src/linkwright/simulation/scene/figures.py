@@ -1,4 +1,4 @@
-"""Actors and roads, which are visible but have no contacts."""
+"""Actors and roads: visible models without contacts."""
 
 from __future__ import annotations
 
@@ -89,7 +89,7 @@ def figures_of(world: World, meshes: MeshLibrary) -> list[Figure]:
 
 
 def _with_free_name(item: T, used_names: set[str]) -> T:
-    """Return an actor or road with a name that was not in use, and add this name to the names in use."""
+    """Return an actor or road with an unused name, and add this name to the used names."""
     while item.name in used_names:
         item = replace(item, name=f"{item.name}~")
     used_names.add(item.name)
@@ -97,7 +97,10 @@ def _with_free_name(item: T, used_names: set[str]) -> T:
 
 
 def add_figure(figure: Figure, spec: Any, writer: BodyWriter) -> None:
-    """Add the links of a figure to a MuJoCo specification, as bodies without contacts or dynamics."""
+    """Add the links of a figure to a MuJoCo specification.
+
+    The links become bodies without contacts or dynamics.
+    """
     for placed_link in figure.links:
         body = spec.worldbody.add_body(name=placed_link.name, mocap=figure.walk is not None)
         set_pose(body, compose(figure.pose, placed_link.pose))
@@ -116,7 +119,9 @@ def move_actors(figures: Iterable[Figure], model: Any, data: Any, seconds: float
 
 
 def set_kinematic_poses(structure: Structure, moved: Transform, model: Any, data: Any) -> bool:
-    """Set the poses of a model's kinematic links in MuJoCo's data; return whether the model has such links.
+    """Set the poses of a model's kinematic links in MuJoCo's data.
+
+    Returns whether the model has such links.
 
     Args:
         structure: the links of the model.
@@ -139,7 +144,9 @@ def _put(place: int, pose: Transform, data: Any) -> None:
 
 
 def _skin_origin(actor: Actor, meshes: MeshLibrary) -> Vector3 | None:
-    """Return the origin of the skeleton of an actor's skin in m; None if the mesh file is missing.
+    """Return the origin, in m, of the skeleton of an actor's skin.
+
+    Returns None if the mesh file is missing.
 
     The origin is zero if the actor has no skin, or the skin has no skeleton.
     """
@@ -171,7 +178,7 @@ def skeleton_origin(path: Path) -> Vector3:
 
 
 def _first_matrix(skin: Element) -> Any:
-    """Return the first inverse bind matrix of a skin; None if it is missing or not invertible."""
+    """Return the first inverse bind matrix of a skin, or None if there is no usable one."""
     source_references = (
         element.attributes.get("source", "")
         for element in skin.walk()

@@ -37,7 +37,7 @@ _MIN_AREA = 1e-12
 
 
 class MeshLibrary:
-    """Reads each mesh of a world once, and reports each unusable mesh once.
+    """A library that reads each mesh of a world once, and reports each unusable mesh once.
 
     Args:
         finder: finds mesh files and images.
@@ -61,7 +61,7 @@ class MeshLibrary:
         self._textured_meshes: set[str] = set()  # meshes of the specification that have texture coordinates
 
     def set_finder(self, finder: ResourceFinder) -> None:
-        """Set the finder of mesh files; missing files are searched for again."""
+        """Set the finder of mesh files, and search for missing files again."""
         self._finder = finder
         self._files = {key: path for key, path in self._files.items() if path is not None}
 
@@ -111,7 +111,10 @@ class MeshLibrary:
         return geom
 
     def _pieces(self, shape: Shape, element: Element | None, *, fixed: bool) -> list[Array]:
-        """Return the vertices of each convex piece of a shape; an empty list if the shape cannot be used."""
+        """Return the vertices of each convex piece of a shape.
+
+        The list is empty if the shape cannot be used.
+        """
         if isinstance(shape, Cone):
             return [cone_corners(shape)] if min(shape.radius, shape.length) > 0 else []
         if isinstance(shape, Polyline):
@@ -210,7 +213,9 @@ class MeshLibrary:
         return geom.meshname in self._textured_meshes
 
     def material_of(self, visual: Visual) -> str:
-        """Return the name of a MuJoCo material with the texture of a visual; empty if the visual has no texture.
+        """Return the name of a MuJoCo material with the texture of a visual.
+
+        The name is empty if the visual has no texture.
 
         If there is no albedo map, the emissive map is used.
         """
@@ -293,9 +298,9 @@ class MeshLibrary:
         return []
 
     def _path(self, shape: Shape, element: Element | None) -> Path | None:
-        """Return the file of a mesh or heightmap, and record its use; None for other shapes and for a missing file.
+        """Return the file of a mesh or heightmap, and record its use.
 
-        A missing file is reported once.
+        Returns None for other shapes and for a missing file, which is reported once.
         """
         path = self.file(shape.uri, element) if isinstance(shape, Mesh | Heightmap) else None
         if path is not None:
@@ -303,7 +308,10 @@ class MeshLibrary:
         return path
 
     def file(self, uri: str, element: Element | None) -> Path | None:
-        """Return the file to which a URI refers; None if it is missing, which is reported once."""
+        """Return the file to which a URI refers, or None if it is missing.
+
+        A missing file is reported once.
+        """
         if not uri:
             return None
         source = element.source if element is not None else None
@@ -382,7 +390,7 @@ def _version(path: Path | None) -> tuple[Path | None, int]:
 
 
 def modification_time(path: Path) -> int:
-    """Return the modification time of a file, in ns since the epoch; 0 for a missing file."""
+    """Return the modification time of a file in ns since the epoch, or 0 for a missing file."""
     try:
         return path.stat().st_mtime_ns
     except OSError:

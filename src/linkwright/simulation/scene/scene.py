@@ -1,4 +1,4 @@
-"""The MuJoCo specification of a world: a body for each link, a joint for each movable joint, and geoms for shapes."""
+"""The MuJoCo specification of a world: bodies for links, joints and geoms for shapes."""
 
 from __future__ import annotations
 
@@ -79,7 +79,9 @@ class SceneModel:
 
 
 class Scene:
-    """The MuJoCo specification of a world, to which models can be added and from which they can be removed.
+    """The MuJoCo specification of a world.
+
+    Models can be added and removed.
 
     Bodies and joints have their names in the world, such as ``robot::arm::tip``. The second axis of a joint has the
     suffix ``#2``, and the free joint of a body has the name of the body with the suffix ``#free``.
@@ -145,11 +147,14 @@ class Scene:
         return sorted(models, key=lambda model: positions[model.name])
 
     def in_order(self, names: Sequence[str]) -> list[str]:
-        """Return model names in an order in which each model follows the models to which it is attached."""
+        """Return model names in an order in which each follows the models it is attached to."""
         return self._connections.in_order(names)
 
     def step_of(self, world: World) -> float:
-        """Return the time step of a world in s; if it is 0, report a finding and return the default time step."""
+        """Return the time step of a world in s.
+
+        If the time step is 0, report a finding and return the default.
+        """
         physics = physics_of(world)
         if physics.max_step_size:
             return physics.max_step_size
@@ -171,7 +176,7 @@ class Scene:
         self._findings.append(Diagnostic(code, message, severity=Severity.WARNING, span=span, source=source))
 
     def set_physics(self, world: World, step: float) -> None:
-        """Set the time step in s, and adopt the gravity and the joints between models of another world.
+        """Set the time step in s, and adopt gravity and joints between models of another world.
 
         The models do not change.
         """
@@ -301,7 +306,9 @@ class Scene:
         return [model for model in self.models if model in attached - {name}]
 
     def add_velocity_motor(self, joint: str, gain: float, limit: float) -> str:
-        """Add a motor that controls the velocity of a joint, and let the wheel on the joint roll without slipping.
+        """Add a motor that controls the velocity of a joint.
+
+        The wheel on the joint then rolls without slipping.
 
         Args:
             joint: the name of the joint.
@@ -317,7 +324,7 @@ class Scene:
         return str(actuator.name)
 
     def speed_limit(self, joint: str) -> float:
-        """Return the speed limit of a joint's first axis in rad/s (m/s); infinite if there is none."""
+        """Return the speed limit of a joint's first axis in rad/s (m/s), or infinity for none."""
         limit = self.joints[joint].axes[0][0].limit.velocity if joint in self.joints else inf
         return limit if limit > 0.0 else inf
 
@@ -334,7 +341,10 @@ class Scene:
         rotors[joint] = max(rotor, rotors.get(joint, 0.0))
 
     def let_slide(self, joint: str) -> None:
-        """Make the wheel on a joint slide in all directions, as if it had rollers; its motor then has no grip."""
+        """Make the wheel on a joint slide in all directions, as if it had rollers.
+
+        The motor of the wheel then has no grip.
+        """
         body = self.bodies[self.joints[joint].child]
         for geom in body.geoms:
             self._writer.grips.pop(geom.name, None)
@@ -417,7 +427,10 @@ class Scene:
             root.sleep = sleep_policy
 
     def settle(self) -> None:
-        """Set the surfaces of the wheels and casters of models with new motors; call this after adding motors."""
+        """Set the surfaces of the wheels and casters of models with new motors.
+
+        Call this after adding motors.
+        """
         for name in self._unsettled_models & self.models.keys():
             wheel_joints = {self.joints[joint].child: joint for joint in self._rotor_inertias[name]}
             wheel_counts = Counter(self.joints[joint].parent for joint in wheel_joints.values())
@@ -509,7 +522,10 @@ class Scene:
         return equality
 
     def _strangers(self, structure: Structure) -> Iterator[Any]:
-        """Add and yield contact exclusions for pairs of links of a model, unless both have ``<self_collide>``."""
+        """Add and yield contact exclusions for links of a model without ``<self_collide>``.
+
+        A pair of links may collide only if both have ``<self_collide>``.
+        """
         colliding_links = [held.link for held in structure.links if held.link.link.collisions and not held.link.static]
         for first, second in combinations(colliding_links, 2):
             if not (

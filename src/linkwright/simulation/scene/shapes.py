@@ -1,4 +1,4 @@
-"""Converts SDF shapes to geoms of MuJoCo."""
+"""Conversion of SDF shapes to geoms of MuJoCo."""
 
 from __future__ import annotations
 
@@ -27,7 +27,9 @@ def set_pose(element: Any, pose: Transform) -> None:
 
 
 def add_shape(body: Any, shape: Shape, pose: Transform, *, fixed: bool) -> Any | None:
-    """Add a simple shape to a body; return the geom, or None if the shape is empty or not a simple shape.
+    """Add a simple shape to a body, and return the geom.
+
+    Returns None if the shape is empty or is not a simple shape.
 
     Args:
         body: the body of the specification.

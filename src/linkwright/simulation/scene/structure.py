@@ -1,4 +1,4 @@
-"""The kinematic trees of a model, which MuJoCo requires, and the joints that close loops."""
+"""The kinematic trees of a model, as MuJoCo requires, and the joints that close loops."""
 
 from __future__ import annotations
 
@@ -38,7 +38,10 @@ class PlacedJoint:
 
 @dataclass(frozen=True, slots=True)
 class TreeLink:
-    """A link of a kinematic tree, and the joint that connects it to its parent; None for the root of a tree."""
+    """A link of a kinematic tree, and the joint that connects it to its parent.
+
+    The joint is None for the root of a tree.
+    """
 
     link: PlacedLink
     joint: PlacedJoint | None
@@ -58,7 +61,9 @@ class Structure:
 
 
 def structure_of(model: Model, name: str, pose: Transform) -> Structure:
-    """Return the kinematic trees of a model; joints with missing links are ignored.
+    """Return the kinematic trees of a model.
+
+    Joints with missing links are ignored.
 
     Args:
         model: the model, with its includes resolved.
@@ -88,7 +93,10 @@ def structure_of(model: Model, name: str, pose: Transform) -> Structure:
 def _nested_models(
     model: Model, frames: Frames, pose: Transform, path: str
 ) -> Iterator[tuple[Model, Frames, Transform, str]]:
-    """Yield a model and its nested models, each with its frames, its pose in the world and its qualified name."""
+    """Yield a model and its nested models, with their frames, poses and names.
+
+    Poses are in the world, and names are qualified.
+    """
     yield model, frames, pose, path
     for nested_model in model.models:
         nested_pose = compose(pose, frames.pose(nested_model.name))
@@ -122,7 +130,7 @@ def _qualified_name(path: str, name: str) -> str:
 
 
 def _direction(axis: Vector3) -> Vector3:
-    """Return the direction of an axis, or the z axis if the direction is zero, as in libsdformat.
+    """Return the direction of an axis, or the z axis instead of zero, as in libsdformat.
 
     `check` reports a direction that is zero.
     """
@@ -142,7 +150,7 @@ def _build_structure(links: dict[str, PlacedLink], joints: Iterable[PlacedJoint]
             child_links.setdefault(joint.parent, []).append(joint.child)
 
     ordered = [name for name in links if name not in parent_joints or parent_joints[name].parent == WORLD]
-    for name in ordered:  # the list grows during the iteration
+    for name in ordered:  # The list grows during the iteration.
         ordered += child_links.get(name, ())
     return Structure(tuple(TreeLink(links[name], parent_joints.get(name)) for name in ordered), tuple(loops))
 

@@ -1,4 +1,4 @@
-"""The surface of a geom: its friction, its stiffness, and the priority of these parameters in contacts.
+"""The surface of a geom: its friction, its stiffness, and its priority in contacts.
 
 Source of the values: measurements with MuJoCo 4.0 of a robot with differential drive (straight lines, arcs, turns on
 the spot), and the chapters "Contact" and "Solver parameters" of MuJoCo's documentation.
@@ -51,7 +51,7 @@ def apply_surface(geom: Any, surface: Surface) -> None:
 
 
 def friction_of(surface: Surface) -> float:
-    """Return the lower of a surface's two coefficients of friction, or the default if it has none.
+    """Return the lower of a surface's two coefficients of friction, or else the default.
 
     One coefficient is enough, because MuJoCo's friction is the same in all directions.
     """
@@ -61,7 +61,7 @@ def friction_of(surface: Surface) -> float:
 
 
 def grip_of(surface: Surface) -> float:
-    """Return the higher of a surface's two coefficients of friction, or the default if it has none.
+    """Return the higher of a surface's two coefficients of friction, or else the default.
 
     It is used for driven wheels, for which the lower coefficient describes side slip.
     """

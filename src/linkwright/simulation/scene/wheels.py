@@ -84,7 +84,7 @@ def make_omnidirectional(body: Any, step: float) -> None:
 
 
 def _replace_round_mesh(spec: Any, geom: Any, origin: Array, axis: Array) -> None:
-    """Turn a mesh geom into an ellipsoid if the mesh is round about an axis in the frame of its body."""
+    """Turn a mesh geom into an ellipsoid if the mesh is round about an axis of its body."""
     w, x, y, z = geom.quat
     corners = np.array(spec.mesh(geom.meshname).uservert).reshape(-1, 3)
     corners = corners @ rotation_matrix((x, y, z, w)).T + np.array(geom.pos) - origin

@@ -38,7 +38,9 @@ _MIN_AREA = 1e-15
 
 
 def textured_mesh(shape: Shape) -> Triangles | None:
-    """Return a shape as a mesh with texture coordinates, or None for an unsupported or empty shape.
+    """Return a shape as a mesh with texture coordinates.
+
+    Returns None for an unsupported or empty shape.
 
     A plane has the size of its visual, and z as its normal.
     """

@@ -1,1 +1,1 @@
-"""Sensor models without ROS, which measure on request."""
+"""Sensor models without ROS that measure on request."""

@@ -39,11 +39,11 @@ class Globe:
         coordinates: the coordinates of the world; None for latitude and longitude 0.
     """
 
-    def __init__(self, place: SphericalCoordinates | None) -> None:
-        place = place or SphericalCoordinates()
-        latitude, longitude = radians(place.latitude_deg), radians(place.longitude_deg)
-        heading = radians(place.heading_deg)
-        self._origin = _from_geodetic(latitude, longitude, place.elevation)
+    def __init__(self, coordinates: SphericalCoordinates | None) -> None:
+        coordinates = coordinates or SphericalCoordinates()
+        latitude, longitude = radians(coordinates.latitude_deg), radians(coordinates.longitude_deg)
+        heading = radians(coordinates.heading_deg)
+        self._origin = _from_geodetic(latitude, longitude, coordinates.elevation)
         east = (-sin(longitude), cos(longitude), 0.0)
         north = (-sin(latitude) * cos(longitude), -sin(latitude) * sin(longitude), cos(latitude))
         up = (cos(latitude) * cos(longitude), cos(latitude) * sin(longitude), sin(latitude))
@@ -78,7 +78,10 @@ class Globe:
 
 
 def _from_geodetic(latitude: float, longitude: float, altitude: float) -> Array:
-    """Return a position in earth-centred coordinates, in m; angles are in rad."""
+    """Return a position in earth-centred coordinates, in m.
+
+    Latitude and longitude are in rad.
+    """
     normal = _EQUATORIAL_RADIUS / sqrt(1 - _SQUARED_ECCENTRICITY * sin(latitude) ** 2)
     axis_distance = (normal + altitude) * cos(latitude)
     return np.array(
@@ -107,7 +110,9 @@ class Fix:
 
 
 class NavsatSensor:
-    """A satellite receiver. The position noise in m is added before conversion to latitude and longitude.
+    """A satellite receiver.
+
+    The position noise in m is added before conversion to latitude and longitude.
 
     Args:
         mount: the mount of the sensor.
@@ -143,7 +148,7 @@ class NavsatSensor:
 
 
 class AltimeterSensor:
-    """An altimeter, which measures the height above its initial height.
+    """An altimeter that measures the height above its initial height.
 
     Args:
         mount: the mount of the sensor.
@@ -170,7 +175,7 @@ class AltimeterSensor:
 
 
 class Barometer:
-    """A barometer, which measures the air pressure at its altitude.
+    """A barometer that measures the air pressure at its altitude.
 
     Args:
         mount: the mount of the sensor.
@@ -205,7 +210,7 @@ def standard_pressure(altitude: float) -> float:
 
 
 class MagnetometerSensor:
-    """A magnetometer, which measures the magnetic field in its own axes.
+    """A magnetometer that measures the magnetic field in the axes of the sensor.
 
     Args:
         mount: the mount of the sensor.

@@ -13,7 +13,7 @@ from linkwright.simulation.simulation import Simulation
 
 
 class ForceTorqueSensor:
-    """A sensor for the force and torque between the links of a joint, at the origin of the joint.
+    """A sensor for the force and torque between a joint's links, at the joint's origin.
 
     Args:
         simulation: the simulation of the world.
@@ -45,7 +45,7 @@ class ForceTorqueSensor:
         self._offset = offset
 
     def measure(self) -> tuple[Array, Array]:
-        """Return the force in N and the torque in N m, in the axes for which the sensor is configured.
+        """Return the force in N and the torque in N m, in the configured axes.
 
         With ``parent_to_child``, the parent exerts the force and torque on the child; otherwise the child exerts them
         on the parent.

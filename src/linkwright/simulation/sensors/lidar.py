@@ -48,7 +48,9 @@ def sweep_angles(sweep: Sweep) -> Array:
 
 
 class LidarSensor:
-    """A lidar, which looks along x; horizontal angles are about z, and vertical angles are positive upwards.
+    """A lidar that looks along x.
+
+    Horizontal angles are about z, and vertical angles are positive upwards.
 
     Ranges are exact except for noise: as in Gazebo, the range resolution does not round them. The lidar's own link does
     not occlude anything, nor do other parts of its robot that are nearer than the minimum range.
@@ -76,7 +78,7 @@ class LidarSensor:
 
     @cached_property
     def directions(self) -> Array:
-        """The unit vectors of the ray directions in the lidar's frame, shape (vertical * horizontal, 3)."""
+        """The unit vectors of the rays in the lidar's frame, shape (vertical * horizontal, 3)."""
         up, across = np.meshgrid(sweep_angles(self.vertical), sweep_angles(self.horizontal), indexing="ij")
         x, y, z = np.cos(up) * np.cos(across), np.cos(up) * np.sin(across), np.sin(up)
         rays: Array = np.stack([x, y, z], axis=-1).reshape(-1, 3)

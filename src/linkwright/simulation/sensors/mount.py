@@ -18,7 +18,7 @@ from linkwright.simulation.simulation import Simulation
 
 @dataclass(frozen=True, slots=True)
 class Mount:
-    """The mount of a sensor on a link, which gives the sensor's pose and motion.
+    """The mount of a sensor on a link, with the pose and motion of the sensor.
 
     Attributes:
         simulation: the simulation of the world.
@@ -73,7 +73,9 @@ class Mount:
         return rotate(self.simulation.link_pose(self.link)[3:], self.offset[:3])
 
     def inertial_motion(self) -> tuple[Vector3, Vector3]:
-        """Return the angular velocity in rad/s and the proper acceleration in m/s2 of the sensor, in world axes.
+        """Return the angular velocity and the proper acceleration of the sensor.
+
+        Both are in world axes, in rad/s and m/s2.
 
         At rest, the proper acceleration is the opposite of gravity and points upwards.
         """
@@ -101,7 +103,9 @@ def accelerations(simulation: Simulation) -> None:
 
 
 def part_of(geom: str) -> str:
-    """Return the name of the visual or collision to which a MuJoCo geom belongs, from the geom's name.
+    """Return the name of the visual or collision to which a MuJoCo geom belongs.
+
+    It is derived from the name of the geom.
 
     An example is ``robot::base_link::lid#visual``.
     """
@@ -110,7 +114,7 @@ def part_of(geom: str) -> str:
 
 
 def parts_of(simulation: Simulation) -> Iterator[tuple[str, Visual | Collision]]:
-    """Yield the visuals and collisions of all models, each with its name as `part_of` returns it."""
+    """Yield the visuals and collisions of all models, with the names that `part_of` returns."""
     for model in simulation.scene.models.values():
         for tree_link in model.structure.links:
             link = tree_link.link

@@ -36,7 +36,7 @@ class NoiseSource:
 
     @property
     def variance(self) -> float:
-        """The square of the standard deviation; 0 if the noise is of type ``none``."""
+        """The square of the standard deviation, or 0 for noise of type ``none``."""
         return 0.0 if self._noise.type == "none" else self._noise.stddev**2
 
     @property

@@ -57,7 +57,10 @@ class Changes:
     new: tuple[AddedModel, ...]
 
     def with_all_replaced(self, running: Mapping[str, SceneModel], namespaces: Mapping[str, str]) -> Changes:
-        """Return these changes with all other running models also replaced, at their current or new poses."""
+        """Return these changes with all other running models replaced, too.
+
+        The replacements are at their current or new poses.
+        """
         changed_names = {*self.gone, *(change.name for change in self.renewed)}
         poses = {name: self.moved.get(name, model.pose) for name, model in running.items() if name not in changed_names}
         replacements = (
@@ -67,7 +70,7 @@ class Changes:
         return replace(self, moved={}, renewed=(*self.renewed, *replacements))
 
     def with_connected_replaced(self, running: Mapping[str, SceneModel], namespaces: Mapping[str, str]) -> Changes:
-        """Return these changes, but replace moved models that joints of the world connect to other models.
+        """Return these changes with moved models replaced if joints connect them to other models.
 
         The replacements are at the new poses.
         """
@@ -124,7 +127,7 @@ def changes_to(world: World, running: Mapping[str, SceneModel], world_models: Co
 def check(
     world: World, simulation: Simulation, added: Sequence[AddedModel], finder: ResourceFinder
 ) -> list[Diagnostic]:
-    """Compile models in a separate simulation to check whether a running simulation can add them.
+    """Check that a running simulation can add models, by compiling them separately.
 
     Args:
         world: the world; its models and states are ignored.
@@ -168,7 +171,10 @@ def add_models(simulation: Simulation, added: Sequence[AddedModel]) -> None:
 
 
 def surroundings(world: World) -> tuple[object, ...]:
-    """Return the properties of a world on which plugins of models depend, for comparison with another world."""
+    """Return the properties of a world on which plugins of models depend.
+
+    They serve for comparison with another world.
+    """
     physics = physics_of(world)
     joints = tuple(world.joints)
     return world.name, world.spherical_coordinates, world.magnetic_field, world.wind, physics.max_step_size, joints

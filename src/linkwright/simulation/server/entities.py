@@ -1,4 +1,4 @@
-"""Reads models that programs send as URDF or SDF."""
+"""Reading of models that programs send as URDF or SDF."""
 
 from __future__ import annotations
 
@@ -76,7 +76,10 @@ def read_entity(text: str, finder: ResourceFinder, library: DescriptionLibrary) 
 
 
 def _lacks_shapes(robot: Robot) -> bool:
-    """Return whether a visual or collision of a robot could not be read; urdfdom rejects such a robot."""
+    """Return whether a visual or collision of a robot could not be read.
+
+    urdfdom rejects such a robot.
+    """
     return any(
         len(link.visuals) + len(link.collisions)
         < sum(element.tag in _SHAPE_OWNERS for element in link.element.elements())

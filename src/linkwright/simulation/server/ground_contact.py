@@ -1,4 +1,4 @@
-"""Lifts models that are spawned inside the ground.
+"""Lifting of models that are spawned inside the ground.
 
 Some launch files spawn robots at a height of 0 although their origin is above the wheels, or into worlds in which the
 ground is a thick plate. Contacts would push such a robot out of the ground within a few steps, so fast that a light
@@ -58,7 +58,10 @@ def collision_warnings(simulation: Simulation, name: str) -> list[Diagnostic]:
 
 
 def _depth(simulation: Simulation, name: str) -> float:
-    """Return the height in m by which a model must be lifted to leave the ground; 0 if it is not inside the ground."""
+    """Return the height in m by which a model must be lifted to leave the ground.
+
+    The height is 0 if the model is not inside the ground.
+    """
     simulation.refresh()
     model, data = simulation.model, simulation.data
     own_bodies = {simulation.body(held.link.name) for held in simulation.scene.models[name].structure.links}

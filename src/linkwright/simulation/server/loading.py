@@ -1,4 +1,4 @@
-"""Replaces the running world by the world in another file or text, for ``/load_world``.
+"""Replacement of the running world by another file or text, for ``/load_world``.
 
 The service has the type ``simulation_interfaces/srv/LoadWorld``, but differs from it in two points. By definition, the
 scene is cleared and the simulation stops; here, the common parts of both worlds, spawned models and the time continue.
@@ -40,7 +40,7 @@ _TEXT_NAME = "<the world>"
 
 
 class WorldLoader:
-    """Replaces the world of a running simulation.
+    """A loader that replaces the world of a running simulation.
 
     Args:
         server: the server of the simulation.

@@ -1,4 +1,4 @@
-"""Transfers the motion of a model to the changed model that replaces it."""
+"""Transfer of the motion of a model to the changed model that replaces it."""
 
 from __future__ import annotations
 

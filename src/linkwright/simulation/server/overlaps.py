@@ -1,4 +1,7 @@
-"""Warnings about bodies that overlap at the start (SIM144), which `simulation.recovery` separates."""
+"""Warnings about bodies that overlap at the start (SIM144).
+
+`simulation.recovery` separates these bodies.
+"""
 
 from __future__ import annotations
 

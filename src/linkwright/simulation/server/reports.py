@@ -1,4 +1,4 @@
-"""The topics that a simulator publishes about itself: time, state, description, poses and performance."""
+"""A simulator's own topics: time, state, description, poses and performance."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ PLAYING, PAUSED = 1, 2
 
 
 class Reports:
-    """The publishers of a simulator's own topics, which publish in the simulation's thread.
+    """The publishers of a simulator's own topics, for use in the simulation's thread.
 
     Args:
         server: the server of the simulation.
@@ -87,7 +87,10 @@ class Reports:
         self._description.publish(String(data=text))
 
     def _save_model(self, model: Model, name: str, pose: Transform) -> tuple[Model, WrittenModel]:
-        """Return a model and its SDF; reuse the SDF if the model, its name and its pose have not changed."""
+        """Return a model and its SDF.
+
+        The SDF is reused if the model, its name and its pose have not changed.
+        """
         cached = self._saved_models.get((id(model), name, pose))
         if cached is not None:
             return cached
@@ -99,7 +102,7 @@ class Reports:
         return converted
 
     def watch(self, factor: Callable[[], float]) -> None:
-        """Publish poses and the real-time factor if they are due and their topics have subscriptions.
+        """Publish poses and the real-time factor if they are due and have subscriptions.
 
         Poses are due at 30 Hz and the factor at 2 Hz of real time; call this at least as often.
         """

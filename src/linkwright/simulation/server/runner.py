@@ -1,4 +1,4 @@
-"""Runs a simulation in a thread, in parallel with the event loop."""
+"""A thread that runs a simulation in parallel with the event loop."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _MEASUREMENT_PERIOD = 0.5
 
 
 class Runner:
-    """Advances a simulation in a separate thread, at the requested real-time factor.
+    """A thread that advances a simulation at the requested real-time factor.
 
     All methods except `start` and `close` must be called in that thread, through commands of the exchange.
 
@@ -103,7 +103,7 @@ class Runner:
             self._on_state()
 
     def _restart_timing(self) -> None:
-        """Restart the measurement of real time, and update the real-time factor from the current world."""
+        """Restart the measurement of real time, and update the factor from the current world."""
         self._factor = (
             self._requested_factor or max(physics_of(self._server.simulation.world).real_time_factor, 0.0) or 1.0
         )
@@ -125,7 +125,7 @@ class Runner:
                 exchange.has_commands.wait(wait_s)
 
     def _call_logged(self, work: Callable[[], object]) -> None:
-        """Call a function; if it raises an error, log the error and pause the simulation.
+        """Call a function, and log its error and pause the simulation if it raises one.
 
         A user can then reset the simulation.
         """
@@ -167,7 +167,9 @@ class Runner:
                 self._on_end(0)
 
     def _lead_s(self) -> float:
-        """Return the time in s until real time reaches simulated time; 0 or less if the simulation is not ahead.
+        """Return the time in s until real time reaches simulated time.
+
+        The time is 0 or less if the simulation is not ahead.
 
         A simulation that is too far behind does not have to catch up.
         """

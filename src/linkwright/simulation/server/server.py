@@ -118,7 +118,10 @@ class SimulationServer:
 
     @property
     def findings(self) -> list[Diagnostic]:
-        """The findings on the models in the world; safe to read from any thread."""
+        """The findings on the models in the world.
+
+        They may be read from any thread.
+        """
         return [diagnostic for findings in tuple(self._findings.values()) for diagnostic in tuple(findings)]
 
     @property
@@ -156,7 +159,7 @@ class SimulationServer:
         self._warn_unsimulated(unsimulated_model_elements(model))
 
     def renew(self, model: Model, name: str) -> None:
-        """Replace a model by a changed model, which takes over its pose, velocity and joint positions.
+        """Replace a model by a changed model with the same pose, velocity and joint positions.
 
         Args:
             model: the changed model, with its includes resolved.
@@ -234,9 +237,9 @@ class SimulationServer:
         self._call_on_change()
 
     def _attached_models(self, names: Collection[str]) -> Iterator[AddedModel]:
-        """Yield the models that are attached by joints of the world to the named models, to be added again.
+        """Yield the models that joints of the world attach to the named models.
 
-        The models continue at their current poses.
+        They are added again, and continue at their current poses.
         """
         models = self.simulation.scene.models
         for name in {
@@ -248,7 +251,9 @@ class SimulationServer:
                 yield AddedModel(scene_model.model, name, scene_model.pose, namespace, motion, here=True)
 
     def delete(self, name: str) -> None:
-        """Stop the plugins of a model, and remove the model; models attached to it by joints remain.
+        """Stop the plugins of a model, and remove the model.
+
+        Models attached to it by joints remain.
 
         Raises:
             LinkwrightError: SIM141, there is no model with this name.
@@ -363,7 +368,10 @@ class SimulationServer:
         namespace: str,
         old_plugins: Sequence[SimulatedPlugin[object]],
     ) -> None:
-        """Start a plugin or sensor, and let it resume from its unchanged previous instance in `old_plugins`, if any."""
+        """Start a plugin or sensor.
+
+        It resumes from its unchanged previous instance, if `old_plugins` contains one.
+        """
         calls = Calls(lambda error: self._failed(owner, place, error))
         node = self._node(place, namespace, calls)
         started: list[SimulatedPlugin[object]] = []
@@ -389,7 +397,7 @@ class SimulationServer:
             node.close()
 
     def _failed(self, owner: str, place: PluginPlace, error: Exception) -> None:
-        """Log the error of a plugin or sensor, and end that plugin; the others continue."""
+        """Log the error of a plugin or sensor, and end only that plugin."""
         self._log_failure(place, error)
         running = self._plugins.get(owner, [])
         failed_plugins = [simulated_plugin for simulated_plugin in running if simulated_plugin.place is place]
@@ -501,7 +509,7 @@ def is_shared(place: PluginPlace) -> bool:
 
 
 def _unsimulated_names(place: PluginPlace) -> list[str]:
-    """Return the library or sensor type of a plugin that is not simulated, as a list for the log.
+    """Return a list with the library or sensor type of a plugin that is not simulated.
 
     The list is empty if the simulation itself does the work of the library.
     """

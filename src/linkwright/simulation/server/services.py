@@ -56,7 +56,7 @@ class Progress(Protocol):
 
 
 class Services:
-    """The services of a simulator, which are handled in the simulation's thread.
+    """The services of a simulator, handled in the simulation's thread.
 
     Args:
         server: the simulation to which the services apply.
@@ -129,7 +129,9 @@ class Services:
         return name
 
     def renew(self, text: str, name: str) -> None:
-        """Replace a model by the model in a description; may be called from any thread.
+        """Replace a model by the model in a description.
+
+        This may be called from any thread.
 
         The description is read immediately. The model is replaced later in the simulation's thread, which logs errors.
 

@@ -48,7 +48,7 @@ def _unsimulated_names(roots: Iterable[Element]) -> list[str]:
 
 
 def _name(parent: Element, child: Element) -> str:
-    """Return the name of a child element that is not simulated; an empty string for a simulated element."""
+    """Return the name of an unsimulated child element, or an empty string if it is simulated."""
     if child.tag in _UNSIMULATED:
         return f"<{child.tag}>"
     if parent.tag == "world" and child.tag == "joint" and child.first("sensor") is not None:

@@ -31,7 +31,9 @@ class Wrench:
 
 
 class Wrenches:
-    """The wrenches that act on links; the wrenches on a link add up.
+    """The wrenches that act on links.
+
+    The wrenches on a link add up.
 
     Args:
         simulation: the simulation of the world.
@@ -43,7 +45,7 @@ class Wrenches:
         self._scheduled = False
 
     def add(self, link: str, wrench: Wrench) -> None:
-        """Add a wrench on a link, which is applied from the next step on."""
+        """Add a wrench on a link, to be applied from the next step on."""
         self._wrenches.setdefault(link, []).append(wrench)
         if not self._scheduled:
             self._scheduled = True
@@ -69,7 +71,7 @@ class Wrenches:
             simulation.push(link, force.tolist(), torque.tolist())
 
     def _total_wrench(self, link: str, wrenches: list[Wrench]) -> tuple[Array, Array]:
-        """Return the total force in N, and the total torque in N m about the centre of mass of a link."""
+        """Return the total force in N, and the torque in N m about a link's centre of mass."""
         pose = self._simulation.link_pose(link)
         rotation, mass_centre = rotation_matrix(pose[3:]), self._simulation.data.body(link).xipos
         force, torque = np.zeros(3), np.zeros(3)

@@ -1,4 +1,4 @@
-"""Read the actions of a command file, and check them against the types of their messages."""
+"""The actions of a command file, read and checked against the types of their messages."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ _GRIPPER_TYPE = "control_msgs/action/GripperCommand"
 
 
 class ActionReader:
-    """Reads the action of one command.
+    """A reader of the action of one command.
 
     Args:
         document: the document that contains the command.
@@ -178,7 +178,7 @@ class ActionReader:
         return Launch(package, file, arguments)
 
     def _call(self, keys: Keys, fields_key: str, find: Callable[[str], Any]) -> tuple[str, str, dict[str, Any]]:
-        """Return name, type and fields of a message to send. They are checked with an example value in each slot."""
+        """Return name, type and fields of a message to send, checked with an example value in each slot."""
         name = keys.text("topic" if fields_key == "message" else "name", needed=True)
         type_name = keys.text("type", needed=True)
         values = self._fields(keys, fields_key)
@@ -218,7 +218,7 @@ class ActionReader:
         return value
 
     def _find_slot(self, text: str, keys: Keys, key: str) -> Slot | None:
-        """Return the slot that a text consists of; None if it is not a slot.
+        """Return the slot that a text consists of, or None if it is not a slot.
 
         Raises:
             LinkwrightError: a phrase of the command lacks this slot.

@@ -24,7 +24,7 @@ Amount: TypeAlias = float | Slot
 
 @dataclass(frozen=True, slots=True)
 class Drive:
-    """Drive for a distance, an angle or a time, or until no command has arrived for the silence timeout.
+    """A drive for a distance, an angle or a time, or until no command has arrived for the silence timeout.
 
     Attributes:
         x: the speed forward, as a multiple of the robot's speed; negative for backward.
@@ -45,7 +45,7 @@ class Drive:
 
 @dataclass(frozen=True, slots=True)
 class ScaleSpeed:
-    """Multiply the speed for all following commands.
+    """A multiplication of the speed for all following commands.
 
     Attributes:
         factor: the factor by which the current speed is multiplied.
@@ -56,7 +56,7 @@ class ScaleSpeed:
 
 @dataclass(frozen=True, slots=True)
 class SetSpeed:
-    """Set the speed for all following commands.
+    """A new speed for all following commands.
 
     Attributes:
         speed: the speed in m/s.
@@ -67,7 +67,7 @@ class SetSpeed:
 
 @dataclass(frozen=True, slots=True)
 class GoTo:
-    """Navigate to a place with nav2_msgs/action/NavigateToPose.
+    """Navigation to a place with nav2_msgs/action/NavigateToPose.
 
     Attributes:
         place: the name of a place in the file.
@@ -80,7 +80,7 @@ class GoTo:
 
 @dataclass(frozen=True, slots=True)
 class SendGoal:
-    """Send a goal to any action.
+    """A goal for any action.
 
     Attributes:
         action: the name of the action.
@@ -95,7 +95,9 @@ class SendGoal:
 
 @dataclass(frozen=True, slots=True)
 class CallService:
-    """Call a service; a ``message`` in its response is spoken.
+    """A service call.
+
+    The field ``message`` of the response, if there is one, is spoken.
 
     Attributes:
         name: the name of the service.
@@ -110,7 +112,7 @@ class CallService:
 
 @dataclass(frozen=True, slots=True)
 class Publish:
-    """Publish a message.
+    """A message to publish.
 
     Attributes:
         topic: the topic.
@@ -125,11 +127,11 @@ class Publish:
 
 @dataclass(frozen=True, slots=True)
 class Stop:
-    """Stop the robot, and end everything that commands have started.
+    """A stop of the robot, and of everything that commands have started.
 
     Attributes:
-        publishes: messages that stop other nodes which drive the robot; they are also published before a command starts
-                another motion.
+        publishes: messages that stop other nodes that drive the robot. They are also published before a command starts
+            another motion.
     """
 
     publishes: tuple[Publish, ...] = ()
@@ -137,7 +139,9 @@ class Stop:
 
 @dataclass(frozen=True, slots=True)
 class Launch:
-    """Start a launch file, which runs until the next stop. It is not passed to a shell.
+    """The start of a launch file, which runs until the next stop.
+
+    The command line is not passed to a shell.
 
     Attributes:
         package: the package that contains the file.
@@ -178,10 +182,10 @@ def fill_template(template: Any, values: Values) -> Any:
 
 
 def resolve_amount(amount_or_slot: Amount | None, values: Values) -> float | None:
-    """Return an amount as a number; None if there is no amount."""
+    """Return an amount as a number, or None if there is no amount."""
     return float(values[amount_or_slot.name]) if isinstance(amount_or_slot, Slot) else amount_or_slot
 
 
 def format_value(value: Value) -> str:
-    """Format a value for a sentence or a message; numbers are rounded to thousandths."""
+    """Format a value for a sentence or a message, with numbers rounded to thousandths."""
     return value if isinstance(value, str) else f"{round(value, 3):g}"

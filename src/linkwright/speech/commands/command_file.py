@@ -1,4 +1,4 @@
-"""Read the command file in YAML strictly, and report errors with their positions."""
+"""The command file in YAML, read strictly, with errors at their positions."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def parse_commands(source: SourceText) -> CommandSet:
 
 
 class _Reader:
-    """Reads the text of one command file."""
+    """A reader of the text of one command file."""
 
     def __init__(self, source: SourceText) -> None:
         self._document = YamlDocument(source, "VOICE302")
@@ -65,9 +65,9 @@ class _Reader:
         top = Keys(self._document, self._document.root, phrase("a file of commands"), _TOP_KEYS)
         commands = top.mapping("commands")
         if commands is None:
-            raise top.error(phrase("'commands' is missing: it lists the commands for the robot"))
+            raise top.error(phrase("'commands' is missing: list the commands for the robot there"))
         if not commands:
-            message = phrase("there is no command in 'commands': it lists the commands for the robot")
+            message = phrase("there is no command in 'commands': list the commands for the robot there")
             raise top.error(message, top.node("commands"))
         places = {name: self._place(name, node) for name, node in self._entries(top, "places")}
         for name, node in self._entries(top, "objects"):
@@ -90,7 +90,7 @@ class _Reader:
         return Place(keys.number("x", needed=True), keys.number("y", needed=True), keys.number("yaw"), frame)
 
     def _name(self, slot: str, name: str, node: yaml.Node | None) -> None:
-        """Read the spoken names of a place or an object; its key is the name if there are no others."""
+        """Read the spoken names of a place or an object. If there are none, its key is the name."""
         texts = self._texts(node) if node is not None else {ANY: [(name, None)]}
         spoken_names = self._slot_values.setdefault(slot, {})
         for language, names in texts.items():

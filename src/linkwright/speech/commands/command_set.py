@@ -1,4 +1,4 @@
-"""A robot's commands: find the command of a text, and list all phrases for engines."""
+"""A robot's commands: the command that a text expresses, and all phrases for engines."""
 
 from __future__ import annotations
 
@@ -88,9 +88,10 @@ class CommandSet:
     answers: Mapping[str, Mapping[str, tuple[Template, ...]]]
 
     def understand(self, text: str) -> Match | None:
-        """Return the command that a text expresses in any language; None if there is none.
+        """Return the command that a text expresses in any language, or None if there is none.
 
-        If several commands fit, the one with the most literal words is returned; of these, the first in the file.
+        If several commands fit, the result is the one with the most literal words and, among these, the first in the
+        file.
         """
         words = words_of(text)
         best: tuple[int, Match] | None = None
@@ -155,7 +156,10 @@ class CommandSet:
 
 
 def choose_text(texts: ByLanguage, language: str) -> str:
-    """Return the text in a language, or else for any language, in English, or in another; empty if there is none."""
+    """Return the text in a language, or else for any language, in English, or in another language.
+
+    The result is empty if there is no text.
+    """
     for name in (language, ANY, "en"):
         if name in texts:
             return texts[name]

@@ -38,7 +38,7 @@ _POWERS = {"十": 10, "百": 100, "千": 1000}
 
 
 def number(words: Words) -> float | None:
-    """Return the number, at least 0, that the words mean together; None if they are not a number."""
+    """Return the non-negative number that the words mean together, or None if they are not a number."""
     if not words:
         return None
     if len(words) == 1 and words[0][0].isdigit():
@@ -49,7 +49,7 @@ def number(words: Words) -> float | None:
 
 
 def has_number(words: Words) -> bool:
-    """Return whether any of the words is a number; the articles "a" and "an" do not count."""
+    """Return whether any of the words is a number, except the articles "a" and "an"."""
     return any(word not in _ARTICLES and number((word,)) is not None for word in words)
 
 
@@ -70,7 +70,7 @@ def _parse_english(words: Words) -> float | None:
 
 
 def _parse_english_integer(words: Words) -> int | None:
-    """Return the integer from 0 to 9999 that English words mean; None if they are not one."""
+    """Return the integer from 0 to 9999 that English words mean, or None."""
     for name, power in (("thousand", 1000), ("hundred", 100)):
         if name in words:
             index = words.index(name)
@@ -110,7 +110,7 @@ def _parse_chinese(words: Words) -> float | None:
 
 
 def _parse_chinese_integer(words: Words) -> int | None:
-    """Return the integer from 1 to 9999 that Chinese words mean, or None; 一百八 is 180."""
+    """Return the integer from 1 to 9999 that Chinese words mean, such as 180 for 一百八, or None."""
     total, digit, power, has_zero = 0, None, 10_000, False
     for word in words:
         if word in _DIGITS and digit is None:

@@ -26,7 +26,7 @@ _MAX_OPTIONAL = 6
 
 
 class TemplateError(ValueError):
-    """Raised if a phrase is malformed; its argument, a `Phrase`, is the reason."""
+    """Raised if a phrase is malformed. The argument, a `Phrase`, is the reason."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,7 +49,7 @@ class Template:
         return sum(map(len, self.pieces))
 
     def values(self, words: Words, names: Names) -> dict[str, Value] | None:
-        """Return the values of the slots; None if the words do not match."""
+        """Return the values of the slots, or None if the words do not match."""
         return self._match_from(words, 0, names)
 
     def spoken(self, values: Mapping[str, Sequence[str]]) -> Iterator[str]:

@@ -73,16 +73,17 @@ GRAMMAR_VALUES: Mapping[str, Mapping[str, tuple[str, ...]]] = {
         "zh": ("一", "二", "三", "四", "五", "六", "七", "八", "九", "十"),
     },
 }
-"""The values of slots in the engines' grammars, by slot and language: few, so that engines do not mishear other words.
+"""The values of slots in the engines' grammars, by slot and language.
 
-Any other value is also understood if an engine recognizes it or a user types it.
+There are only a few values, so that engines do not mishear other words. Any other value is also understood if an engine
+recognises it or a user types it.
 """
 
 _PER_SECOND: Words = ("每", "秒")
 
 
 def parse_quantity(slot: str, words: Words) -> float | None:
-    """Return the value of words for a quantity slot, in the slot's unit; None if they are not such a value."""
+    """Return the value of words for a quantity slot in the slot's unit, or None if they are not such a value."""
     if slot == "number":
         return number(words)
     if slot == "speed" and words[:2] == _PER_SECOND:

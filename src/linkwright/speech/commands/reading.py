@@ -1,4 +1,4 @@
-"""Read YAML mappings with a fixed set of keys; errors name the key and its position."""
+"""YAML mappings with a fixed set of keys, where errors name the key and its position."""
 
 from __future__ import annotations
 
@@ -58,16 +58,16 @@ class Keys:
         return list(self._values)
 
     def node(self, key: str) -> yaml.Node | None:
-        """Return the node of the value under a key; None if the key is missing or its value is null."""
+        """Return the node of the value under a key, or None if the key is missing or its value is null."""
         node = self._values.get(key)
         return None if node is None or node.tag == _NULL else node
 
     def error(self, message: Phrase, node: yaml.Node | None = None, hint: Phrase | None = None) -> LinkwrightError:
-        """Return the error for a problem at a node; None means the mapping itself."""
+        """Return the error for a problem at a node, or at the mapping itself."""
         return self._document.error(message, node or self._node, hint)
 
     def mapping(self, key: str) -> list[tuple[str, yaml.Node]] | None:
-        """Return the keys and values of the mapping under a key; None if the key is missing."""
+        """Return the keys and values of the mapping under a key, or None if the key is missing."""
         node = self.node(key)
         if node is None:
             return None
@@ -75,7 +75,7 @@ class Keys:
         return [(name, nested._values[name]) for name in nested.names()]
 
     def text(self, key: str, *, needed: bool = False) -> str:
-        """Return the text under a key; empty if the key is missing and not required."""
+        """Return the text under a key, or an empty string if the key is missing and not required."""
         node = self.node(key)
         if node is None and not needed:
             return ""
@@ -84,7 +84,7 @@ class Keys:
         return str(node.value)
 
     def number(self, key: str, *, needed: bool = False) -> float:
-        """Return the number under a key; 0 if the key is missing and not required."""
+        """Return the number under a key, or 0 if the key is missing and not required."""
         node = self.node(key)
         if node is None and not needed:
             return 0.0
@@ -97,14 +97,14 @@ class Keys:
         return value
 
     def flag(self, key: str) -> bool:
-        """Return the boolean under a key, which must be present."""
+        """Return the boolean under a required key."""
         node = self.node(key)
         if not isinstance(node, yaml.ScalarNode) or node.value.lower() not in ("true", "false"):
             raise self._invalid_value(key, node, phrase("true or false"))
         return bool(node.value.lower() == "true")
 
     def texts(self, key: str) -> list[tuple[str, yaml.Node | None]]:
-        """Return the text, or the list of texts, under a key; each text with its node."""
+        """Return the text or the list of texts under a key, each with its node."""
         node = self.node(key)
         items: list[yaml.Node | None] = list(node.value) if isinstance(node, yaml.SequenceNode) else [node]
         texts: list[tuple[str, yaml.Node | None]] = []
@@ -115,7 +115,7 @@ class Keys:
         return texts
 
     def plain(self, key: str) -> Any:
-        """Return the value under a key as lists, mappings, numbers and texts; an empty mapping if it is missing."""
+        """Return the value under a key as plain Python data, or an empty mapping if the key is missing."""
         node = self.node(key)
         if node is None:
             return {}

@@ -1,4 +1,4 @@
-"""Split texts into words, so that case, punctuation and blanks between Chinese characters do not matter."""
+"""Texts as words, so that case, punctuation and blanks between Chinese characters do not matter."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import re
 import unicodedata
 
 Words = tuple[str, ...]
-"""The words of a text; a word is a word in letters, a number in digits, or one Chinese character."""
+"""The words of a text. A word consists of letters, of digits, or of one Chinese character."""
 
 _HAN = "\u3007\u3400-\u4dbf\u4e00-\u9fff"
 _WORD = re.compile(rf"\d+(?:\.\d+)?|[{_HAN}]|(?:(?![{_HAN}])[^\W\d_])+(?:['’][^\W\d_]+)*|°")

@@ -1,6 +1,6 @@
 """The engine ``onnx``: a user's ONNX network that classifies a section of sound (keyword spotting).
 
-Its input is ``[1, n]`` float32, the sound at 16 kHz with full scale at 1; its output is ``[1, classes]``, scores or
+The input is ``[1, n]`` float32, the sound at 16 kHz with full scale at 1. The output is ``[1, classes]``, scores or
 probabilities. The metadata ``names`` contains the classes, as JSON (a list, or an object of numbers and names) or
 separated by commas. Classes that do not match any phrase, such as ``background``, represent all other sound.
 
@@ -33,7 +33,7 @@ _FULL_SCALE = 32_768.0
 
 
 class OnnxEngine(SpeechEngine):
-    """Recognises phrases with a network from an ONNX file, which the option ``model`` names.
+    """An engine that recognises phrases with a network from an ONNX file. The option ``model`` names the file.
 
     Raises:
         LinkwrightError: VOICE102, onnxruntime is not installed; VOICE104, the file is not such a network.
@@ -90,7 +90,7 @@ def _normalize(text: str) -> str:
 def _fit_length(utterance: Samples, length: int) -> NDArray[np.float32]:
     """Return the sound in a fixed number of samples.
 
-    A longer utterance is cut to its middle; a shorter one is padded with silence on both sides.
+    A longer utterance is cut to its middle, and a shorter one is padded with silence on both sides.
     """
     start = (len(utterance) - length) // 2
     sound: NDArray[np.float32] = np.zeros(length, np.float32)

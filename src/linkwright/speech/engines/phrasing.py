@@ -1,4 +1,4 @@
-"""Convert phrases to the vocabulary of an engine, and the results of the engine to phrases."""
+"""The conversion of phrases to the vocabulary of an engine, and of its results to phrases."""
 
 from __future__ import annotations
 
@@ -81,7 +81,7 @@ class Phrasing:
 
 
 def _spell_word(word: str, in_vocabulary: Callable[[str], bool]) -> list[str] | None:
-    """Return the fewest words of a vocabulary that together make up a word; None if there are none."""
+    """Return the fewest words of a vocabulary that together make up a word, or None if there are none."""
     for spelling in (word, word.lower()):
         if in_vocabulary(spelling):
             return [spelling]

@@ -1,6 +1,6 @@
 """The engine ``pocketsphinx``: a grammar of phrases with an acoustic model of American English.
 
-The grammar has no model of other speech: in our measurements a quarter of other utterances was recognized as a phrase,
+The grammar has no model of other speech: in our measurements a quarter of other utterances was recognised as a phrase,
 and more in noise. The engine is therefore suitable for push-to-talk; Vosk or enrolled words are better where they are
 available.
 """
@@ -25,15 +25,16 @@ _GRAMMAR = "phrases"
 _MODEL_FILES = ("mdef", "means", "variances", "transition_matrices")
 _FILLER_PREFIXES = ("<", "[", "(")  # prefixes of pocketsphinx's names for silence and noise, which no word has
 _MIDDLE_FIT = -8.0
-"""A log score per frame: all of 72 correct phrases had more, and so had a quarter of other sounds."""
+"""The log score per frame with confidence 0.5. All of 72 correct phrases and a quarter of other sounds had more."""
 
 _MIN_PROBABILITY = 1e-300  # avoids the logarithm of a probability that underflows to 0
 
 
 class PocketsphinxEngine(SpeechEngine):
-    """Recognises phrases with pocketsphinx. The confidence rates the acoustic fit: 0.5 for a score of -8 per frame.
+    """An engine that recognises phrases with pocketsphinx.
 
-    The probability from pocketsphinx itself is not useful: it is divided among all paths through the grammar that sound
+    The confidence rates the acoustic fit, and is 0.5 for a score of -8 per frame. The probability from pocketsphinx
+    itself is not useful: it is divided among all paths through the grammar that sound
     alike, and a fifth of clear phrases had less than 0.1.
 
     Raises:

@@ -5,7 +5,7 @@ word of less confidence than `MIN_CONFIDENCE`, is rejected. In our measurements 
 texts from one in sixty to none, at the cost of one correct command in a hundred.
 
 Partial results come from the best path and arrive immediately; with confidences, Vosk would delay them until it has
-built a lattice. They start after the last ``[unk]``, so that "stop" is also recognized in the middle of other speech.
+built a lattice. They start after the last ``[unk]``, so that "stop" is also recognised in the middle of other speech.
 """
 
 from __future__ import annotations
@@ -37,11 +37,11 @@ _ACOUSTIC_MODEL = Path("am") / "final.mdl"
 
 
 class VoskEngine(SpeechEngine):
-    """Recognises phrases with Vosk.
+    """An engine that recognises phrases with Vosk.
 
     Raises:
         LinkwrightError: MODEL102, the language's model has not been downloaded; VOICE102, Vosk is not installed;
-            VOICE103, the model does not know a word; VOICE104, the folder does not contain a Vosk model; VOICE105,
+            VOICE103, the model does not contain a word; VOICE104, the folder does not contain a Vosk model; VOICE105,
             there is no model for the language.
     """
 
@@ -59,7 +59,10 @@ class VoskEngine(SpeechEngine):
         self._partial_start = 0.0  # start time of the partial result
 
     def hear(self, samples: Samples) -> Sequence[Heard]:
-        """Process samples. Partial results get the minimum accepted confidence, because Vosk does not report theirs."""
+        """Process samples, and return new results.
+
+        Partial results get the minimum accepted confidence, because Vosk does not report their confidence.
+        """
         if not len(samples):
             return []
         self._samples += len(samples)
@@ -94,7 +97,7 @@ class VoskEngine(SpeechEngine):
         ]
 
     def _changed_partial(self, result: str) -> list[Heard]:
-        """Return the partial results if the words have changed and form one or more phrases, else an empty list."""
+        """Return the partial results if the words have changed and form phrases, else an empty list."""
         words = json.loads(result).get("partial", "").split()
         if words == self._partial:
             return []

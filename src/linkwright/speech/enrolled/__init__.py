@@ -1,1 +1,1 @@
-"""Words that the user has enrolled. They are recognised in any language, by their distance from the recordings."""
+"""Words that the user has enrolled, recognised in any language by their distance from the recordings."""

@@ -1,4 +1,4 @@
-"""The engine ``enrolled``: words in any language that the user has recorded three times each, without a model."""
+"""The engine ``enrolled``, which recognises words in any language that the user has recorded."""
 
 from __future__ import annotations
 
@@ -29,16 +29,16 @@ _MIN_NEAREST_CONFIDENCE = 0.1
 Most words that are missed in noise reach it, and so does one of twenty other words.
 """
 _MIN_NUMBER_CONFIDENCE = 0.7
-"""The minimum confidence of a phrase with a number, because other numbers differ from it in one short word only."""
+"""The minimum confidence of a phrase with a number, because other numbers differ in only one short word."""
 
 
 class EnrolledEngine(SpeechEngine):
-    """Recognises enrolled words by comparing each utterance with their recordings.
+    """An engine that recognises enrolled words by comparing each utterance with their recordings.
 
     The file can appear, change and disappear at run time: it is checked with each block of samples.
 
     Args:
-        options: `model` is the file of words; None for `words_path`. Only words that are also phrases are recognized;
+        options: `model` is the file of words; None for `words_path`. Only words that are also phrases are recognised;
             the other words help to reject sound. Case and surrounding spaces are ignored.
 
     Raises:
@@ -65,7 +65,7 @@ class EnrolledEngine(SpeechEngine):
 
     @property
     def problem(self) -> Diagnostic | None:
-        """Why the engine recognises less than it should; None if it works fully.
+        """The reason why the engine recognises less than it should, or None if it works fully.
 
         VOICE201, none of the phrases is enrolled; VOICE202 or VOICE203, the changed file is damaged.
         """
@@ -130,7 +130,7 @@ class EnrolledEngine(SpeechEngine):
         return self._recogniser.guess(self._buffer, self._activity.floor if noise is None else noise)
 
     def _name(self, guess: Guess | None) -> str | None:
-        """Return the phrase of a guess; None if the guess is too uncertain or not a phrase."""
+        """Return the phrase of a guess, or None if the guess is too uncertain or not a phrase."""
         if guess is None:
             return None
         if guess.confidence < (_MIN_NUMBER_CONFIDENCE if has_number(words_of(guess.name)) else ACCEPTED):
@@ -180,7 +180,7 @@ def _normalize(name: str) -> str:
 
 
 def _read_stamp(path: Path) -> tuple[int, int, int] | None:
-    """Return a value that changes when a file is written; None if there is no file."""
+    """Return a value that changes when a file is written, or None if there is no file."""
     with suppress(OSError):
         status = path.stat()
         return status.st_mtime_ns, status.st_size, status.st_ino

@@ -1,4 +1,4 @@
-"""Enrol words: check whether a recording is usable, and explain why it is not."""
+"""The enrolment of words: a check whether a recording is usable, with the reason if it is not."""
 
 from __future__ import annotations
 

@@ -1,12 +1,11 @@
-"""Dynamic time warping of cepstra: the distances of a sound from all enrolled takes, computed in parallel.
+"""Dynamic time warping of cepstra: distances of a sound from all enrolled takes, computed in parallel.
 
 For each frame of the sound, a path advances by zero, one or two frames of a take. So a word may be spoken up to twice
 as fast, and all paths have as many costs as the sound has frames. Before and after the word, a path stays in the
 background. There is no loop over takes: each frame needs a few operations on an array with the frames of all takes.
 
 Noise is masked as by Klatt, and by Holmes and Sedgwick: levels below the current noise, or far below the loudest level,
-are raised to this floor, both in the takes and in the sound. So the takes are compared equally, whatever the noise was
-at enrolment and is now.
+are raised to this floor, both in the takes and in the sound. So they can be compared even if their noise differs.
 """
 
 from __future__ import annotations
@@ -38,7 +37,9 @@ _SPEECH_SOUND_FRAMES = 8  # frames: roughly the length of a speech sound
 
 @dataclass(frozen=True, slots=True)
 class Match:
-    """The distances of a sound from each take; arrays have the shape ``(takes,)`` unless stated.
+    """The distances of a sound from each take.
+
+    Arrays have the shape ``(takes,)`` unless stated otherwise.
 
     Attributes:
         cost: the mean distance between frames of the sound and of the take, including the background around the word.

@@ -1,13 +1,14 @@
-"""Recognise enrolled words, with a confidence.
+"""The recognition of enrolled words, with a confidence.
 
 A word counts only if nothing else is nearer: no other word, not the background, and no take played backwards, which is
 speech of the same voice but not a word. Then logistic regression computes the confidence from four inputs. The first
 is the largest distance of the sound from the best take, relative to the distances between the user's own takes of the
 word: it separates words that differ in a single speech sound. The second and the third compare the take's cost with
 that of the background and of takes played backwards. The fourth is the level of the sound above the noise: in noise
-all costs become similar, and a word must fit better. The absolute cost is not used, because it differs between voices
+all costs become similar, and a word must fit better. The absolute cost is not used, because it differs between voices.
 
-Each take is compared as it was recorded, and with the reverberation of rooms; the latter matches need more confidence.
+Each take is compared as it was recorded, and with the reverberation of rooms. Matches with reverberation need more
+confidence.
 """
 
 from __future__ import annotations
@@ -49,7 +50,7 @@ class Guess:
 
 
 class Recogniser:
-    """Recognises the enrolled words of a user.
+    """A recogniser of the enrolled words of a user.
 
     Args:
         words: all enrolled words, at least one; words that are not requested help to reject other speech.

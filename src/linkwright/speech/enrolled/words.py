@@ -28,7 +28,7 @@ from linkwright.files.whole_files import write_whole_file
 from linkwright.speech.sound.spectra import BANDS, Powers
 
 RECOMMENDED_TAKES = 3
-"""The recommended number of takes of a word; a word is recognised from its first take, but with less confidence."""
+"""The recommended number of takes of a word. With fewer takes, a word is recognised with less confidence."""
 
 MAX_TAKES = 10
 MAX_WORDS = 200
@@ -64,7 +64,7 @@ class Words:
     """The words of a user, in the order in which they were enrolled.
 
     >>> words = Words()
-    >>> for samples in said: findings = words.enrol("stop", samples)
+    >>> for samples in recordings: findings = enrol(words, "stop", samples)  # see `enrolment`
     >>> words.write(words_path())
     """
 
@@ -77,11 +77,11 @@ class Words:
         return tuple(self._takes)
 
     def takes(self, name: str) -> tuple[Take, ...]:
-        """Return the takes of a word; empty if there is no such word."""
+        """Return the takes of a word, or an empty tuple if there is no such word."""
         return self._takes.get(name, ())
 
     def add(self, name: str, take: Take) -> None:
-        """Add a take of a word; if there are more than `MAX_TAKES` takes, the oldest is removed."""
+        """Add a take of a word, and remove the oldest take if there are more than `MAX_TAKES`."""
         self._takes[name] = (*self.takes(name), take)[-MAX_TAKES:]
 
     def remove(self, name: str) -> None:
@@ -133,7 +133,7 @@ class Words:
 
 
 def name_problem(name: str) -> Phrase | None:
-    """Return why a word cannot have a name; None if the name is valid."""
+    """Return the reason why a word cannot have a name, or None if the name is valid."""
     if not name.strip():
         return phrase("it is empty")
     if len(name) > _MAX_NAME_LENGTH:

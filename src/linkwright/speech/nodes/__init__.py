@@ -1,1 +1,1 @@
-"""Nodes of voice control, which capture sound, recognise commands, and execute them."""
+"""Nodes of voice control: audio capture, and the recognition and execution of commands."""

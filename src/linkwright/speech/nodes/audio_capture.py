@@ -29,7 +29,7 @@ _MAX_CHUNK = 10 * RATE
 
 
 class AudioCapture(SingleNode):
-    """Publishes the sound of a microphone or of a WAV file.
+    """The node that publishes the sound of a microphone or of a WAV file.
 
     Parameters:
 

@@ -1,4 +1,4 @@
-"""Convert sound to messages of audio_common_msgs, and from any format of these messages.
+"""The conversion of sound to messages of audio_common_msgs, and from any format of these messages.
 
 audio_capture publishes interleaved samples in one of GStreamer's formats (``S16LE``), which it announces on
 ``audio_info``. Without an AudioInfo, the format is audio_capture's default: 16 kHz, mono, S16LE.
@@ -24,7 +24,8 @@ AUDIO_STAMPED = "audio_common_msgs/msg/AudioDataStamped"
 AUDIO_INFO = "audio_common_msgs/msg/AudioInfo"
 
 AUDIO_QUEUE_DEPTH = 100
-"""The depth of the queues of `AUDIO`: 10 s. The depth of audio_capture, 10, is too small for a process busy for 1 s."""
+"""The depth of the queues of `AUDIO`: 10 s. With audio_capture's depth of 10, a process that is busy for 1 s loses
+sound."""
 
 
 WAVE = "wave"
@@ -80,7 +81,7 @@ def _format_error(why: Phrase) -> LinkwrightError:
 
 
 class AudioReader:
-    """Converts a stream of AudioData to samples for engines: mono, 16 bits, 16 kHz.
+    """A converter of a stream of AudioData to samples for engines: mono, 16 bits, 16 kHz.
 
     Args:
         form: the format of the messages; None for 16 kHz, mono, S16LE.
@@ -98,7 +99,10 @@ class AudioReader:
         return self._form
 
     def read(self, data: bytes | bytearray | memoryview | NDArray[np.uint8] | Sequence[int]) -> Samples:
-        """Return the samples of the next AudioData; an incomplete sample is kept for the next call."""
+        """Return the samples of the next AudioData.
+
+        An incomplete sample at the end is kept for the next call.
+        """
         available = self._incomplete + bytes(data)
         if self._is_engine_format:  # a fast path, because this runs ten times a second all day
             used_bytes = len(available) // 2 * 2
@@ -117,7 +121,7 @@ def _sample_bytes(form: AudioFormat) -> int:
 
 
 def _values(data: bytes, form: AudioFormat) -> NDArray[np.float64]:
-    """Return samples with the stream's channels and rate, full scale at 1. An incomplete sample is left out."""
+    """Return samples with the stream's channels and rate, full scale at 1, without an incomplete sample."""
     size, kind = _sample_bytes(form), form.sample_format[0]
     order = ">" if form.sample_format.endswith("BE") else "<"
     data = data[: len(data) // size * size]

@@ -1,4 +1,4 @@
-"""Publish sound on the topics of audio_common's audio_capture."""
+"""The topics of audio_common's audio_capture, with sound to publish."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ NAMESPACE = "/audio"
 
 
 class AudioTopics:
-    """Publishes sound on the topics ``audio``, ``audio_stamped`` and ``audio_info``: mono 16-bit PCM at 16 kHz.
+    """The publishers of sound on ``audio``, ``audio_stamped`` and ``audio_info``: mono 16-bit PCM at 16 kHz.
 
     Args:
         node: the node that publishes.

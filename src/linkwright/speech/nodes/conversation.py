@@ -28,7 +28,7 @@ from linkwright.speech.nodes.requests import Requests
 
 
 class Conversation:
-    """Executes commands, and answers the user.
+    """The dialogue with the user, which executes commands and answers.
 
     Args:
         node: the node that owns the timer of questions.
@@ -70,7 +70,7 @@ class Conversation:
         return self._driver.is_moving or self._requests.is_active
 
     def handle(self, text: str) -> bool:
-        """Execute the command in a text, or ask for confirmation; return whether the text was understood."""
+        """Execute the command in a text, or ask for confirmation, and return whether the text was understood."""
         answer = self._commands.answer(text) if self._pending is not None else None
         if self._pending is not None and answer is not None:
             confirmed, spoken_text = self._pending
@@ -121,12 +121,12 @@ class Conversation:
         self._respond(localized(text, language_of(self._language) or ENGLISH))
 
     def on_drive_end(self, ending: Ending) -> None:
-        """Tell the user if a drive has ended because the robot is stuck."""
+        """Answer the user if a drive has ended because the robot is stuck."""
         if ending == "stuck":
             self.answer(phrase("I am stuck, so I stop"))
 
     def on_goal_end(self, is_reached: bool, reason: str) -> None:
-        """Tell the user whether a goal was reached, or why it failed."""
+        """Answer the user whether a goal was reached, or why it failed."""
         if is_reached:
             self.answer(phrase("I am done"))
         elif reason:
@@ -154,7 +154,7 @@ class Conversation:
             self._respond(str(fill_template(choose_text(match.command.response, self._language) or text, values)))
 
     def _execute(self, match: Match) -> Phrase | None:
-        """Execute an action; return why it cannot be executed, or None."""
+        """Execute an action, and return the reason if it cannot be executed, or None."""
         action, values = match.command.action, match.values
         if match.command.moves:
             self._end_other_motion(match)

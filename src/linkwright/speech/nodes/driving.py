@@ -1,4 +1,4 @@
-"""Drive by commands: without a limit, or for a time, a distance or an angle, measured by odometry if available."""
+"""Drives by command: without a limit, or for a time, a distance or an angle, measured by odometry if available."""
 
 from __future__ import annotations
 
@@ -13,25 +13,25 @@ from linkwright.speech.commands.actions import Drive, Values, resolve_amount
 _STEP_SECONDS = 0.05
 _MAX_STEP_SECONDS = 0.2
 _MAX_ODOMETRY_AGE = 0.5
-"""The maximum age of odometry in s; without fresh odometry, the distance is computed from the commands."""
+"""The maximum age of odometry in s. Without fresh odometry, the distance is computed from the commands."""
 _SPEED_GAIN = 3.0
 """The speed divided by the remaining distance, near the end, in 1/s."""
 _MIN_SPEED_SHARE = 0.15
-"""The minimum share of the speed, however short the remaining distance is."""
+"""The minimum fraction of the speed, however short the remaining distance is."""
 _TOLERANCES = {"distance": 0.005, "angle": 0.005}
-"""The remaining m or rad at which a drive is finished."""
+"""The remaining distance in m or angle in rad at which a drive is finished."""
 _PATIENCE = 3.0
-"""The maximum duration of a drive, as a multiple of the expected duration; 3 s are added to it."""
+"""The maximum duration of a drive, as a multiple of the expected duration, to which 3 s are added."""
 _SCALE_RANGE = 0.2, 4.0
 
 Ending: TypeAlias = Literal["done", "stuck"]
 
 
 class Driver:
-    """Publishes the velocities of drives.
+    """The publisher of the velocities of drives.
 
-    A distance or an angle is measured with ``odom`` (nav_msgs/msg/Odometry) if it is received, and else computed from
-    speed and time. Time is the node's time, which may be simulated.
+    A distance or an angle is measured with ``odom`` (nav_msgs/msg/Odometry). If no odometry is received, it is computed
+    from speed and time. Time is the node's time, which may be simulated.
 
     Args:
         node: the node that publishes.
@@ -63,7 +63,7 @@ class Driver:
         return self._drive is not None and self._remaining is None
 
     def begin(self, drive: Drive, values: Values) -> None:
-        """Start a drive, which replaces the current one.
+        """Start a drive, replacing the current one.
 
         Args:
             drive: the command.
@@ -88,12 +88,12 @@ class Driver:
         self._topic.stop()
 
     def scale(self, factor: float) -> float:
-        """Multiply the speeds by a factor, within bounds; return the factor that now applies to all speeds."""
+        """Multiply the speeds by a factor, within bounds, and return the factor that now applies to all speeds."""
         self._scale = min(max(self._scale * factor, _SCALE_RANGE[0]), _SCALE_RANGE[1])
         return self._scale
 
     def set_speed(self, speed: float) -> float:
-        """Set the speed in m/s, within bounds; return the speed that now applies."""
+        """Set the speed in m/s, within bounds, and return the speed that now applies."""
         self.scale(speed / (self._initial_speed * self._scale))
         return self._initial_speed * self._scale
 
@@ -143,13 +143,13 @@ class Driver:
         return hypot(self._drive.x, self._drive.y) * self._speed * self._scale
 
     def _expected_seconds(self) -> float:
-        """Return the expected duration in seconds of a drive over a distance or an angle; 0 for other drives."""
+        """Return the expected duration in s of a drive over a distance or an angle, or 0 for other drives."""
         return (
             self._remaining / self._progress_rate() if self._remaining is not None and self._kind != "duration" else 0.0
         )
 
     def _publish(self, share: float) -> None:
-        """Publish a share of the velocity of the drive."""
+        """Publish a fraction of the velocity of the drive."""
         assert self._drive is not None, "it drives"
         self._part = share
         speed, turn = share * self._speed * self._scale, share * self._turn_speed * self._scale
@@ -160,7 +160,7 @@ class Driver:
 
 
 class _Odometer:
-    """Adds up the motion between two calls of `pop`."""
+    """The sum of the motion between two calls of `pop`."""
 
     def __init__(self) -> None:
         self._last_ns: int | None = None

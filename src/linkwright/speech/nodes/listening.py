@@ -1,4 +1,4 @@
-"""Run a speech engine in a separate thread."""
+"""A speech engine in a separate thread."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ from linkwright.speech.engine import Heard, SpeechEngine
 from linkwright.speech.sound.samples import RATE, Samples
 
 _MAX_PENDING = 100
-"""The maximum number of waiting blocks: an engine that is 10 s behind gets no new sound until it has caught up."""
+"""The maximum number of waiting blocks. An engine that is 10 s behind receives no new sound until it has caught up."""
 
 _ThreadResult: TypeAlias = Heard | Diagnostic | LinkwrightError | None
-"""Results of the thread; None means that all sound up to the end of an utterance was processed."""
+"""A result of the thread. None means that all sound up to the end of an utterance was processed."""
 
 _MAX_GAPS = 100
 _GAP_TOLERANCE = 0.2  # s: engines do not know the exact start of a word
 
 
 class Listener:
-    """Passes sound to an engine in a thread, and the engine's results to the node.
+    """A thread that passes sound to an engine, and the engine's results to the node.
 
     Args:
         node: the node that runs the functions below as callbacks.
@@ -60,7 +60,7 @@ class Listener:
         self._thread.start()
 
     def hear(self, samples: Samples) -> bool:
-        """Pass a block of sound to the engine; return False if the block was dropped.
+        """Pass a block of sound to the engine, and return whether it was accepted.
 
         A block is dropped if the engine lags far behind.
         """
@@ -76,7 +76,7 @@ class Listener:
         self._gaps.append((self._sample_count / RATE, seconds))
 
     def missing_seconds(self, result: Heard) -> float:
-        """Return how many seconds of sound are missing within a result, or just before or after it."""
+        """Return the seconds of sound that are missing within a result, or just before or after it."""
         return sum(
             seconds
             for position, seconds in self._gaps

@@ -1,4 +1,4 @@
-"""Presses of the talk button: a press without a command is answered after its sound has been processed."""
+"""Presses of the talk button. A press without a command is answered after its sound has been processed."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from linkwright.speech.engine import Heard
 PLEASE_REPEAT = phrase("I did not hear all of that, please repeat")
 
 _MISSES_BEFORE_PROPOSAL = 3
-"""The number of presses in a row without any command after which enrolling is proposed."""
+"""The number of consecutive presses without a command after which enrolling is proposed."""
 
 
 @dataclass(slots=True)
@@ -21,7 +21,7 @@ class _Press:
     Attributes:
         is_settled: whether a command of this press was executed or answered.
         has_gaps: whether some of its sound was lost.
-        unknown: the last recognized speech that is not a command.
+        unknown: the last recognised speech that is not a command.
     """
 
     is_settled: bool = False
@@ -69,7 +69,7 @@ class Presses:
             self._presses[0].unknown = result
 
     def end(self) -> Phrase | None:
-        """End the oldest press, after its sound was processed; return the answer to it, or None."""
+        """End the oldest press after its sound was processed, and return the answer to it, or None."""
         if not self._presses:
             return None
         press = self._presses.popleft()

@@ -1,4 +1,4 @@
-"""Send the requests of commands to other nodes: action goals, service calls, messages and launch files."""
+"""The requests of commands to other nodes: action goals, service calls, messages and launch files."""
 
 from __future__ import annotations
 
@@ -34,14 +34,14 @@ _EXIT_TIMEOUT = 5.0
 
 
 class Goals:
-    """Sends goals of one action, one at a time.
+    """A client of one action with at most one goal at a time.
 
     Args:
         node: the node that sends them.
         type_name: the type of the action.
         name: the name of the action.
-        on_end: called when a goal ends, with whether it was reached, and the server's reason or an empty text; not
-            called for a goal that was canceled or replaced.
+        on_end: called when a goal ends, with whether it was reached, and the server's reason or an empty text. It is
+            not called for a goal that was canceled or replaced.
     """
 
     def __init__(self, node: Node, type_name: str, name: str, on_end: Callable[[bool, str], None]) -> None:
@@ -58,7 +58,7 @@ class Goals:
         return self._client.server_is_ready()
 
     def send(self, goal: Any) -> None:
-        """Send a goal, which replaces the previous one."""
+        """Send a goal, replacing the previous one."""
         self._number += 1
         self.is_active = True
         self._client.send_goal_async(goal).add_done_callback(partial(self._receive_response, self._number))
@@ -109,7 +109,7 @@ def make_pose_goal(node: Node, place: Place) -> Any:
 
 
 class Requests:
-    """Sends all requests of commands.
+    """The clients and publishers for all requests of commands.
 
     Args:
         node: the node that sends requests.
@@ -144,7 +144,7 @@ class Requests:
             self._publishers[action.topic] = self._node.create_publisher(message_class, action.topic, _QUEUE_DEPTH)
 
     def send_pose(self, action: str, place: Place) -> bool:
-        """Send a goal to navigate to a place; return False if there is no server."""
+        """Send a goal to navigate to a place, or return False if there is no server."""
         goals = self._goals[action]
         if goals.is_served:
             goals.send(make_pose_goal(self._node, place))
@@ -152,7 +152,7 @@ class Requests:
         return False
 
     def send_goal(self, action: SendGoal, values: Values) -> bool:
-        """Send a goal of any action; return False if there is no server."""
+        """Send a goal of any action, or return False if there is no server."""
         goals = self._goals[action.action]
         if not goals.is_served:
             return False
@@ -162,7 +162,7 @@ class Requests:
         return True
 
     def call(self, action: CallService, values: Values) -> bool:
-        """Call a service; return False if there is no server."""
+        """Call a service, or return False if there is no server."""
         if not self._is_served(action):
             return False
         client = self._node.create_client(get_service(action.type_name), action.name)
@@ -179,7 +179,7 @@ class Requests:
         publisher.publish(message)
 
     def launch(self, action: Launch, values: Values) -> None:
-        """Start a launch file in a separate process, which replaces the previous one."""
+        """Start a launch file in a separate process, and end the previous one."""
         self._end_launch()
         launch_arguments = [
             f"{name}:={_format_argument(value)}" for name, value in fill_template(action.arguments, values).items()

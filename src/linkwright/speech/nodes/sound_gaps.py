@@ -1,4 +1,4 @@
-"""Detect missing sound from the stamps of sound blocks.
+"""The detection of missing sound from the stamps of sound blocks.
 
 AudioDataStamped does not number its messages. Linkwright's sources stamp each block with the end of the previous one
 and follow the clock only slowly. A jump forward therefore means that sound was lost in transit.
@@ -10,7 +10,7 @@ from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.speech.sound.samples import RATE
 
 _MAX_BEHIND = 10 * NANOSECONDS_PER_SECOND
-"""The maximum delay in ns of a source that publishes a backlog; a source that is later has restarted."""
+"""The maximum delay in ns of a source that publishes a backlog. A source with a larger delay has restarted."""
 
 _MAX_AHEAD = NANOSECONDS_PER_SECOND
 _MAX_DRIFT = 0.01  # the share of a block's length by which its stamp can approach the clock
@@ -21,7 +21,7 @@ _MIN_GAP = 50 * 10**6
 
 
 class SampleStamps:
-    """Computes the stamps of the blocks of a stream, in nanoseconds of a clock."""
+    """The stamps of the blocks of a stream, in nanoseconds of a clock."""
 
     def __init__(self) -> None:
         self._next: int | None = None
@@ -50,7 +50,7 @@ class SampleStamps:
 
 
 class SoundGaps:
-    """Detects from stamps that sound is missing, if the publisher derives its stamps from a sample count."""
+    """A detector of missing sound, for publishers that derive their stamps from a sample count."""
 
     def __init__(self) -> None:
         self._next: int | None = None

@@ -48,11 +48,11 @@ Of 480 synthetic enrolled words with gaps of up to this length, none was taken f
 5 of 60 were.
 """
 _REPEAT_SHARE = 0.5
-"""The share of the required confidence above which the node asks to repeat a command. Noise has less."""
+"""The fraction of the required confidence above which the node asks to repeat a command. Noise has less."""
 
 
 class VoiceCommander(SingleNode):
-    """Recognises spoken commands, and executes them.
+    """The node that recognises spoken commands, and executes them.
 
     Parameters:
 
@@ -241,7 +241,7 @@ class VoiceCommander(SingleNode):
             self._presses.note_unknown(result)
 
     def _handle_final_result(self, result: Heard) -> bool:
-        """Execute a recognised text, or ask the user to repeat it; return False if neither was done."""
+        """Execute a recognised text, or ask the user to repeat it, or return False if neither was done."""
         missing = 0.0 if self._listener is None else self._listener.missing_seconds(result)
         is_certain = result.confidence >= self._min_confidence
         if is_certain and missing <= _MAX_MISSING_SECONDS and self._execute(result.text, by_voice=True):
@@ -276,7 +276,7 @@ class VoiceCommander(SingleNode):
 
     @property
     def _is_addressed(self) -> bool:
-        """Whether a result is meant for the robot; results can also arrive after the button was released."""
+        """Whether a result is meant for the robot, even if it arrives after the button was released."""
         return self._is_button_held or not self._open
 
     def _stop_early(self, text: str) -> None:
@@ -310,10 +310,10 @@ class VoiceCommander(SingleNode):
     def _on_goal_end(self, is_reached: bool, reason: str) -> None:
         self._conversation.on_goal_end(is_reached, reason)
 
-    # --- recognized text -----------------------------------------------------------------------------------------
+    # --- recognised text -----------------------------------------------------------------------------------------
 
     def _execute(self, text: str, *, by_voice: bool) -> bool:
-        """Execute the command in a text; return whether it was understood."""
+        """Execute the command in a text, and return whether it was understood."""
         if not by_voice:
             self._publish_text["text"](text)
         understood = self._conversation.handle(text)

@@ -1,4 +1,4 @@
-"""Publish the sound of pages' microphones as audio_common_msgs, and send them recognized commands and answers."""
+"""The page feature that publishes the sound of microphones, and sends recognised commands and answers to pages."""
 
 from __future__ import annotations
 
@@ -38,11 +38,11 @@ _LISTEN_TOPIC = "/voice/listen"
 _TEXT_INPUT_TOPIC = "/voice/text_input"
 _QUEUE_DEPTH = 10
 _MAX_TEXT = 500
-"""The maximum length of a text in characters; longer texts are truncated."""
+"""The maximum length of a text in characters. Longer texts are truncated."""
 
 
 class VoiceFeature(PageFeature):
-    """Publishes the sound of one page at a time, and sends recognized commands to the pages that watch.
+    """The feature that publishes the sound of one page at a time, and sends recognised commands to watching pages.
 
     The sound topics exist while any page has its microphone open, and the other topics while any page watches.
     """
@@ -67,7 +67,7 @@ class VoiceFeature(PageFeature):
         self._word_book = WordBook()
 
     def opening(self) -> list[ServerMessage]:
-        """Return the message that says whether a node executes commands.
+        """Return a message with whether a node executes commands.
 
         Other nodes, such as an object seeker, may answer as well.
         """
@@ -95,7 +95,7 @@ class VoiceFeature(PageFeature):
         self._watch(page, watched=False)
 
     def close(self) -> None:
-        """Handle all pages as closed, which destroys the publishers and subscriptions."""
+        """Handle all pages as closed, so that the publishers and subscriptions are destroyed."""
         for page in {*self._watchers, *self._budgets}:
             self.page_closed(page)
 

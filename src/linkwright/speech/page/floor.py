@@ -1,4 +1,4 @@
-"""Which of several pages talks at the moment, and how much sound a page may send."""
+"""The choice of the page that talks, and the limit of the sound that a page may send."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _CLOCK_TOLERANCE = 1.05
 
 
 class Floor:
-    """The pages with an open microphone. Of those that hold their button, the one that has held it longest talks."""
+    """The pages with an open microphone. Of those with a held button, the one that has held it longest talks."""
 
     def __init__(self) -> None:
         self._modes: dict[Page, TalkMode] = {}
@@ -24,7 +24,7 @@ class Floor:
         return bool(self._modes)
 
     def set(self, page: Page, mode: TalkMode) -> None:
-        """Set the microphone mode of a page. It takes its turn after pages with the same mode."""
+        """Set the microphone mode of a page, which takes its turn after pages with the same mode."""
         if self._modes.get(page) == mode:
             return
         self._modes.pop(page, None)
@@ -33,12 +33,12 @@ class Floor:
 
     @property
     def holder(self) -> Page | None:
-        """The page that holds its button and talks; None if no button is held."""
+        """The page that holds its button and talks, or None if no button is held."""
         return self._first("held")
 
     @property
     def talker(self) -> Page | None:
-        """The page whose sound is published; None if no microphone is open."""
+        """The page whose sound is published, or None if no microphone is open."""
         return self.holder or self._first("open")
 
     def _first(self, mode: TalkMode) -> Page | None:
@@ -46,7 +46,7 @@ class Floor:
 
 
 class SoundBudget:
-    """Limits the sound that a page sends and the loss that it reports: to as many seconds as have passed.
+    """A limit for the sound that a page sends and the loss that it reports: as many seconds as have passed.
 
     The two are counted separately, because a page may send silence for lost sound.
 

@@ -1,4 +1,4 @@
-"""Enrol words: add the recordings of a page to the user's file of words."""
+"""The enrolment of words on a page, with its recordings added to the user's file of words."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ class Recording:
 
 
 class WordBook:
-    """Changes the user's file of words, and sends its content to the pages that show it.
+    """The user's file of words, which pages change and show.
 
     The file is read again before each change, because other programs also write it.
     """
@@ -88,7 +88,7 @@ class WordBook:
                 self._send_file(page)
 
     def hear(self, page: Page, samples: Samples) -> bool:
-        """Add sound to the recording of a page; return whether the page is recording a word."""
+        """Add sound to the recording of a page, and return whether the page is recording a word."""
         recording = self._recordings.get(page)
         if recording is not None:
             recording.add(samples)
@@ -121,7 +121,11 @@ class WordBook:
             )
 
     def _change(self, page: Page, change: Callable[[Words], object]) -> bool:
-        """Change the file, and send it to all pages; if this fails, send the reason to the page."""
+        """Change the file and send it to all pages, or send the reason for a failure to the page.
+
+        Returns:
+            Whether the file was changed.
+        """
         try:
             words = _read()
             change(words)
@@ -153,7 +157,7 @@ class WordBook:
 
 
 def _read() -> Words:
-    """Return the words in the user's file; no words if there is no file.
+    """Return the words in the user's file, or no words if there is no file.
 
     Raises:
         LinkwrightError: VOICE202, the file cannot be read; VOICE203, it is damaged.

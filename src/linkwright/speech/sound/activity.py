@@ -1,4 +1,4 @@
-"""Voice activity detection: compares the energy of frames with an adaptive noise floor.
+"""Voice activity detection, which compares the energy of frames with an adaptive noise floor.
 
 During silence, the floor of each band follows the power of the band. During speech it falls with the power, but rises
 only to the minimum of the band in the last 0.8 s (minimum statistics, after R. Martin). So a fan that is switched on
@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from linkwright.speech.sound.spectra import BANDS, Powers
 
 HANGOVER = 40
-"""The frames without speech after which an utterance ends: 0.4 s, longer than the closure of a plosive."""
+"""The number of frames without speech that end an utterance: 0.4 s, longer than the closure of a plosive."""
 
 _MIN_POWER = 1.0  # below the noise of any microphone at 16 bits
 _START_LEVEL, _CONTINUE_LEVEL = 3.0, 2.0  # dB above the floor, mean over all bands in the last frames
@@ -38,7 +38,7 @@ _NOISE_DEVIATIONS = 1.5  # standard deviations by which unsteady noise exceeds i
 
 
 class VoiceActivity:
-    """Detects speech in a stream, frame by frame.
+    """A detector of speech in a stream, frame by frame.
 
     Attributes:
         speaking: whether the last frame belongs to an utterance, including its hangover.
@@ -56,7 +56,7 @@ class VoiceActivity:
         self._loud_frames = 0
 
     def step(self, frame: NDArray[np.float64]) -> bool:
-        """Process the next frame, shape ``(BANDS,)``; return `speaking`."""
+        """Process the next frame, shape ``(BANDS,)``, and return `speaking`."""
         self._last_frames.append(frame)
         smoothed = np.maximum(sum(self._last_frames) / len(self._last_frames), _MIN_POWER)
         self._smoothed_frames.append(smoothed)
@@ -117,7 +117,10 @@ def unsteady_noise(powers: Powers, floor: NDArray[np.float64]) -> NDArray[np.flo
 
 
 def _first_loud(powers: Powers) -> int:
-    """Return the first frame within `_SPEECH_RANGE` dB of the loudest frames, at least `_SOFT_START_FRAMES`."""
+    """Return the index of the first frame within `_SPEECH_RANGE` dB of the loudest frames.
+
+    The result is at least `_SOFT_START_FRAMES`.
+    """
     totals = np.convolve(powers.sum(axis=1), np.full(_SMOOTHING_FRAMES, 1.0 / _SMOOTHING_FRAMES), "same")
     loudest = np.sort(totals)[-_LOUDEST_FRAMES:].mean()
     return max(_SOFT_START_FRAMES, int(np.argmax(totals > 10.0 ** (-_SPEECH_RANGE / 10.0) * loudest)))

@@ -1,4 +1,4 @@
-"""Record from the microphone through PortAudio, with the library sounddevice."""
+"""The microphone, accessed through PortAudio with the library sounddevice."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _FULL_SCALE = 32_768.0
 
 
 class Microphone:
-    """Records from a microphone until it is closed.
+    """A microphone that records until it is closed.
 
     A device that cannot be read at 16 kHz is read at its own rate and resampled.
 

@@ -1,4 +1,4 @@
-"""Resample a stream to `RATE` without aliasing, with a polyphase filter, block by block.
+"""The resampling of a stream to `RATE` without aliasing, with a polyphase filter, block by block.
 
 The filter is a sinc in a Kaiser window. Its pass band ends at 0.92 of half the lower rate; frequencies above that half
 are attenuated by at least 60 dB. The output starts with the first sample of the input, without the filter's delay.
@@ -23,7 +23,7 @@ _BATCH = 8_192  # output samples per multiplication
 
 
 class Resampler:
-    """Resamples a stream of any rate to `RATE`.
+    """A resampler of a stream of any rate to `RATE`.
 
     Args:
         rate: the input rate in samples per second, `MIN_RATE` to `MAX_RATE`.
@@ -49,7 +49,7 @@ class Resampler:
     def feed(self, values: NDArray[np.floating]) -> Samples:
         """Process the next block, shape ``(n,)``, full scale at 1, and return the output samples that it completes.
 
-        The output is delayed by half the filter, 2 ms or less at usual rates; `flush` returns the rest.
+        The output is delayed by half the filter, 2 ms or less at usual rates. `flush` returns the rest.
         """
         self._buffer = np.concatenate((self._buffer, np.asarray(values, dtype=np.float64)))
         tap_count = self._table.shape[1]

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 RATE = 16_000
-"""Samples per second. Speech engines are trained at this rate; microphones are resampled to it where they are read."""
+"""Samples per second. Speech engines are trained at this rate, and the sound of microphones is resampled to it."""
 
 BLOCK = RATE // 10
 """The samples in a block of a microphone: 100 ms."""

@@ -23,7 +23,7 @@ WINDOW = RATE // 40
 BANDS = 26
 
 Powers: TypeAlias = NDArray[np.float64]
-"""The power of each band, shape ``(frames, BANDS)``; 1 is white noise with an RMS of one 16-bit step."""
+"""The power of each band, shape ``(frames, BANDS)``, where white noise with an RMS of one 16-bit step has 1."""
 
 _FFT_SIZE = 512
 _MIN_FREQUENCY, _MAX_FREQUENCY = 80.0, 7600.0  # Hz
@@ -31,14 +31,14 @@ _PRE_EMPHASIS = 0.97
 
 
 class MelFrames:
-    """Computes the frames of a stream from blocks of any length."""
+    """The frames of a stream, computed from blocks of any length."""
 
     def __init__(self) -> None:
         self._buffer: NDArray[np.float64] = np.zeros(0)
         self._last_sample = 0.0
 
     def feed(self, samples: Samples) -> Powers:
-        """Process the next block, and return the frames that it completes; the array may be empty."""
+        """Process the next block, and return the frames that it completes, possibly none."""
         if not len(samples):
             return np.zeros((0, BANDS))
         values = samples.astype(np.float64)
@@ -63,7 +63,7 @@ def mel_frames(samples: Samples) -> Powers:
 
 
 def _mel_filters() -> NDArray[np.float64]:
-    """Return the filters of the mel bands, shape ``(_FFT // 2 + 1, BANDS)``.
+    """Return the filters of the mel bands, shape ``(_FFT_SIZE // 2 + 1, BANDS)``.
 
     Each filter sums to 1, so that white noise is equal in all bands.
     """

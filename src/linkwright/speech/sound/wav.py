@@ -1,4 +1,4 @@
-"""Read WAV files in all common formats, and write 16 kHz mono files.
+"""WAV files: reading of all common formats, and writing of 16 kHz mono files.
 
 Python's module `wave` reads neither floating point nor the extensible format that many recorders write.
 """
@@ -35,9 +35,10 @@ class _Form:
 
 
 def read_wav(path: str | os.PathLike[str]) -> Samples:
-    """Read a WAV file: PCM of 8 to 32 bits or floating point; channels are averaged and resampled to `RATE`.
+    """Read a WAV file with PCM of 8 to 32 bits or floating-point samples.
 
-    A truncated file, for example of a recorder that was killed, gives the samples that it contains.
+    The channels are averaged, and the result is resampled to `RATE`. From a truncated file, such as that of a recorder
+    that was killed, the samples that it contains are returned.
 
     Raises:
         LinkwrightError: VOICE401, the file cannot be read; VOICE402, it is not a WAV file, or its format is not

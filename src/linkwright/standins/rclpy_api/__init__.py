@@ -1,1 +1,1 @@
-"""The API of the Python package ``rclpy``, based on the nodes and executors of `linkwright.graph`."""
+"""The API of the Python package ``rclpy``, based on `linkwright.graph`."""

@@ -14,15 +14,18 @@ if TYPE_CHECKING:
 
 
 class ActionServer(action_server.ActionServer):
-    """An action server of rclpy, which also reports how many entities it has."""
+    """An action server of rclpy that also reports the number of its entities."""
 
     def get_num_entities(self) -> NumberOfEntities:
-        """Return the number of entities of the server: three services, and a timer that drops old results."""
+        """Return the number of entities of the server: three services and a timer.
+
+        The timer drops old results.
+        """
         return NumberOfEntities(num_timers=1, num_services=3)
 
 
 class ActionClient(action_client.ActionClient):
-    """An action client of rclpy, which also reports how many entities it has."""
+    """An action client of rclpy that also reports the number of its entities."""
 
     def get_num_entities(self) -> NumberOfEntities:
         """Return the number of entities of the client: three service clients and two subscriptions.

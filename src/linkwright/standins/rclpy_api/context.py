@@ -1,4 +1,4 @@
-"""The lifetime of a program in the graph, from ``rclpy.init`` to ``rclpy.shutdown`` (rclpy ``context``)."""
+"""The lifetime of a program in the graph: from ``rclpy.init`` to ``rclpy.shutdown``."""
 
 from __future__ import annotations
 
@@ -54,24 +54,27 @@ class Context:
 
     @property
     def enable_rosout(self) -> bool:
-        """Whether nodes publish their log messages on ``/rosout``; a command-line option can disable this."""
+        """Whether nodes publish their log messages on ``/rosout``.
+
+        The command line can disable this.
+        """
         return self.ros_arguments.rosout_logs is not False
 
     @property
     def handle(self) -> Context | None:
-        """The context itself, for ``with context.handle``; None before initialisation."""
+        """The context itself, for ``with context.handle``, or None before initialisation."""
         return self if self._initialized else None
 
     @property
     def graph(self) -> Graph:
-        """The graph of the context's nodes, which joins the network on first use by a node."""
+        """The graph of the context's nodes. It joins the network on first use by a node."""
         with self._lock:
             if self._graph is None:
                 self._graph = self._create_graph()
             return self._graph
 
     def wait_for_network(self) -> None:
-        """Wait until the graph has joined the network; later calls return immediately.
+        """Wait until the graph has joined the network. Later calls return immediately.
 
         Without this wait, DDS would delay the first timers.
         """
@@ -131,7 +134,7 @@ class Context:
         return int(text) if text.isdigit() else 0
 
     def on_shutdown(self, callback: Callable[[], object]) -> None:
-        """Register a callback for the shutdown; if the context is already shut down, call it now.
+        """Register a callback for the shutdown, or call it now if the context is already shut down.
 
         The context keeps only weak references to bound methods.
 
@@ -166,7 +169,7 @@ class Context:
             self.shutdown()
 
     def shutdown_by_signal(self) -> None:
-        """Stop the executors from a signal handler; `shutdown` must complete the shutdown later.
+        """Stop the executors from a signal handler. `shutdown` must complete the shutdown later.
 
         A signal can arrive at any point of the program, so this method does only what is safe in a signal handler.
         """

@@ -1,4 +1,4 @@
-"""The default context, which is used by functions that are called without a context."""
+"""The default context, for functions that are called without a context."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def has_default_context() -> bool:
 
 
 def is_default(context: Context | None) -> bool:
-    """Return whether a context is the default context; None means the default context."""
+    """Return whether a context is the default context or None."""
     return context is None or context is _DefaultState.context
 
 

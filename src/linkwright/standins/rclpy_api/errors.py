@@ -1,4 +1,4 @@
-"""The exceptions of rclpy that `linkwright.graph` lacks, and a function that gives all exceptions rclpy's names."""
+"""The exceptions of rclpy that `linkwright.graph` lacks, and rclpy's names for all exceptions."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ __all__ = [
 ]
 
 _EXCEPTION_MODULES = ("rclpy.exceptions", "rclpy.executors", "rclpy._rclpy_pybind11")
-"""The modules of rclpy's exception classes; a class in several modules gets the name of the last one."""
+"""The modules of rclpy's exception classes. A class in several modules gets the name of the last one."""
 
 
 class NoTypeSupportImportedException(Exception):

@@ -1,4 +1,4 @@
-"""Executors, which use the default context unless they receive another one (rclpy ``executors``)."""
+"""Executors with the default context unless another one is given (rclpy ``executors``)."""
 
 from __future__ import annotations
 
@@ -12,7 +12,10 @@ from linkwright.standins.rclpy_api.defaults import get_default_context
 
 
 class Executor(executors.Executor):
-    """Runs the callbacks of nodes; the base class of users' executors, which define ``spin_once``."""
+    """The base class of users' executors, which define ``spin_once``.
+
+    An executor runs the callbacks of nodes.
+    """
 
     def __init__(self, *, context: Context | None = None) -> None:
         super().__init__(context=get_default_context() if context is None else context)
@@ -33,7 +36,7 @@ class MultiThreadedExecutor(executors.MultiThreadedExecutor, Executor):
 
 
 async def await_or_execute(callback: Callable[..., Any], *args: Any) -> Any:
-    """Await the result of a coroutine function, or call any other callable, and return the result."""
+    """Call a function, await it if it is a coroutine function, and return the result."""
     if inspect.iscoroutinefunction(callback):
         return await callback(*args)
     return callback(*args)

@@ -1,4 +1,4 @@
-"""The loggers of the process, which exist independently of contexts (rclpy ``logging``)."""
+"""The loggers of the process, independent of contexts (rclpy ``logging``)."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ root_logger = Logger("", write, time.time_ns, LEVELS)
 
 
 def get_logger(name: str) -> Logger:
-    """Return the logger with a name, in which dots separate the levels of the hierarchy.
+    """Return the logger with a name. Dots in the name separate the levels of the hierarchy.
 
     Raises:
         ValueError: the name is empty.
@@ -64,12 +64,12 @@ def clear_config() -> None:
 
 
 def set_logger_level(name: str, level: int, detailed_error: bool = False) -> None:  # noqa: ARG001  # rclpy's signature
-    """Set the level of a logger and its children; the empty name sets the default level."""
+    """Set the level of a logger and its children. The empty name sets the default level."""
     LEVELS.set(name, LogLevel(level))
 
 
 def get_logger_effective_level(name: str) -> LogLevel:
-    """Return the level that a logger uses: the level that was set for it, or else the inherited level."""
+    """Return the effective level of a logger: its own level, or else the inherited level."""
     return LEVELS.effective_level(name)
 
 
@@ -91,7 +91,10 @@ def get_logging_severity_from_string(log_severity: str) -> LogLevel:
 
 
 def get_logging_directory() -> Path:
-    """Return the folder of log files: ROS_LOG_DIR, otherwise ``log`` below ROS_HOME, otherwise ``~/.ros/log``."""
+    """Return the folder of log files.
+
+    This is ROS_LOG_DIR, otherwise ``log`` below ROS_HOME, otherwise ``~/.ros/log``.
+    """
     folder = os.environ.get("ROS_LOG_DIR")
     if folder:
         return Path(folder).expanduser()

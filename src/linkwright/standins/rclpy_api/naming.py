@@ -1,4 +1,4 @@
-"""Validates and expands names; the functions are in several modules of rclpy."""
+"""Validation and expansion of names, as in several modules of rclpy."""
 
 from __future__ import annotations
 
@@ -32,7 +32,9 @@ def validate_namespace(namespace: str) -> bool:
 
 
 def validate_topic_name(name: str, *, is_service: bool = False) -> bool:
-    """Return True for a valid name of a topic or service; the name may be relative or private.
+    """Return True for a valid name of a topic or service.
+
+    The name may be relative or private.
 
     Raises:
         InvalidTopicNameError, InvalidServiceNameError: the name is not valid.
@@ -77,7 +79,9 @@ def topic_or_service_is_hidden(name: str) -> bool:
 
 
 def validate_parameter_name(name: str) -> bool:
-    """Return True for a valid parameter name; every name that is not empty is valid.
+    """Return True for a valid parameter name.
+
+    Every name that is not empty is valid.
 
     Raises:
         InvalidParameterException: the name is empty.

@@ -1,4 +1,4 @@
-"""Nodes of the graph that belong to a context and apply the context's command line (rclpy ``node``)."""
+"""Nodes with a context and its command line (rclpy ``node``)."""
 
 from __future__ import annotations
 
@@ -18,7 +18,10 @@ from linkwright.standins.rclpy_api.defaults import check_initialized, get_defaul
 def _parameter_overrides(
     node_name: str, namespace: str, remappings: Sequence[tuple[str, str]], command_lines: Sequence[RosArguments]
 ) -> dict[str, Any]:
-    """Return the parameter overrides of a node from command lines; the first one takes precedence."""
+    """Return the parameter overrides of a node from command lines.
+
+    The first command line takes precedence.
+    """
     rules = Remappings(remappings)
     full_name = join(absolute_namespace(rules.namespace(namespace, node_name)), rules.node_name(node_name))
     overrides: dict[str, Any] = {}

@@ -50,13 +50,13 @@ def add_old_names() -> None:
 def declare_qos_parameters(
     entity_type: type, node: Any, topic_name: str, qos: QoSProfile, options: QoSOverridingOptions
 ) -> QoSProfile:
-    """Declare the parameters that override the QoS of a publisher or subscription, and apply their values.
+    """Declare parameters that override the QoS of an endpoint, and apply their values.
 
     Args:
         entity_type: ``Publisher`` or ``Subscription``.
         node: the node that declares the parameters.
         topic_name: the absolute name of the topic.
-        qos: the profile, which is modified.
+        qos: the profile to modify.
         options: the policies that can be overridden.
 
     Returns:

@@ -54,7 +54,7 @@ def init(
     domain_id: int | None = None,
     signal_handler_options: SignalHandlerOptions | None = None,
 ) -> InitContextManager:
-    """Initialise a context, which is required before nodes are created.
+    """Initialise a context. Nodes can be created only after this.
 
     Args:
         args: the command line; None for ``sys.argv``.
@@ -112,7 +112,7 @@ def try_shutdown(*, context: Context | None = None, uninstall_handlers: bool | N
 
 
 def get_global_executor() -> Executor:
-    """Return the global executor, which belongs to the default context."""
+    """Return the global executor of the default context."""
     with _lock:
         if _GlobalState.executor is None:
             _GlobalState.executor = SingleThreadedExecutor()
@@ -120,7 +120,7 @@ def get_global_executor() -> Executor:
 
 
 def create_node(node_name: str, **arguments: Any) -> Node:
-    """Create a node; see `Node` for the arguments.
+    """Create a node. See `Node` for the arguments.
 
     Raises:
         NotInitializedError: the node's context is not initialised.

@@ -12,7 +12,7 @@ from typing import Any
 
 
 class SignalHandlerOptions(IntEnum):
-    """The signals that shut contexts down; the values can be combined."""
+    """The signals that shut contexts down. The values can be combined."""
 
     NO = 0
     SIGINT = 1
@@ -34,8 +34,8 @@ def shut_down_on_signal(context: Any) -> None:
 def install_signal_handlers(options: SignalHandlerOptions = SignalHandlerOptions.ALL) -> None:
     """Install signal handlers that shut all contexts down and then call the previous handler.
 
-    Because the previous handler is called, Ctrl-C still raises KeyboardInterrupt. Outside the main thread,
-    this function does nothing, because Python only allows the main thread to install handlers.
+    Because the previous handler is called, Ctrl-C still raises KeyboardInterrupt. Outside the main thread, this
+    function has no effect, because Python allows only the main thread to install handlers.
     """
     if threading.current_thread() is not threading.main_thread():
         return

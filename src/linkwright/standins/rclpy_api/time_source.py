@@ -63,7 +63,7 @@ class TimeSource:
         node.add_post_set_parameters_callback(self._on_set_parameters)
 
     def detach_node(self) -> None:
-        """Stop following the node's parameter and ``/clock``; the clocks keep their time."""
+        """Stop following the node's parameter and ``/clock``. The clocks keep their time."""
         node = self._get_node()
         if node is not None:
             self._unsubscribe()

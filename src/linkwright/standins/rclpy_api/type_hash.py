@@ -1,4 +1,4 @@
-"""Hashes of interface types (REP 2016; rclpy ``type_hash``)."""
+"""Hashes of interface types, as in REP 2016 (rclpy ``type_hash``)."""
 
 from __future__ import annotations
 
@@ -15,7 +15,9 @@ class TypeHashDictionary(TypedDict):
 
 
 class TypeHash:
-    """A type hash with the version of the hashing rules, which is -1 without a hash.
+    """A type hash with the version of the hashing rules.
+
+    The version -1 means that there is no hash.
 
     Raises:
         AssertionError: the value does not have 32 bytes.

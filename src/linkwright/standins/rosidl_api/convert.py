@@ -17,7 +17,10 @@ def message_to_yaml(
     no_str: bool = False,
     flow_style: bool = False,
 ) -> str:
-    """Return a message as YAML; bytes become a mapping with the key ``bytes`` and a ``!!binary`` value."""
+    """Return a message as YAML.
+
+    Bytes become a mapping with the key ``bytes`` and a ``!!binary`` value.
+    """
     if isinstance(msg, bytes):
         import yaml
 
@@ -26,7 +29,10 @@ def message_to_yaml(
 
 
 def message_to_csv(msg: Any, *, truncate_length: int | None = None, no_arr: bool = False, no_str: bool = False) -> str:
-    """Return the values of a message separated by commas; for bytes, return their Python literal."""
+    """Return the values of a message separated by commas.
+
+    For bytes, return their Python literal.
+    """
     if isinstance(msg, bytes):
         return str(msg)
     return to_csv(msg, truncate_length=truncate_length, no_arr=no_arr, no_str=no_str)
@@ -35,7 +41,10 @@ def message_to_csv(msg: Any, *, truncate_length: int | None = None, no_arr: bool
 def message_to_ordereddict(
     msg: Any, *, truncate_length: int | None = None, no_arr: bool = False, no_str: bool = False
 ) -> OrderedDict[str, Any]:
-    """Return a message as a dictionary of plain values; bytes become the value of the key ``bytes``."""
+    """Return a message as a dictionary of plain values.
+
+    Bytes become the value of the key ``bytes``.
+    """
     if isinstance(msg, bytes):
         return OrderedDict(bytes=msg)
     return to_dict(msg, truncate_length=truncate_length, no_arr=no_arr, no_str=no_str)

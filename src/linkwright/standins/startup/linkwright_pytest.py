@@ -1,4 +1,4 @@
-"""A pytest plugin that provides ``launch_pytest`` and ``launch_testing`` to the tests that import them.
+"""A pytest plugin that provides ``launch_pytest`` and ``launch_testing`` to tests.
 
 pytest finds the plugin in the folder of the stand-ins. The plugin does nothing if the real packages are installed, and
 imports other modules only when needed.
@@ -32,7 +32,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_addhooks(pluginmanager: pytest.PytestPluginManager) -> None:
-    """Register launch_testing's hook, which ``conftest.py`` files can implement."""
+    """Register the hook of launch_testing for ``conftest.py`` files."""
     if not _is_real("launch_testing"):
         pluginmanager.add_hookspecs(_Hooks)
 
@@ -51,7 +51,7 @@ class _Hooks:
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_pycollect_makemodule(module_path: Path, parent: pytest.Collector) -> Any:
-    """Collect a file as one launch test if the marker of its ``generate_test_description`` requests it."""
+    """Collect a file as one launch test if the marker of its description function requests it."""
     if _is_real("launch_testing") or _DESCRIPTION_FUNCTION not in module_path.read_bytes():
         return None
     return importlib.import_module(_HOOKS_MODULE)._collect_marked(module_path, parent)
@@ -59,7 +59,7 @@ def pytest_pycollect_makemodule(module_path: Path, parent: pytest.Collector) -> 
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_pycollect_makeitem(collector: Any, name: str, obj: object) -> Any:
-    """Register the plugin of ``launch_pytest`` after a test module has imported ``launch_pytest``."""
+    """Register the plugin of ``launch_pytest`` after a test module has imported the package."""
     manager = collector.config.pluginmanager
     if not _is_stand_in(sys.modules.get(_PLUGIN_PACKAGE)):
         return None

@@ -1,4 +1,4 @@
-"""Makes the stand-ins importable in every Python process with this folder on its ``PYTHONPATH``.
+"""Makes the stand-ins importable in every Python process with this folder on ``PYTHONPATH``.
 
 Linkwright is imported only when the program imports a stand-in that no other finder provides. If a real rclpy is
 importable, the stand-ins are not provided, because the nodes of each rclpy accept only its own message classes.
@@ -19,7 +19,7 @@ _SOURCE_FOLDER = os.path.dirname(os.path.dirname(os.path.dirname(_STARTUP_FOLDER
 
 _LINKWRIGHT_PREFIX = os.path.join(_SOURCE_FOLDER, "linkwright", "")
 _SIGNALS_PATH = os.path.join("rclpy_api", "signals.py")
-"""The end of the path of the signal handler's module; the handler may run at any point of the program."""
+"""The end of the path of the signal handler's module. The handler may run at any point of the program."""
 _STANDARD_LIBRARY_PREFIX = os.path.join(os.path.dirname(os.__file__), "")
 
 _ROS_INDEPENDENT = frozenset({"tf_transformations"})
@@ -32,7 +32,10 @@ _MAX_PARENT_FOLDERS = 5
 
 
 class StandIns:
-    """A finder of the stand-ins, which Python uses after all other finders have failed."""
+    """A finder of the stand-ins.
+
+    Python uses it after all other finders have failed.
+    """
 
     def __init__(self) -> None:
         self._names: frozenset[str] | None = None
@@ -106,7 +109,7 @@ class SourceFolders:
         return None if getattr(sys.modules[package], "__file__", None) else self._stand_ins.interface(name)
 
     def _is_hidden(self, name: str) -> bool:
-        """Return whether a folder that is not a Python package hides the stand-in with the same name."""
+        """Return whether a folder that is not a Python package hides a stand-in of the same name."""
         if not self._stand_ins.has(name):
             return False
         spec = PathFinder.find_spec(name)
@@ -168,7 +171,7 @@ def _enable_field_checks(spec: ModuleSpec | None) -> ModuleSpec | None:
 
 
 def _run_next_sitecustomize() -> None:
-    """Run the next ``sitecustomize`` on the path, which this module hides."""
+    """Run the ``sitecustomize`` on the path that this module hides."""
     other_entries = [entry for entry in sys.path if os.path.abspath(entry) != _STARTUP_FOLDER]
     spec = PathFinder.find_spec("sitecustomize", other_entries)
     if spec is None or spec.loader is None:
@@ -203,7 +206,7 @@ def _report_with_hint(kind: type[BaseException], error: BaseException, traceback
 
 
 def _is_between_messages(traceback: object) -> bool:
-    """Return whether a traceback ends in Linkwright's code, in code that it calls, or in an import."""
+    """Return whether a traceback ends in Linkwright's code, in its callees, or in an import."""
     is_ours, module_count = False, 0
     while traceback is not None:
         code = traceback.tb_frame.f_code  # type: ignore[attr-defined]  # as above

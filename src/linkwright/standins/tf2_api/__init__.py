@@ -1,1 +1,1 @@
-"""The API of the Python packages ``tf2_ros`` and ``tf2_geometry_msgs``, based on the buffer of `linkwright.graph`."""
+"""The API of ``tf2_ros`` and ``tf2_geometry_msgs``, based on `linkwright.graph`."""

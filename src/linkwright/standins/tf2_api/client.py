@@ -35,7 +35,9 @@ _NO_ERROR = 0
 
 
 class BufferClient(BufferInterface):
-    """Requests transforms from a buffer server through an action; another thread must spin the node.
+    """Requests transforms from a buffer server through an action.
+
+    Another thread must spin the node.
 
     Args:
         node: the node of the client.
@@ -91,7 +93,7 @@ class BufferClient(BufferInterface):
         fixed_frame: str,
         timeout: Duration = NO_TIME,
     ) -> Any:
-        """Return the transform from the source frame at one time to the target frame at another time.
+        """Return the transform from a frame at one time to another frame at another time.
 
         Raises:
             TransformException: there is no transform or no response.

@@ -61,7 +61,7 @@ from_msg_msg = to_msg_msg
 
 
 def register() -> None:
-    """Register the transformation of point clouds in the registry that all buffers share."""
+    """Register the transformation of point clouds for all buffers."""
     cloud_class = get_message("sensor_msgs/msg/PointCloud2")
     TransformRegistration().add(cloud_class, do_transform_cloud)
     ConvertRegistration().add_to_msg(cloud_class, to_msg_msg)

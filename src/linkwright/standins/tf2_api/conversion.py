@@ -1,4 +1,4 @@
-"""The registries of functions that transform and convert types (tf2_ros ``buffer_interface``)."""
+"""Registries of transformations and conversions by type (tf2_ros ``buffer_interface``)."""
 
 from __future__ import annotations
 
@@ -32,7 +32,10 @@ class NotImplementedException(Exception):
 
 
 class TransformRegistration:
-    """The functions that transform values, by type; all objects of this class share one registry."""
+    """The functions that transform values, by type.
+
+    All objects of this class share one registry.
+    """
 
     _by_type: ClassVar[dict[Any, Transformation]] = {}
 

@@ -27,7 +27,7 @@ from_msg_msg = to_msg_msg
 
 
 def register() -> None:
-    """Register the transformations of geometry_msgs messages in the registry that all buffers share."""
+    """Register the transformations of geometry_msgs messages for all buffers."""
     for name, transformation in _TRANSFORM_FUNCTIONS.items():
         message_class = get_message(f"geometry_msgs/msg/{name}")
         TransformRegistration().add(message_class, transformation)

@@ -11,7 +11,10 @@ NO_TIME = Duration()
 
 
 class BufferInterface:
-    """The base class of buffers, which applies transforms to messages; subclasses look the transforms up."""
+    """The base class of buffers.
+
+    It applies transforms to messages, and subclasses look the transforms up.
+    """
 
     def __init__(self) -> None:
         self.registration = TransformRegistration()

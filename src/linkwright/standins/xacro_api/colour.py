@@ -15,7 +15,7 @@ def is_tty(stream: object) -> bool:
 
 
 def colorize(msg: object, color: str | int | None, file: IO[str] | None = None, alt_text: str | None = None) -> str:
-    """Return a message in a colour if the output is a terminal, or else with the prefix `alt_text`."""
+    """Return a message in a colour for a terminal, or otherwise with the prefix `alt_text`."""
     code = _COLOUR_CODES.get(color, 0) if isinstance(color, str) else color
     if code and is_tty(sys.stderr if file is None else file):
         return f"\x1b[{code}m{msg}\x1b[0m"
@@ -31,10 +31,10 @@ def message(
 
 
 def warning(*args: Any, **options: Any) -> None:
-    """Print a warning; see `message`."""
+    """Print a warning. See `message`."""
     message(*args, **{"alt_text": "warning: ", "color": "yellow", **options})
 
 
 def error(*args: Any, **options: Any) -> None:
-    """Print an error; see `message`."""
+    """Print an error. See `message`."""
     message(*args, **{"alt_text": "error: ", "color": "red", **options})

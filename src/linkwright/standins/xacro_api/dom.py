@@ -68,7 +68,10 @@ def escape_text(text: str) -> str:
 
 
 def fill(target: minidom.Document, document: Document) -> None:
-    """Replace the content of a minidom document with a tree; a root that is a `DomElement` is reused."""
+    """Replace the content of a minidom document with a tree.
+
+    A root that is a `DomElement` is reused.
+    """
     old_root = target.documentElement
     reusable_root = old_root if isinstance(old_root, DomElement) else None
     for node in list(target.childNodes):
@@ -84,7 +87,10 @@ def fill(target: minidom.Document, document: Document) -> None:
 
 
 def read(document: minidom.Document) -> Document:
-    """Convert a minidom document to a tree; nodes that `fill` created keep their locations."""
+    """Convert a minidom document to a tree.
+
+    Nodes that `fill` created keep their locations.
+    """
     root = document.documentElement
     element = _tree_element(root)
     pending: list[tuple[Any, Element]] = [(root, element)]
@@ -115,7 +121,10 @@ def read(document: minidom.Document) -> Document:
 
 
 def is_same(document: minidom.Document, tree: Document) -> bool:
-    """Return whether a document has the elements and attributes of a tree, so that the tree's locations apply."""
+    """Return whether a document has the elements and attributes of a tree.
+
+    If so, the locations of the tree apply to it.
+    """
     pending = [(document.documentElement, tree.root)]
     while pending:
         dom_element, tree_element = pending.pop()
@@ -198,7 +207,7 @@ def _dom_leaf(owner: minidom.Document, node: Node) -> Any:
 
 def _dom_doctype(text: str) -> minidom.DocumentType:
     name = text.split(None, 2)[1].rstrip(">")
-    doctype = minidom.parseString(f"{text}<{name}/>").doctype  # noqa: S318 - our reader has let it pass
+    doctype = minidom.parseString(f"{text}<{name}/>").doctype  # noqa: S318 - checked by Linkwright's reader
     assert doctype is not None, "the text is a declaration"
     doctype.parentNode = None
     return doctype

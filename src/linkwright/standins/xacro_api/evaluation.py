@@ -37,7 +37,7 @@ def eval_text(text: str, symbols: Mapping[str, Any] | None) -> Any:
 
 
 def safe_eval(expr: str, globals: Mapping[str, Any] | None, locals: Mapping[str, Any] | None = None) -> Any:
-    """Evaluate an expression with the names that are available in descriptions; see `eval_text`.
+    """Evaluate an expression with the names that are available in descriptions. See `eval_text`.
 
     Raises:
         XacroException: the expression cannot be evaluated, or is not allowed.
@@ -62,7 +62,7 @@ def eval_extension(s: str) -> str:
 
 
 def load_yaml(filename: str) -> Any:
-    """Load a YAML file; the keys of its mappings are also available as attributes.
+    """Load a YAML file. The keys of its mappings are also available as attributes.
 
     Raises:
         XacroException: there is no such file, or the file is not YAML.
@@ -109,7 +109,7 @@ def create_global_symbols() -> dict[str, Any]:
 
 
 class ConstructUnits(enum.Enum):
-    """The YAML tags for values with units, as pairs of the tag and the size of the unit in metres or radians."""
+    """The YAML tags for values with units, each with the size of the unit in metres or radians."""
 
     radians = ("!radians", yamldata.UNITS["!radians"])
     degrees = ("!degrees", yamldata.UNITS["!degrees"])
@@ -130,7 +130,7 @@ class YamlDictWrapper(dict[Any, Any]):
 
 
 class YamlListWrapper(list[Any]):
-    """A sequence from a YAML file; see `wrap`."""
+    """A sequence from a YAML file. See `wrap`."""
 
     @staticmethod
     def wrap(item: Any) -> Any:
@@ -143,7 +143,7 @@ class YamlListWrapper(list[Any]):
 
 
 class _SymbolView(dict[str, Any]):
-    """A dictionary view of a symbol table, which evaluates values on access if necessary."""
+    """A dictionary view of a symbol table. Values are evaluated on access if necessary."""
 
     __slots__ = ("_session", "_table")
 

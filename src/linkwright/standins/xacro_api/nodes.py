@@ -17,7 +17,7 @@ from linkwright.standins.xacro_api.tables import NameSpace, Table
 
 _ELEMENT, _TEXT, _COMMENT = minidom.Node.ELEMENT_NODE, minidom.Node.TEXT_NODE, minidom.Node.COMMENT_NODE
 _MARKER = minidom.Document().createTextNode("\n\n")
-"""Marks the position up to which comments have been checked; the single marker is moved along."""
+"""Marks the position up to which comments have been checked. The single marker is moved along."""
 
 
 def first_child_element(elt: Any) -> Any:
@@ -66,14 +66,12 @@ def reqd_attrs(tag: Any, attrs: Sequence[str]) -> list[str]:
     """
     for name in attrs:
         if not tag.hasAttribute(name):
-            raise RuntimeError(
-                phrase(("'{nodename}' has no attribute '{name}', which is required"), nodename=tag.nodeName, name=name)
-            )
+            raise RuntimeError(phrase("'{tag}' needs the attribute '{name}'", tag=tag.nodeName, name=name))
     return [tag.getAttribute(name) for name in attrs]
 
 
 def check_attrs(tag: Any, required: Sequence[str], optional: Sequence[str]) -> list[Any]:
-    """Return the values of required and optional attributes, and print a warning about any other attributes.
+    """Return the values of required and optional attributes, and warn about other attributes.
 
     Raises:
         RuntimeError: a required attribute is missing.
@@ -82,14 +80,14 @@ def check_attrs(tag: Any, required: Sequence[str], optional: Sequence[str]) -> l
     unexpected_names = [name for name in tag.attributes.keys() if name not in (*required, *optional)]  # noqa: SIM118 - not a dict
     unexpected_names = [name for name in unexpected_names if not name.startswith("xmlns:")]
     if unexpected_names:
-        colour.warning(f"'{tag.nodeName}' knows no attribute {', '.join(map(repr, unexpected_names))}")
+        colour.warning(f"'{tag.nodeName}' has unknown attributes: {', '.join(map(repr, unexpected_names))}")
         if STATE.verbosity > 0:
             print_location()
     return values
 
 
 def import_xml_namespaces(parent: Any, attributes: Any) -> None:
-    """Copy namespace declarations to an element, and print a warning if it declares a prefix differently."""
+    """Copy namespace declarations to an element, and warn about conflicting declarations."""
     for name, value in attributes.items():
         if not name.startswith("xmlns:"):
             continue
@@ -212,5 +210,5 @@ def _target_table(table: Table, scope: str | None) -> Table:
         while isinstance(target, NameSpace):
             target = target.parent
     if not isinstance(target, Table):
-        raise XacroException("there is no scope around this one")
+        raise XacroException("there is no enclosing scope")
     return target

@@ -28,9 +28,9 @@ _FAILURE_STATUS = 2
 
 
 class XacroDocument(minidom.Document):
-    """A document that records how it was expanded.
+    """A document that records the call and the result of its expansion.
 
-    With this information, a running launch can map the URDF to locations in the sources, and reload a changed file.
+    With these records, a running launch can map the URDF to locations in the sources, and reload a changed file.
 
     Attributes:
         call: the file and the arguments; None for a description given as a string.
@@ -41,7 +41,7 @@ class XacroDocument(minidom.Document):
     expansion: Expansion | None = None
 
     def toprettyxml(self, *arguments: Any, **keywords: Any) -> Any:
-        """Serialize the document; see ``xml.dom.minidom``."""
+        """Serialize the document. See ``xml.dom.minidom``."""
         text = super().toprettyxml(*arguments, **keywords)
         descriptions, expansion = current_descriptions(), self.expansion
         if descriptions is None or self.call is None or expansion is None or not isinstance(text, str):
@@ -154,7 +154,7 @@ def process(
     verbosity: int = 1,
     mappings: Mapping[str, Any] | None = None,
 ) -> str:
-    """Expand a file to a string, or list the files that it includes; see `process_file`.
+    """Expand a file to a string, or list the files that it includes. See `process_file`.
 
     Args:
         input_file_name: the path of the file.
@@ -168,7 +168,9 @@ def process(
 
 
 def open_output(output_filename: str | Path | None) -> IO[str]:
-    """Open a file for writing, and create its folder if necessary; return standard output for None.
+    """Open a file for writing, and create its folder if necessary.
+
+    For None, return standard output.
 
     Raises:
         XacroException: the file cannot be opened.
@@ -184,7 +186,7 @@ def open_output(output_filename: str | Path | None) -> IO[str]:
 
 
 def main(words: Sequence[str] | None = None) -> None:
-    """Run the command ``xacro``; exit on errors."""
+    """Run the command ``xacro``, and exit on errors."""
     options, file = process_args(sys.argv[1:] if words is None else list(words))
     assert file is not None, "the options say that a file is needed"
     if options.root_dir:
@@ -230,7 +232,7 @@ def _argument_texts(mappings: Mapping[str, Any] | None) -> tuple[tuple[str, str]
 
 
 def _expand(tree: Document, file: str | None, mappings: Mapping[str, Any] | None, call: XacroCall | None) -> Expansion:
-    """Return the expansion of a tree, and print its diagnostics unless a running launch reports them."""
+    """Expand a tree, and print its diagnostics unless a running launch reports them."""
     descriptions = current_descriptions()
     packages = descriptions.finder if descriptions is not None else None
     root = "" if str(STATE.root_dir) == os.curdir else str(STATE.root_dir)
@@ -266,5 +268,5 @@ def _print_diagnostics(diagnostics: Sequence[Diagnostic]) -> None:
 
 
 def _is_description_message(diagnostic: Diagnostic) -> bool:
-    """Return whether a diagnostic is a message of the description itself, such as from ``xacro.message``."""
+    """Return whether a diagnostic is a message from the description, as by ``xacro.message``."""
     return diagnostic.code.startswith("XAC7")

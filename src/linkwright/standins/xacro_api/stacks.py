@@ -54,7 +54,7 @@ def _state_property(name: str) -> property:
 
 
 class LiveModule(ModuleType):
-    """A module whose variables are the attributes of `STATE`, so that programs can read and set them."""
+    """A module whose variables are the attributes of `STATE`. Programs can read and set them."""
 
     filestack = _state_property("filestack")
     macrostack = _state_property("macrostack")
@@ -69,13 +69,19 @@ def share_state() -> None:
 
 
 def init_stacks(file: str | Path | None) -> None:
-    """Reset the stacks, so that the file stack contains only `file`, or None for a description as a string."""
+    """Reset the stacks, with `file` as the only file.
+
+    For a description given as a string, `file` is None.
+    """
     STATE.filestack = [None if file is None else str(file)]
     STATE.macrostack = []
 
 
 def abs_filename_spec(filename_spec: str) -> str:
-    """Return an absolute file name; a relative name is resolved in the folder of the current file."""
+    """Return an absolute file name.
+
+    A relative name is resolved in the folder of the current file.
+    """
     if os.path.isabs(filename_spec):  # noqa: PTH117 - as written
         return filename_spec
     current_file = STATE.filestack[-1] if STATE.filestack else None
@@ -139,7 +145,7 @@ class StackSession(Session):
         self._run_with_macro(call_macro, expander, site, site.node.tag[len(_PREFIX) :])
 
     def depends_on(self, file: str) -> None:
-        """Record that a file was read; see `Session.depends_on`."""
+        """Record that a file was read. See `Session.depends_on`."""
         super().depends_on(file)
         STATE.all_includes.append(file)
 

@@ -17,7 +17,7 @@ _DOCUMENT_VERBOSITY, _FULL_VERBOSITY = 2, 3
 
 
 class Table(dict[str, Any]):
-    """A symbol table with a parent table, which evaluates strings on first access.
+    """A symbol table with a parent table. Strings are evaluated on first access.
 
     Args:
         parent: the parent table; a plain dict contains the names that xacro provides.
@@ -110,7 +110,10 @@ class Table(dict[str, Any]):
 
 
 class NameSpace(Table):
-    """The symbol table of an include with a namespace; its names are also available as attributes."""
+    """The symbol table of an include with a namespace.
+
+    Its names are also available as attributes.
+    """
 
     def __getattr__(self, item: str) -> Any:
         if item.startswith("__"):

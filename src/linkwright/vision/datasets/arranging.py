@@ -1,4 +1,4 @@
-"""Arrange the camera and the objects for an image randomly."""
+"""The random arrangement of the camera and the objects for an image."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ _STEPS = 40
 _MIN_DISTANCE, _MAX_DISTANCE = 0.3, 12.0
 """The minimum and maximum distance of objects from the camera, in m."""
 _MIN_LENGTH, _MAX_LENGTH = 0.045, 0.5
-"""The minimum and maximum length of an object, as shares of the image width: 30 to 320 of 640 pixels."""
+"""The minimum and maximum length of an object, as fractions of the image width: 30 to 320 of 640 pixels."""
 _FAR_CLIP = 30.0
 """The far clip distance, in m."""
 _OCCLUDED_SHARE = 0.15
-"""The share of objects that may be placed behind structures."""
+"""The fraction of objects that may be placed behind structures."""
 _CAMERA_CLEARANCE = 0.12
 """The minimum distance of the camera from any object or structure, in m."""
 
@@ -166,9 +166,9 @@ def _choose_camera_pose(stage: Stage, ground: _Ground, generator: np.random.Gene
 
 
 def _choose_props(stage: Stage, options: Options, generator: np.random.Generator) -> list[Prop]:
-    """Return randomly chosen objects; none in 4 % of the images.
+    """Return randomly chosen objects.
 
-    Each class is equally likely, regardless of its number of objects.
+    Each class is equally likely, regardless of its number of objects. In 4 % of the images, there are no objects.
     """
     if generator.random() < 0.04:
         return []
@@ -202,7 +202,7 @@ def _find_free_position(
     generator: np.random.Generator,
     distances: tuple[float, float],
 ) -> tuple[float, float] | None:
-    """Occupy and return a free position, usually in view of the camera; None if there is none."""
+    """Occupy and return a free position, usually in view of the camera, or None if there is none."""
     x, y, heading = camera
     minimum, maximum = stage.area
     nearest, may_be_hidden = distances[0] + radius, generator.random() < _OCCLUDED_SHARE

@@ -1,4 +1,4 @@
-"""Assign classes to the objects in a world."""
+"""The classes of the objects in a world."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ class ClassRules:
     patterns: Mapping[str, tuple[str, ...]]
 
     def class_number(self, *names: str) -> int | None:
-        """Return the number of the first class that has a pattern for one of the names; None if there is none."""
+        """Return the number of the first class with a pattern that matches one of the names, or None."""
         for number, patterns in enumerate(self.patterns.values()):
             if any(fnmatchcase(name, pattern) for name in names for pattern in patterns):
                 return number

@@ -1,4 +1,4 @@
-"""Create a dataset in one or several processes, and write it."""
+"""The creation of a dataset in one or several processes."""
 
 from __future__ import annotations
 

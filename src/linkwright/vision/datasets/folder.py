@@ -111,7 +111,9 @@ class DatasetFolder:
         self._annotations[sample.split] += _coco(sample, width, height)
 
     def finish(self, card: Mapping[str, Any]) -> None:
-        """Write the COCO annotations of all images and the card; if the disk is full, drop the last images first.
+        """Write the COCO annotations of all images, and the card.
+
+        If the disk is full, the last images are dropped first.
 
         Args:
             card: how the images of this run were made.
@@ -287,7 +289,7 @@ def _occupied_folder_error(path: Path, *, is_dataset: bool) -> LinkwrightError:
 
 
 def cannot_write(path: Path, error: OSError) -> LinkwrightError:
-    """Return the error VISION207: a file of a dataset cannot be written."""
+    """Return the error for a file of a dataset that cannot be written (VISION207)."""
     reason = foreign(error.strerror or error)
     message = phrase("the dataset '{folder}' cannot be written: {reason}", folder=display_path(path), reason=reason)
     return LinkwrightError(Diagnostic("VISION207", message))

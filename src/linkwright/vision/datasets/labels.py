@@ -1,4 +1,4 @@
-"""Compute the labels of an image from its exact segmentation."""
+"""The labels of an image, computed from its exact segmentation."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from linkwright.vision.datasets.arranging import Shot
 from linkwright.vision.datasets.stage import Prop, Stage
 
 Box = tuple[int, int, int, int]
-"""Left, top, right and bottom in pixels; right and bottom are the first column and row outside."""
+"""Left, top, right and bottom in pixels, where right and bottom are the first column and row outside."""
 
 _MARGIN = 1.0
 """The margin around an image within which an object's full box is measured, in image widths."""
@@ -56,7 +56,8 @@ def label_image(stage: Stage, shot: Shot, geoms: Pixels, least_size: int, least_
         geoms: the geom at each pixel, -1 for none, shape (height, width).
         least_size: the minimum length in pixels of a box's shorter side; a smaller object is ignored. For an object's
                 largest geom half of it is enough.
-        least_visible: the minimum visible share of an object and of its largest geom; a less visible object is ignored.
+        least_visible: the minimum visible fraction of an object and of its largest geom; a less visible object is
+            ignored.
     """
     numbers = np.zeros(stage.simulation.model.ngeom + 1, dtype=np.uint8)  # the last entry is for geom -1: none
     for number, prop in enumerate(shot.shown, start=1):
@@ -86,7 +87,7 @@ def label_image(stage: Stage, shot: Shot, geoms: Pixels, least_size: int, least_
 
 
 def box_of(mask: Any) -> Box | None:
-    """Return the bounding box of a mask of shape (height, width); None for an empty mask."""
+    """Return the bounding box of a mask of shape (height, width), or None for an empty mask."""
     rows = np.flatnonzero(mask.any(axis=1))
     if not len(rows):
         return None
@@ -138,7 +139,7 @@ def _measure_whole(stage: Stage, shot: Shot, prop: Prop, visible: Box) -> tuple[
 
 
 def _window(stage: Stage, shot: Shot, prop: Prop, visible: Box) -> Box:
-    """Return the part of the image plane that contains an object with a margin; its size is limited."""
+    """Return the part of the image plane that contains an object with a margin, up to a maximum size."""
     optics, data, model = shot.optics, stage.simulation.data, stage.simulation.model
     signs = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
     local = model.geom_aabb[prop.geoms, None, :3] + signs * model.geom_aabb[prop.geoms, None, 3:]

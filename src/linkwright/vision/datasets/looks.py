@@ -1,4 +1,4 @@
-"""Randomise the appearance: lights, colours and patterns, backdrop, and camera effects."""
+"""The random appearance of an image: lights, colours, patterns, backdrop, and camera effects."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from linkwright.vision.datasets.stage import Stage
 from linkwright.vision.datasets.textures import Pixels, smooth
 
 _NOISE_VALUES = 1 << 21
-"""The number of noise values, which are drawn once; each image uses them from a different offset."""
+"""The number of noise values. They are drawn once, and each image uses them from a different offset."""
 
 
 def light(stage: Stage, generator: np.random.Generator) -> None:
@@ -37,7 +37,7 @@ def light(stage: Stage, generator: np.random.Generator) -> None:
 
 
 def paint(stage: Stage, shot: Shot, generator: np.random.Generator) -> None:
-    """Recolour all objects and surroundings; most objects keep their colour or get a similar one."""
+    """Recolour all objects and surroundings, where most objects keep their colour or get a similar one."""
     for prop in shot.shown:
         choice, new_colours = generator.random(), {}
         is_textured = generator.random() < 0.3
@@ -78,7 +78,7 @@ def fill_backdrop(colour: Pixels, geoms: Any, generator: np.random.Generator) ->
 
 
 class Camera:
-    """Apply the effects of a lens and a sensor: exposure, white balance, blur and noise."""
+    """The effects of a lens and a sensor: exposure, white balance, blur and noise."""
 
     def __init__(self) -> None:
         self._noise = np.random.default_rng(0).standard_normal(_NOISE_VALUES, dtype=np.float32)
@@ -110,7 +110,7 @@ def _blurred(colour: Pixels, radius: float) -> Pixels:
 
 
 def _tinted_white(generator: np.random.Generator, max_saturation: float) -> Array:
-    """Return white with a random tint: red, green and blue; the maximum of the three is 1."""
+    """Return white with a random tint, as red, green and blue with a maximum of 1."""
     return np.array(colorsys.hsv_to_rgb(generator.random(), generator.uniform(0.0, max_saturation), 1.0))
 
 

@@ -1,4 +1,4 @@
-"""Make single images with their labels."""
+"""The making of single images with their labels."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from linkwright.vision.datasets.stage import Stage
 IMAGES_PER_PATTERN_SET = 50
 """The number of consecutive images that use the same patterns."""
 _SPLIT_BLOCK = 20
-"""The number of consecutive images over which the shares of the splits hold."""
+"""The number of consecutive images over which the fractions of the splits hold."""
 _PATTERN_STREAM, _IMAGE_STREAM, _SPLIT_STREAM = range(3)
 """Streams of random numbers: those of patterns, images and splits are independent."""
 
@@ -66,7 +66,9 @@ class LabelledImage:
 
 
 class Studio:
-    """Makes the images of a dataset; an image depends only on its number and the seed.
+    """The renderer and labeller of the images of a dataset.
+
+    An image depends only on its number and the seed.
 
     Args:
         source: the worlds and options.
@@ -151,7 +153,10 @@ class Studio:
 
 
 def split_of(index: int, options: Options) -> str:
-    """Return the split of an image; the shares of the splits hold for each block of twenty consecutive images."""
+    """Return the split of an image.
+
+    The fractions of the splits hold for each block of twenty consecutive images.
+    """
     block, position = divmod(index, _SPLIT_BLOCK)
     order = np.random.default_rng((options.seed, _SPLIT_STREAM, block)).permutation(_SPLIT_BLOCK)
     share = (int(order[position]) + 0.5) / _SPLIT_BLOCK

@@ -11,19 +11,20 @@ FORMATS = ("coco", "yolo")
 
 @dataclass(frozen=True, slots=True)
 class Options:
-    """How the images of a dataset are made.
+    """The settings of the images of a dataset.
 
     Attributes:
         width, height: the size of images, in pixels.
         seed: the random seed; the same seed gives the same bytes.
-        splits: the shares of train, val and test.
+        splits: the fractions of train, val and test.
         copies: the minimum number of objects of each class.
         distractors: the number of objects without a label in each world.
         most: the maximum number of objects placed in an image.
         kept: what is not randomised: any of ``lights``, ``colours`` (with patterns) and ``lens`` (with sensor).
         least_size: the minimum length in pixels of a box's shorter side; smaller objects are ignored. For an object's
             largest geom half of it is enough.
-        least_visible: the minimum visible share of an object and of its largest geom; a less visible object is ignored.
+        least_visible: the minimum visible fraction of an object and of its largest geom; a less visible object is
+            ignored.
         form: the image format, ``jpg`` or ``png``.
     """
 

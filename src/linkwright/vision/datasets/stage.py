@@ -1,4 +1,4 @@
-"""Move, colour and light the objects of a world for each image, without recompiling MuJoCo's model."""
+"""A world whose objects move and change colour between images, without recompiling MuJoCo's model."""
 
 from __future__ import annotations
 
@@ -146,7 +146,7 @@ class Stage:
         data.geom_xmat[prop.geoms] = (rotation @ prop.turns).reshape(-1, 9)
 
     def shape_distractor(self, geom: int, generator: np.random.Generator) -> float:
-        """Give a distractor a random size, unlike a ball, cube or drum; return its bounding radius in m."""
+        """Give a distractor a random size, unlike a ball, cube or drum, and return its bounding radius in m."""
         model, geom_types = self.simulation.model, self._mujoco.mjtGeom
         short, medium, long = np.sort(generator.uniform(0.03, 0.12, 3)) * [0.5, 1.0, 1.0]
         long = max(long * generator.uniform(2.0, 6.0), 3.0 * medium)
@@ -208,7 +208,7 @@ class Stage:
         self.simulation.world = replace(self._original_world, lights=tuple(lights), models=(), scene=scene)
 
     def set_patterns(self, generator: np.random.Generator) -> None:
-        """Replace all patterns by random ones. The next image takes longer."""
+        """Replace all patterns by random ones. The rendering of the next image then takes longer."""
         model = self.simulation.model
         for kind, size in _PATTERN_SIZES.items():
             for number in range(_PATTERNS_PER_KIND):

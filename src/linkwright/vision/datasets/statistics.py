@@ -1,4 +1,4 @@
-"""Statistics of a dataset by class: numbers, sizes, positions and visible shares."""
+"""Statistics of a dataset by class: numbers, sizes, positions and visible fractions."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from math import sqrt
 from typing import Any
 
 _SIZE_LIMITS = (("small", 32), ("medium", 96), ("large", 1 << 30))
-"""COCO's sizes of objects, each with the square root of the area in pixels that its objects do not reach."""
+"""COCO's size ranges of objects, each with the square root of its upper limit of the area in pixels."""
 _MIN_VISIBLE = 0.75
-"""The visible share below which an object counts as hidden."""
+"""The visible fraction below which an object counts as hidden."""
 
 
 @dataclass

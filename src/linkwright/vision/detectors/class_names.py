@@ -1,4 +1,4 @@
-"""Read class names from a model's metadata or from a label file."""
+"""Class names from a model's metadata or from a label file."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, foreign,
 from linkwright.files.input_files import read_text
 
 _MAX_METADATA = 1_000_000
-"""The maximum length of metadata in characters; longer text is not parsed."""
+"""The maximum length of metadata in characters. Longer text is not parsed."""
 _FORMAT_HINT = phrase("write one name per line, or YAML with a list of names or a mapping from 0, 1, 2, ... to names")
 
 
 def parse_metadata_names(text: str) -> tuple[str, ...] | None:
-    """Return the class names in a model's metadata, in order; None if there are no usable ones.
+    """Return the class names in a model's metadata, in order, or None if there are no usable ones.
 
     Args:
         text: a Python literal of a dictionary or a list, as Ultralytics' exporters write it. It is never executed.

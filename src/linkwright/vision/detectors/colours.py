@@ -28,7 +28,9 @@ COLOURS: Mapping[str, tuple[int, ...]] = {
 
 
 class ColourDetector(Detector):
-    """Detects patches of a colour; the score is the filled share of the box, 0.79 for a ball.
+    """A detector of patches of a colour.
+
+    The score is the fraction of the box that the colour fills, which is 0.79 for a ball.
 
     Settings:
         ``colours``

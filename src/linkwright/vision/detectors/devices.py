@@ -1,4 +1,4 @@
-"""Parse the device of a network, and refuse network options for detectors without a network."""
+"""The device of a network, and the refusal of network options by detectors without a network."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _GPU_PATTERN = re.compile(r"(?:cuda(?::(\d+))?|(\d+))$")
 
 
 def parse_gpu(device: str) -> str | None:
-    """Return the number of the GPU that a device names; None for the CPU.
+    """Return the number of the GPU that a device names, or None for the CPU.
 
     Args:
         device: ``cpu``, ``cuda``, ``cuda:0``, ``0``, or empty for the CPU.

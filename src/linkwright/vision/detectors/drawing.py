@@ -1,4 +1,4 @@
-"""Draw detections into images."""
+"""Images with detections drawn into them."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from linkwright.vision.detectors.library import load_opencv
 
 _HUE_COUNT = 24
 _TEXT_HEIGHT_SHARE = 1 / 26
-"""The height of capitals as a share of the image height: a panel of the page shows images a few hundred pixels high."""
+"""The height of capitals as a fraction of the image height, readable in a panel that is a few hundred pixels high."""
 _MIN_TEXT_HEIGHT = 9
 """The minimum height of capitals in pixels."""
 
 
 def colour_of(name: str) -> tuple[int, int, int]:
-    """Return red, green and blue for a class: the colour in its name, or a constant colour derived from the name."""
+    """Return the colour in the name of a class, or else a colour derived from the name, as red, green and blue."""
     named_colour = find_rgb(name)
     if named_colour is not None:
         return named_colour

@@ -19,13 +19,15 @@ from linkwright.vision.detectors.options import DetectorOptions
 from linkwright.vision.detectors.selection import select_detections
 
 _FINAL_OPERATION = "TFLite_Detection_PostProcess"
-"""The operation that outputs final boxes; its four outputs are boxes, classes, scores and the number of boxes."""
+"""The operation that outputs final boxes. Its four outputs are boxes, classes, scores and the number of boxes."""
 _MAX_LABELS_SIZE = 1_000_000
 _MAX_THREADS = 4
 
 
 class EfficientDetDetector(Detector):
-    """Runs a network with LiteRT. The class names are read from a zip archive at the end of the file.
+    """A detector that runs a network with LiteRT.
+
+    The class names are read from a zip archive at the end of the file.
 
     Args:
         file: the TFLite file.
@@ -51,7 +53,7 @@ class EfficientDetDetector(Detector):
         if len(shape) != 4 or shape[0] != 1 or shape[3] != 3 or inputs[0]["dtype"] is not np.uint8:
             input_shapes = ", ".join(f"{np.dtype(entry['dtype'])} {list(map(int, entry['shape']))}" for entry in inputs)
             message = phrase(
-                "the network in '{file}' does not take an image: its inputs are {inputs}",
+                "the network in '{file}' does not accept an image: its inputs are {inputs}",
                 file=file.name,
                 inputs=input_shapes,
             )
@@ -66,7 +68,7 @@ class EfficientDetDetector(Detector):
         return self._names
 
     def detect(self, image: NDArray[np.uint8], limits: Limits) -> Detections:
-        """Detect objects in an image, which is stretched to the size of the input, as in TFLite's own library."""
+        """Detect objects in an image, stretched to the input size as in TFLite's own library."""
         if not image.size:
             return Detections.none(self._names)
         cv2 = load_opencv()

@@ -1,4 +1,4 @@
-"""Determine the output layout of YOLO networks from shapes and metadata.
+"""The output layout of YOLO networks, determined from shapes and metadata.
 
 Three layouts exist. Networks since v8, and YOLOv5 as exported by Ultralytics' newer program (``yolov5u``), have one
 column for each grid cell: centre, size and a score for each class. The classic YOLOv5 has three rows for each grid cell
@@ -28,7 +28,7 @@ _STRIDE_SETS = ((8, 16, 32), (8, 16, 32, 64), (8, 16, 32, 64, 128), (4, 8, 16, 3
 _BOXES_PER_CELL = 3
 """The number of boxes that the classic YOLOv5 has for each grid cell."""
 _IGNORED_OUTPUTS = {"": "", "detect": "", "segment": "masks", "pose": "key points"}
-"""The additional outputs of each task that finds upright boxes; they are ignored."""
+"""The additional outputs of each task that finds upright boxes. They are ignored."""
 _CORNERS_OF_CENTRES = np.array([[1, 0, -0.5, 0], [0, 1, 0, -0.5], [1, 0, 0.5, 0], [0, 1, 0, 0.5]], np.float32)
 
 
@@ -70,7 +70,9 @@ class Layout:
     left_out: str = ""
 
     def candidates(self, output: NDArray[np.float32], threshold: float) -> Candidates:
-        """Return the boxes with at least the minimum score; only in the final layout each object has one box.
+        """Return the boxes with at least the minimum score.
+
+        Only in the final layout does each object have a single box.
 
         Args:
             output: the network's first output, shape ``(1, a, b)``.
@@ -149,7 +151,7 @@ def find_layout(
 
 
 def class_count_error(file: Path, classes: int, name_count: int, labels: Path | None) -> LinkwrightError:
-    """Return the error VISION107: the numbers of names and of the network's classes differ.
+    """Return the error for different numbers of names and of the network's classes (VISION107).
 
     Args:
         file: the file of the network.

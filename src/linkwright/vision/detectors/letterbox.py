@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from linkwright.vision.detectors.library import load_opencv
 
 GREY = 114
-"""The level of the border in all three channels; networks are trained with this value."""
+"""The level of the border in all three channels, as in the training of networks."""
 
 
 @dataclass(frozen=True, slots=True)

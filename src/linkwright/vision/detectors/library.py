@@ -1,4 +1,4 @@
-"""Import OpenCV, which the extra ``vision`` installs, and LiteRT, which no extra installs."""
+"""Imports of optional libraries: OpenCV, from the extra ``vision``, and LiteRT, which no extra installs."""
 
 from __future__ import annotations
 

@@ -20,16 +20,16 @@ _NAMES = ("line",)
 
 
 class LineDetector(Detector):
-    """Detects a line as the largest patch of a colour in the lower part of the image.
+    """A detector of a line: the largest patch of a colour in the lower part of the image.
 
     The line is at the centre x of its box: ``(x - width / 2) / (width / 2)`` is its offset from the image's middle,
-    from -1 to 1, and positive if the line is to the right. The score is the share of searched rows with the line.
+    from -1 to 1, and positive if the line is to the right. The score is the fraction of searched rows with the line.
 
     Settings:
         ``colour``
             the colour of the line as six numbers, see `hsv_range`; dark by default.
         ``part``
-            the share of the image that is searched, from the bottom; 0.25 by default.
+            the fraction of the image that is searched, from the bottom; 0.25 by default.
         ``least_area``
             the minimum area of the line, in pixels; 150 by default.
 

@@ -21,9 +21,10 @@ _DEFAULT_MARKERS, _DEFAULT_TAGS = "4X4_50", "APRILTAG_36h11"
 
 
 class MarkerDetector(Detector):
-    """Detects ArUco markers and AprilTags; the class of a marker is its ID, and the score is 1.
+    """A detector of ArUco markers and AprilTags.
 
-    Corners are in OpenCV's order: clockwise from the marker's upper left corner.
+    The class of a marker is its ID, and the score is 1. Corners are in OpenCV's order: clockwise from the marker's
+    upper left corner.
 
     Settings:
         ``dictionary``
@@ -76,9 +77,10 @@ class AprilTagDetector(MarkerDetector):
 
 
 class QrDetector(Detector):
-    """Detects QR codes; the class of a code is its text, and the score is 1. Unreadable codes are omitted.
+    """A detector of QR codes.
 
-    OpenCV finds some codes that are too small for it to read. They are cut out, rectified, enlarged and read again.
+    The class of a code is its text, and the score is 1. Unreadable codes are omitted. OpenCV finds some codes that are
+    too small for it to read. They are cut out, rectified, enlarged and read again.
 
     Raises:
         LinkwrightError: VISION101 OpenCV is missing, VISION109 there are options that only networks have.
@@ -120,7 +122,7 @@ class QrDetector(Detector):
         )
 
     def _read(self, grey: NDArray[np.uint8], corners: NDArray[np.float32]) -> str:
-        """Rectify and enlarge a code, and return its text; empty if it cannot be read."""
+        """Rectify and enlarge a code, and return its text, or an empty string if it cannot be read."""
         cv2 = load_opencv()
         start, end = _QUIET_ZONE, _QUIET_ZONE + _ENLARGED_SIDE
         square = np.array([(start, start), (end, start), (end, end), (start, end)], np.float32)

@@ -1,4 +1,4 @@
-"""Read the metadata of ONNX files, as Ultralytics' exporters write it."""
+"""The metadata of ONNX files, as Ultralytics' exporters write it."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from linkwright.vision.detectors.options import MAX_SIZE
 
 _DEFAULT_STRIDE = 32
 _MAX_STRIDE = 256
-"""The maximum stride in pixels; a larger stride in a file is ignored."""
+"""The maximum stride in pixels. A larger stride in a file is ignored."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,7 +23,7 @@ class Metadata:
     Attributes:
         names: the names of its classes; None if the file has none.
         task: ``detect``, ``segment``, ``pose``, ``obb`` or ``classify``; empty if the file has none.
-        stride: the number in pixels that the sides of the input are multiples of.
+        stride: the number of pixels that must divide the height and width of the input.
         size: the height and width of its input in training, in pixels; None if the file has none.
         suppressed: whether its boxes are final, with one box for each object.
         key_numbers: the number of keypoint values for each box.

@@ -27,7 +27,7 @@ _DEFAULT_SIZE = (640, 640)
 
 
 class NetworkDetector(Detector):
-    """Runs a network with onnxruntime.
+    """A detector that runs a network with onnxruntime.
 
     Args:
         file: the ONNX file.
@@ -148,7 +148,10 @@ class NetworkDetector(Detector):
 
 
 def _image_input(file: Path, inputs: Sequence[Any]) -> tuple[str, type[np.floating], tuple[int, int] | None]:
-    """Return the name and element type of the input, and its height and width; None for the size if it is not fixed."""
+    """Return the name, element type and size of the input.
+
+    The size is height and width, or None if it is not fixed.
+    """
     shape = list(inputs[0].shape) if len(inputs) == 1 else []
     element_type = _ELEMENT_TYPES.get(inputs[0].type) if len(inputs) == 1 else None
     if len(shape) == 4 and isinstance(shape[0], int) and shape[0] > 1:
@@ -161,7 +164,7 @@ def _image_input(file: Path, inputs: Sequence[Any]) -> tuple[str, type[np.floati
             ", ".join(f"{network_input.type[7:-1]} {list(network_input.shape)}" for network_input in inputs) or "none"
         )
         message = phrase(
-            "the network in '{file}' does not take an image: its inputs are {inputs}",
+            "the network in '{file}' does not accept an image: its inputs are {inputs}",
             file=file.name,
             inputs=input_types,
         )

@@ -12,7 +12,9 @@ MAX_SIZE = 8192
 
 @dataclass(frozen=True, slots=True)
 class DetectorOptions:
-    """The options of a detector; each detector uses only those that apply to it.
+    """The options of a detector.
+
+    Each detector uses only those that apply to it.
 
     Attributes:
         labels: a file with the names of the classes; None for the names in the network's file.

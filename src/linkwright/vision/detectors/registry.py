@@ -1,4 +1,4 @@
-"""Find detectors: networks by path or by the name of a fetched model, and other detectors by entry point.
+"""The available detectors: networks by path or model name, and other detectors by entry point.
 
 Entry points are in the group ``linkwright.detectors``. Each names a callable that takes `DetectorOptions`, returns a
 `Detector`, and raises LinkwrightError if its library is missing.

@@ -1,4 +1,4 @@
-"""Select the detections that satisfy limits."""
+"""The selection of detections that satisfy limits."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Create onnxruntime sessions on a device."""
+"""Sessions of onnxruntime on a device."""
 
 from __future__ import annotations
 

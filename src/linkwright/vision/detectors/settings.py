@@ -1,4 +1,4 @@
-"""Parse the settings of detectors from parameters or a command line."""
+"""The settings of detectors, from parameters or a command line."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, did_you_
 
 
 def setting_error(name: str, value: object, hint: Phrase | None = None) -> LinkwrightError:
-    """Return the error VISION109: a setting of a detector has an invalid value."""
+    """Return the error for an invalid value of a detector's setting (VISION109)."""
     message = phrase("the setting '{name}' of the detector cannot be '{value}'", name=name, value=value)
     return LinkwrightError(Diagnostic("VISION109", message, hint=hint))
 
@@ -39,7 +39,9 @@ def choice(settings: Mapping[str, object], name: str, default: str, choices: Seq
 
 
 def hsv_range(name: str, value: object) -> tuple[int, ...]:
-    """Parse a range of colours: minimum hue, saturation and value, then the maximum of each, in OpenCV's units.
+    """Parse a range of colours in OpenCV's units.
+
+    The six numbers are the minimum hue, saturation and value, and then the maximum of each.
 
     Raises:
         LinkwrightError: VISION109, the value is not a list of six such numbers.

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 MAX_CANDIDATES = 30_000
-"""The maximum number of boxes to compare, as Ultralytics' ``max_nms``; the least certain ones are dropped."""
+"""The maximum number of boxes to compare (Ultralytics' ``max_nms``). The least certain boxes are dropped."""
 
 
 def non_maximum_suppression(

@@ -12,7 +12,7 @@ FILE = Path(__file__).with_name("things.onnx")
 
 
 def make_things(options: DetectorOptions) -> Detector:
-    """Return the detector `things`.
+    """Return the detector ``things``.
 
     Raises:
         LinkwrightError: VISION101 onnxruntime or OpenCV is missing.

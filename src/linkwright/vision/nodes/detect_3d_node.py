@@ -41,13 +41,16 @@ _FORWARD_IN_OPTICAL = (0.5, -0.5, 0.5, 0.5)
 
 
 class Detect3DNode(SingleNode):
-    """Computes positions of detections from depth images, and optionally from the ground.
+    """The node that computes positions of detections from depth images, and optionally from the ground.
 
-    Parameters: ``target_frame`` (frame of the result), ``depth_image_units_divisor`` (units per metre in images of
-        16UC1), ``maximum_detection_threshold`` (the largest difference in depth from the middle of the object's
-        surface, metres),
-    ``depth_image_reliability`` and ``depth_info_reliability`` (1 reliable, 2 best effort), ``ground_frame`` (its x and
-    y span the ground; empty to place no objects on the ground), ``maximum_distance`` (metres).
+    Parameters:
+
+    - ``target_frame``: the frame of the result.
+    - ``depth_image_units_divisor``: the units per metre in images of 16UC1.
+    - ``maximum_detection_threshold``: the maximum difference in depth from the middle of the object's surface, in m.
+    - ``depth_image_reliability``, ``depth_info_reliability``: 1 for reliable, 2 for best effort.
+    - ``ground_frame``: the frame whose x and y axes span the ground; if empty, no objects are placed on the ground.
+    - ``maximum_distance``: the maximum distance of an object, in m.
 
     Raises:
         LinkwrightError: a parameter has an invalid value (NODE433, GRAPH201).
@@ -118,7 +121,7 @@ class Detect3DNode(SingleNode):
             self._markers.publish(_make_markers(self.FORM, result, positions))
 
     def _find_positions(self, message: Any) -> list[Place | None]:
-        """Return the position of each detection in the optical frame of its image; None for an unknown position."""
+        """Return the position of each detection in the optical frame of its image, or None if it is unknown."""
         camera = self._cameras.get("colour") or self._cameras.get("depth")
         if camera is None:
             self._warn("no camera_info has arrived")
@@ -137,7 +140,7 @@ class Detect3DNode(SingleNode):
         return positions
 
     def _matching_depths(self, message: Any) -> NDArray[np.float64] | None:
-        """Return the depth image of the detections, in metres; None if there is none."""
+        """Return the depth image of the detections in metres, or None if there is none."""
         time_ns = message.header.stamp.nanoseconds
         image = min(self._depth_images, key=lambda depth: abs(depth.header.stamp.nanoseconds - time_ns), default=None)
         if image is None or abs(image.header.stamp.nanoseconds - time_ns) > _MAX_STAMP_DIFFERENCE_NS:
@@ -158,7 +161,7 @@ class Detect3DNode(SingleNode):
         return depths if image.encoding == "32FC1" else depths * self._metres_per_unit
 
     def _ground_plane(self, message: Any) -> tuple[NDArray[np.float64], float] | None:
-        """Return the upward direction in the optical frame, and the height of the camera in m; None if unknown."""
+        """Return the upward direction in the optical frame and the height of the camera in m, or None if unknown."""
         if not self._ground_frame:
             return None
         header = message.header
@@ -169,7 +172,10 @@ class Detect3DNode(SingleNode):
         return np.array(rotate((-x, -y, -z, w), (0.0, 0.0, 1.0))), pose[2]
 
     def _position_detection(self, detection: Any, place: Place, pose: Transform, header: Any) -> Any:
-        """Return a detection with a box in the target frame; the box's x points along the view, and z up."""
+        """Return a detection with a box in the target frame.
+
+        The x axis of the box points along the view, and its z axis up.
+        """
         box_pose = compose(pose, (*place.centre, *_FORWARD_IN_OPTICAL))
         return self.FORM.placed(detection, header, box_pose, (place.depth, place.width, place.height))
 

@@ -1,4 +1,4 @@
-"""Convert detections and images to messages."""
+"""The conversion of detections and images to messages."""
 
 from __future__ import annotations
 

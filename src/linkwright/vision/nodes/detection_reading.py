@@ -1,4 +1,4 @@
-"""Read detections from messages of vision_msgs and yolo_msgs, and add tracker IDs and positions to them."""
+"""The formats of detection messages: reading, and adding tracker IDs and positions."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class DetectionFormat(ABC):
 
     @abstractmethod
     def best(self, detection: Any) -> tuple[str, float]:
-        """Return the class and score of a detection's best hypothesis; the class is empty if there is none."""
+        """Return the class and score of a detection's best hypothesis. The class is empty if there is none."""
 
     @abstractmethod
     def box(self, detection: Any) -> NDArray[np.float64]:
@@ -52,7 +52,7 @@ class DetectionFormat(ABC):
 
     @abstractmethod
     def placed(self, detection: Any, header: Any, pose: Transform, size: tuple[float, float, float]) -> Any:
-        """Return a detection with a box in metres; its pose is in the frame of the header."""
+        """Return a detection with a box in metres, whose pose is in the frame of the header."""
 
     @abstractmethod
     def place(self, detection: Any) -> Any:

@@ -78,7 +78,7 @@ _DETECTOR_SETTINGS = ("dictionary", "least_area", "part", "colour")
 _COLOURS_PARAMETER = "colours"
 _CLASSES_PARAMETER = "classes"
 _MIN_PERIOD_SHARE = 0.9
-"""The share of a period after which the next image is accepted, so that a slightly early image is not skipped."""
+"""The fraction of a period after which the next image is accepted, so that a slightly early image is not skipped."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -297,13 +297,13 @@ class DetectorNode(SingleNode):
     # --- in the worker's thread ----------------------------------------------------------------------------------
 
     def _load(self, model: str, options: DetectorOptions) -> Callable[[_Task], None] | None:
-        """Load the detector, and return a function that processes an image; None if loading failed."""
+        """Load the detector, and return a function that processes an image, or None if loading failed."""
         try:
             detector = make_detector(model, options)
         except LinkwrightError as error:
             self._queue_result(partial(self._fail, error))
             return None
-        except Exception as error:  # noqa: BLE001 - of a detector that others may bring
+        except Exception as error:  # noqa: BLE001 - a detector of another package may raise anything
             self._queue_result(partial(self._fail, _detector_failure(error)))
             return None
         self._queue_result(partial(self._begin, detector))
@@ -318,7 +318,7 @@ class DetectorNode(SingleNode):
             image_with_boxes = drawn(image, detections) if task.draws_boxes else None
         except (BadImageError, LinkwrightError) as error:
             self._queue_result(partial(self._log_error, str(error)))
-        except Exception as error:  # noqa: BLE001 - of a detector that others may bring
+        except Exception as error:  # noqa: BLE001 - a detector of another package may raise anything
             self._queue_result(partial(self._log_error, str(_detector_failure(error))))
         else:
             self._queue_result(partial(self._publish, task.message.header, detections, image_with_boxes))

@@ -13,7 +13,9 @@ VISION, YOLO = "vision_msgs/msg/Detection2DArray", "yolo_msgs/msg/DetectionArray
 
 @dataclass(frozen=True, slots=True)
 class Dialect:
-    """The parameters and topics of a detector node; the name of a parameter that it lacks is empty.
+    """The parameters and topics of a detector node.
+
+    The name of a parameter that the node lacks is empty.
 
     Attributes:
         model: the parameter with the ONNX file or the name of the detector.

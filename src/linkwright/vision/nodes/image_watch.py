@@ -1,4 +1,4 @@
-"""Report why images are missing: wrong topic, wrong type, incompatible QoS, or a camera that stopped."""
+"""Warnings about missing images: wrong topic, wrong type, incompatible QoS, or a camera that stopped."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _MAX_TOPICS = 5
 
 
 class ImageWatch:
-    """Warns once if no image has arrived for some seconds, and reports when images arrive again.
+    """A monitor that warns once if no image has arrived for some seconds, and reports when images arrive again.
 
     The timeout doubles each time images arrive again, so that a slow camera causes only a few warnings.
 
@@ -89,7 +89,7 @@ class ImageWatch:
         return phrase("no image has arrived on '{topic}' for {seconds} s", topic=topic, seconds=seconds), None
 
     def _suggest_topics(self) -> Phrase | None:
-        """Return a hint with other topics that have images; None if there are none."""
+        """Return a hint with other topics that have images, or None if there are none."""
         excluded_topics = {self._source.topic, *(publisher.name for publisher in self._node.publishers)}
         topics = [
             name

@@ -12,11 +12,11 @@ _CLOSE_TIMEOUT = 10.0
 
 
 class LatestWorker(Generic[T]):
-    """Calls a function in a thread, always with the latest item that was offered.
+    """A thread that calls a function, always with the latest item that was offered.
 
     Args:
-        prepare: called in the thread, may take seconds; returns the function, or None to stop the thread.
-            Neither `prepare` nor the function may raise.
+        prepare: called in the thread before the first item. It returns the function, or None to stop the thread, and
+            may take seconds. Neither `prepare` nor the function may raise.
         name: the name of the thread.
     """
 
@@ -29,7 +29,7 @@ class LatestWorker(Generic[T]):
         self._thread.start()
 
     def offer(self, item: T) -> None:
-        """Offer an item; it replaces an item that is still waiting."""
+        """Offer an item, replacing an item that is still waiting."""
         with self._changed:
             if not self._is_closed:
                 self._waiting[:] = [item]

@@ -1,4 +1,4 @@
-"""Drive to an object with nav2's action ``navigate_to_pose``."""
+"""The drive to an object with nav2's action ``navigate_to_pose``."""
 
 from __future__ import annotations
 

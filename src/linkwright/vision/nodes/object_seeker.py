@@ -1,6 +1,6 @@
 """object_seeker: finds an object by its name, drives to it or follows it, and describes visible objects.
 
-``vision/go_to`` and ``vision/follow`` take a name, optionally with a colour (``red ball``, 红色的球).
+``vision/go_to`` and ``vision/follow`` receive a name, optionally with a colour (``red ball``, 红色的球).
 ``vision/stop`` ends the search. The outcome is published on ``/voice/response``.
 ``vision/describe`` lists the visible objects.
 ``vision/go_to``, ``vision/follow`` and ``vision/describe`` have variants ``en`` and ``zh`` (``vision/go_to/zh``) for
@@ -57,7 +57,7 @@ class ObjectSeeker(SingleNode):
         with starting(node):
             self._declare()
             log_unknown(node)
-        self._poses = FramePoses(node, "it is not known where the robot is:")
+        self._poses = FramePoses(node, "the position of the robot is unknown:")
         self._seen_objects = SeenObjects(node, self._poses, self._fixed)
         self._request: ObjectRequest | None = None
         self._answer_language = self._language
@@ -116,7 +116,7 @@ class ObjectSeeker(SingleNode):
         """Seek the object that a message names. If `language` is None, answer in the language of the message."""
         request = requested(message.data)
         if request is None:
-            self._node.get_logger().warning(f"'{message.data}' names nothing to go to; say 'ball' or 'red ball'")
+            self._node.get_logger().warning(f"'{message.data}' does not name an object; say 'ball' or 'red ball'")
             return
         self._answer_language = language or (self._language if request.language == ENGLISH else request.language)
         if self._seeker.phase is Phase.IDLE:
@@ -171,7 +171,7 @@ class ObjectSeeker(SingleNode):
         self._velocity.publish((command.linear, 0.0, 0.0), (0.0, 0.0, command.angular))
 
     def _begin_trip(self) -> bool:
-        """Send nav2 to the found object; return False if nav2 is not configured or not available."""
+        """Send nav2 to the found object, or return False if nav2 is not configured or not available."""
         trip, target = self._trip, self._target
         pose = self._poses.pose(self._fixed, self._base, 0)
         if trip is None or target is None or pose is None or self._seeker.follow or not trip.is_served:
@@ -212,8 +212,11 @@ class ObjectSeeker(SingleNode):
         )
 
     def _choose_object(self, pose: Transform) -> SeenObject | None:
-        """Return the object to drive to: the previous target if it is visible, or else the nearest matching object."""
-        assert self._request is not None, "it is asked for while it seeks"
+        """Return the object to drive to, or None.
+
+        It is the previous target or, if this is not visible, the nearest matching object.
+        """
+        assert self._request is not None, "there is a request while the robot seeks"
         candidates = [
             seen_object
             for seen_object in self._seen_objects.objects
@@ -232,7 +235,7 @@ class ObjectSeeker(SingleNode):
         return min(candidates, key=lambda candidate: hypot(*_in_robot_frame(pose, candidate)), default=None)
 
     def _free_distance(self, now_ns: int) -> float:
-        """Return the distance in m from the robot's centre to the nearest point ahead; 0 if scans have stopped."""
+        """Return the distance in m from the robot's centre to the nearest point ahead, or 0 if scans have stopped."""
         scan = self._scan
         if scan is None:
             return inf

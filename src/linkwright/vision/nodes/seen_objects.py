@@ -47,7 +47,7 @@ class SeenObject:
 
 
 class SeenObjects:
-    """Collects detections with positions, and determines the colours of objects from images.
+    """The collection of detections with positions, and with the colours of objects from images.
 
     The colour is measured in the box with the same ID in ``image_raw``; boxes with IDs arrive on ``tracking``.
 

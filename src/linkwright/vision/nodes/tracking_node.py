@@ -23,11 +23,14 @@ _IMAGES_PER_SECOND = 30.0
 
 
 class TrackingNode(SingleNode):
-    """Assigns persistent IDs to detections.
+    """The node that assigns persistent IDs to detections.
 
-    Parameters: ``track_high_thresh``, ``track_low_thresh`` and ``new_track_thresh`` (scores), ``match_thresh`` (the
-        maximum of 1 - IoU), ``track_buffer`` (how long an undetected object is kept, in images of 1/30 s), ``min_hits``
-        (consecutive images before an object gets an ID).
+    Parameters:
+
+    - ``track_high_thresh``, ``track_low_thresh``, ``new_track_thresh``: scores.
+    - ``match_thresh``: the maximum of 1 - IoU for two boxes of the same object.
+    - ``track_buffer``: how long an undetected object is kept, in images of 1/30 s.
+    - ``min_hits``: the number of consecutive images that must show an object before it gets an ID.
 
     Raises:
         LinkwrightError: a parameter has an invalid value (NODE433, GRAPH201).

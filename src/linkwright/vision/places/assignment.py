@@ -8,9 +8,10 @@ from linkwright.vision.places.camera import Floats
 
 
 def assign(costs: Floats, max_cost: float) -> list[tuple[int, int]]:
-    """Return the pairs of rows and columns with minimum total cost; no pair costs more than `max_cost`.
+    """Return the pairs of rows and columns with minimum total cost.
 
-    An unpaired row costs `max_cost`, so that a good pair is never replaced by two bad ones.
+    No pair costs more than `max_cost`. An unpaired row costs `max_cost`, so that a good pair is never replaced by two
+    bad ones.
 
     Args:
         costs: shape ``(rows, columns)``; infinite for forbidden pairs.
@@ -33,7 +34,10 @@ def assign(costs: Floats, max_cost: float) -> list[tuple[int, int]]:
 
 
 def _assign_columns(costs: Floats) -> list[int]:
-    """Return the row assigned to each column, or -1, at minimum total cost; rows must not exceed columns."""
+    """Return the row assigned to each column, or -1, at minimum total cost.
+
+    There must not be more rows than columns.
+    """
     rows, columns = costs.shape
     row_prices, column_prices = np.zeros(rows), np.zeros(columns)
     row_of_column = [-1] * columns

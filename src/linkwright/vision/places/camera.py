@@ -57,7 +57,7 @@ class CameraModel:
         return np.stack([x, y, np.ones_like(x)], axis=-1)
 
     def pixels(self, points: Floats) -> Floats:
-        """Project points in the optical frame, shape ``(n, 3)``, to pixels, shape ``(n, 2)``; z must not be 0."""
+        """Project points in the optical frame, shape ``(n, 3)``, z not 0, to pixels, shape ``(n, 2)``."""
         x, y = points[:, 0] / points[:, 2], points[:, 1] / points[:, 2]
         if any(self.distortion):
             radial, shift_x, shift_y = self._distortion_at(x, y)
@@ -107,7 +107,7 @@ def make_camera_model(
     if len(k) and k[0] > 0 and k[4] > 0:
         if any(d) and distortion_model not in _DISTORTION_MODELS:
             raise ValueError(
-                f"the distortion model '{distortion_model}' is not known; it is one of plumb_bob, rational_polynomial"
+                f"the distortion model '{distortion_model}' is not supported; use plumb_bob or rational_polynomial"
             )
         coefficients = tuple(float(coefficient) for coefficient in d[:_MAX_COEFFICIENTS])
         return CameraModel(

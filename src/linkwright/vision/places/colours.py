@@ -1,4 +1,4 @@
-"""Determine the colour of an object in an image, as a word."""
+"""The colour of an object in an image, as a word."""
 
 from __future__ import annotations
 
@@ -20,16 +20,16 @@ _HUE_LIMITS = (
     (262, "blue"),
     (292, "purple"),
 )
-"""The upper limits of hues in degrees; above the last one come pink, and red again."""
+"""The upper limits of hues in degrees. Above the last limit are pink and red."""
 _PINK_HUES = (292, 340)
 _GREY_SATURATION, _GREY_CHROMA = 0.22, 0.10
 _BLACK_VALUE, _WHITE_VALUE = 0.16, 0.72
 _BROWN_VALUE = 0.55
 _MIN_COLOUR_SHARE = 0.35
-"""The minimum share of pixels in the middle of a box with a colour that the object then has."""
+"""The minimum fraction of pixels in the middle of a box that must have the colour of the object."""
 _SAMPLED_SHARE = 0.7
 _MAX_SAMPLES = 24
-"""The maximum number of pixels used along a side; larger boxes are subsampled."""
+"""The maximum number of pixels used along a side. Larger boxes are subsampled."""
 
 
 def colour_of(image: NDArray[np.uint8], box: NDArray[np.floating]) -> str | None:
@@ -68,7 +68,7 @@ def colour_of(image: NDArray[np.uint8], box: NDArray[np.floating]) -> str | None
 
 
 def classify_colours(pixels: NDArray[np.uint8]) -> NDArray[np.intp]:
-    """Return the index in `COLOURS` of the colour of each RGB pixel; shape ``(n, 3)`` in, ``(n,)`` out."""
+    """Return the index in `COLOURS`, shape ``(n,)``, of the colour of each RGB pixel, shape ``(n, 3)``."""
     values = np.ascontiguousarray(pixels.T) / 255.0  # one contiguous row per channel halves the time of the comparisons
     maxima, minima = values.max(axis=0), values.min(axis=0)
     chroma = maxima - minima
@@ -97,7 +97,7 @@ def _classify_hues(values: Floats, maxima: Floats, chroma: Floats, saturation: F
 
 
 def _hue_degrees(values: Floats, maxima: Floats, chroma: Floats) -> Floats:
-    """Return the hues in degrees; 0 for red and for grey."""
+    """Return the hues in degrees, where red and grey have 0."""
     red, green, blue = values
     divisor = np.maximum(chroma, 1e-9)
     sixths = np.where(

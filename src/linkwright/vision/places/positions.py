@@ -11,16 +11,16 @@ from numpy.typing import NDArray
 from linkwright.vision.places.camera import CameraModel, Floats
 
 _INNER_SHARE = 0.6
-"""The central share of a box's width and height that shows mostly the object, not the background."""
+"""The central fraction of a box's width and height that shows mostly the object, not the background."""
 _MIN_SURFACE_SHARE = 0.25
-"""The minimum share of the depths in the middle of a box that belong to the object's surface."""
+"""The minimum fraction of the depths in the middle of a box that belong to the object's surface."""
 _MIN_DEPTHS = 4
 _GAP_METRES, _GAP_SHARE = 0.1, 0.05
-"""Neighbouring depths belong to different surfaces if they differ by more than this distance and this share."""
+"""Neighbouring depths belong to different surfaces if they differ by more than this distance and this fraction."""
 _MAX_FLAT_SHARE = 0.1
-"""The maximum depth of a flat surface, as a share of its width."""
+"""The maximum depth of a flat surface, as a fraction of its width."""
 _ROUND_ASPECT_RATIOS = (0.8, 1.25)
-"""The range of width / height of boxes of round objects, such as balls, which touch the ground below their centre."""
+"""The range of width / height of the boxes of round objects. Such objects touch the ground below their centre."""
 _EDGE_PIXELS = 1.5
 _MIN_DESCENT = 0.01
 """The minimum descent of a ray, in metres per metre, at which its point on the ground is used."""

@@ -51,7 +51,7 @@ class SeekSettings:
 
 @dataclass(frozen=True, slots=True)
 class View:
-    """The knowledge of the robot at a step of seeking.
+    """The observations of the robot at a step of seeking.
 
     Attributes:
         time: the time of the step, seconds.
@@ -83,7 +83,7 @@ class Command:
 
 
 class Seeker:
-    """Seeks an object. It stops if the object is lost, if detections stop arriving, or if the path is blocked.
+    """The search for an object, which stops if the object is lost, the path is blocked, or detections stop arriving.
 
     Args:
         settings: the settings; None for the defaults.
@@ -114,7 +114,10 @@ class Seeker:
         self.phase, self.follow = Phase.LOOKING, follow
 
     def step(self, view: View) -> Command:
-        """Return the next velocity and event; call it several times per second unless the seeker is idle."""
+        """Return the next velocity and event.
+
+        Unless the seeker is idle, the method must be called several times per second.
+        """
         if self.phase is Phase.IDLE:
             return Command()
         if view.silence > self.settings.lost_time:

@@ -1,4 +1,4 @@
-"""Track objects from image to image, after ByteTrack.
+"""The tracking of objects from image to image, after ByteTrack.
 
 Source: SORT (Bewley et al., 2016): boxes move with constant velocity and are assigned by their overlap; ByteTrack
 (Zhang et al., 2022): detections with a low score keep tracks alive, but do not start them.
@@ -17,7 +17,7 @@ from linkwright.vision.places.assignment import assign
 from linkwright.vision.places.camera import Floats
 
 _MEASUREMENT_NOISE = 0.05
-"""The standard deviation of a measured box's centre and size, as a share of its size."""
+"""The standard deviation of a measured box's centre and size, as a fraction of its size."""
 _SPEED_NOISE = 2.0
 """The standard deviation of a new track's velocity, in box sizes per second."""
 _ACCELERATION_NOISE = 3.0
@@ -98,7 +98,7 @@ class _Frame:
 
 
 class Tracker:
-    """Assigns IDs to objects; an ID is never used again.
+    """A tracker that assigns IDs to objects. An ID is never reused.
 
     Args:
         settings: the settings; None for the defaults.

@@ -1,4 +1,4 @@
-"""Parse requests for objects, and describe visible objects, in English and Chinese."""
+"""Requests for objects, and descriptions of visible objects, in English and Chinese."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ _SYNONYMS = (
     ("cat", "猫"),
     ("car", "汽车", "车"),
 )  # fmt: skip
-"""Names of the same object, the English ones first; answers use the first English or Chinese name."""
+"""Names of the same object, English names first. Answers use the first English or Chinese name."""
 _COMMON_NAMES = {name: group[0] for group in _SYNONYMS for name in group}
 _CHINESE_NAMES = {group[0]: next(name for name in group if not name.isascii()) for group in _SYNONYMS}
 _PLURALS = {"people": "person", "children": "child", "boxes": "box", "persons": "person"}
@@ -55,9 +55,9 @@ _NUMBERS = {
 }
 _ROUND_NOUN, _ROUND_ASPECT_RATIOS = "ball", (0.75, 1.33)
 _ROUND_FILL_SHARES = (0.7, 0.86)
-"""The range of the share of its box that a round patch fills, about pi / 4; a square patch fills all of it."""
+"""The range of the fraction of its box that a round patch fills, about pi / 4. A square patch fills the whole box."""
 _MAX_AHEAD_DEGREES, _MAX_BESIDE_DEGREES = 20.0, 110.0
-"""The maximum angle in degrees at which an object is ahead, and to the left or right; beyond, it is behind."""
+"""The maximum bearings, in degrees, of objects ahead and of objects to the left or right. Other objects are behind."""
 
 
 class Answer(Enum):
@@ -116,7 +116,7 @@ class ObjectRequest:
             name: the class of the object.
             colour: the colour of the object; None if it is unknown.
             shape: the width divided by the height.
-            score: the score of the detection; for a patch of a colour, the share of its box that it fills.
+            score: the score of the detection; for a patch of a colour, the fraction of its box that it fills.
         """
         words = words_of(name)
         class_colour = find_colour_word(name)
@@ -135,7 +135,7 @@ class ObjectRequest:
 
 @dataclass(frozen=True, slots=True)
 class Sighting:
-    """A visible object: class, colour or None, and distances ahead and to the left of the robot in metres."""
+    """A visible object: its class, its colour or None, and how far ahead and to the left it is, in metres."""
 
     name: str
     colour: str | None
@@ -144,7 +144,7 @@ class Sighting:
 
 
 def object_name(name: str) -> str:
-    """Return the common name of an object: lower case, singular; ``ball`` for ``football`` and ``球``."""
+    """Return the common name of an object in lower case and singular, such as ``ball`` for ``football`` and ``球``."""
     normalized = name.strip().lower()
     if normalized in _COMMON_NAMES:
         return _COMMON_NAMES[normalized]
@@ -155,7 +155,7 @@ def object_name(name: str) -> str:
 
 
 def requested(text: str) -> ObjectRequest | None:
-    """Parse a request: ``ball``, ``go to the red ball``, ``去红色的球那里``; None if it names no object."""
+    """Parse a request such as ``go to the red ball`` or ``去红色的球那里``; return None if it names no object."""
     normalized = text.strip().strip(".,!?。，！？").lower()
     if normalized.isascii():
         normalized = (
@@ -182,7 +182,7 @@ def described(sightings: Iterable[Sighting], language: str) -> str:
     for sighting in sorted(sightings, key=lambda sighting: hypot(sighting.ahead, sighting.left)):
         groups.setdefault(named(sighting.name, sighting.colour, language), []).append(sighting)
     if not groups:
-        return localized(phrase("I see nothing that I know."), language)
+        return localized(phrase("I see no objects."), language)
     if language == CHINESE:
         return f"我看到{_join([_describe_in_chinese(group) for group in groups.values()], '，', '和')}。"
     return f"I see {_join([_describe_in_english(group) for group in groups.values()], ', ', ' and ')}."

@@ -1,4 +1,4 @@
-"""Train networks on labelled images, evaluate them, and export them with a card.
+"""The training, evaluation and export of networks on labelled images, with a card.
 
 Only the training itself needs PyTorch.
 """

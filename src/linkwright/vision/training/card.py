@@ -48,7 +48,7 @@ def make_card(name: str, facts: Mapping[str, str], examinations: Sequence[Examin
 
 
 def dataset_facts(folder: Path) -> dict[str, str]:
-    """Return the card's entries on how a dataset was made; empty if another program made it."""
+    """Return the card's entries on how a dataset was made, or an empty dict if another program made it."""
     record = _read_record(folder)
     if record is None:
         return {}
@@ -80,7 +80,7 @@ def origin(folder: Path, training_folder: Path) -> str:
 
 @dataclass(frozen=True, slots=True)
 class _DatasetRecord:
-    """How a dataset was made: worlds as pairs of name and SHA-256, options in words, and added files."""
+    """The record of how a dataset was made: worlds as pairs of name and SHA-256, options in words, and added files."""
 
     worlds: frozenset[tuple[str, str]]
     options: str
@@ -88,7 +88,7 @@ class _DatasetRecord:
 
 
 def _read_record(folder: Path) -> _DatasetRecord | None:
-    """Return how `linkwright dataset` made a dataset; None if it has no record of it."""
+    """Return the record of how `linkwright dataset` made a dataset, or None if there is none."""
     try:
         runs = json.loads((folder / "dataset.json").read_text(encoding="utf-8"))["made"]
         worlds = {(Path(entry["file"]).stem, str(entry["sha256"])) for run in runs for entry in run["worlds"]}
@@ -109,7 +109,7 @@ def table(evaluation: Evaluation) -> list[str]:
 
 
 def confusion(evaluation: Evaluation) -> list[str]:
-    """Return the confusion matrix as lines of a Markdown table, with a row per label and a column per detection."""
+    """Return the confusion matrix as a Markdown table, with a row per label and a column per detected class."""
     names = [class_results.name for class_results in evaluation.classes]
     lines = [f"| label \\ detection | {' | '.join(names)} | nothing |", "| --- |" + " ---: |" * (len(names) + 1)]
     for name, row in zip([*names, "nothing"], evaluation.confusion.tolist(), strict=True):
@@ -142,7 +142,7 @@ def _format_number(value: float | None) -> str:
 
 
 def _failures(examination: Examination) -> list[str]:
-    """Return Markdown list items about sizes and classes that are often missed, and about confused classes."""
+    """Return Markdown list items about sizes and classes that are often missed or confused."""
     lines = []
     for name, objects, recall in examination.figures.recall_by_size:
         if objects and recall < _MIN_RECALL:

@@ -1,4 +1,4 @@
-"""Prepare images as training samples of one size, with random augmentation."""
+"""Training samples of one size, with random augmentation."""
 
 from __future__ import annotations
 
@@ -79,8 +79,8 @@ def read_lesson(labelled: Sequence[LabelledFile], width: int, height: int) -> Le
 def repeat_factors(lesson: Lesson, classes: int) -> NDArray[np.float64]:
     """Return how often an epoch uses each image: once, or more often if it shows a rare class.
 
-    A class is rare if the share f of images that show it is below the median m of these shares. Its images are used
-    sqrt(m / f) times, as with the repeat factors of LVIS (Gupta and others 2019).
+    A class is rare if the fraction f of images that show it is below the median m of these fractions. Its images are
+    used sqrt(m / f) times, as with the repeat factors of LVIS (Gupta and others 2019).
 
     Returns:
         Shape ``(n,)``, 1 or more.
@@ -96,7 +96,7 @@ def repeat_factors(lesson: Lesson, classes: int) -> NDArray[np.float64]:
 
 
 def repeated_indices(factors: NDArray[np.float64], generator: np.random.Generator) -> NDArray[np.int64]:
-    """Return image indices, each repeated as often as its factor says; fractions are rounded randomly."""
+    """Return image indices, each repeated by its factor, where fractions are rounded randomly."""
     counts: NDArray[np.int64] = np.floor(factors + generator.random(len(factors))).astype(np.int64)
     return np.repeat(np.arange(len(factors)), counts)
 
@@ -170,7 +170,7 @@ def _vary_light(image: NDArray[np.uint8], generator: np.random.Generator) -> NDA
 def _transform_objects(
     objects: NDArray[np.float32], transform: NDArray[np.float32], width: int, height: int
 ) -> NDArray[np.float32]:
-    """Return the objects in the transformed image; those that are mostly outside are marked as ignored."""
+    """Return the objects in the transformed image, with objects that are mostly outside marked as ignored."""
     x = objects[:, 1::2] * transform[0, 0] + transform[0, 2]
     y = objects[:, 2::2] * transform[1, 1] + transform[1, 2]
     full_boxes = np.stack((x.min(1), y.min(1), x.max(1), y.max(1)), 1) if len(objects) else np.zeros((0, 4), np.float32)

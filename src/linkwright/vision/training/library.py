@@ -1,4 +1,4 @@
-"""Check for PyTorch, which the extra ``train`` installs."""
+"""The check for PyTorch, which the extra ``train`` installs."""
 
 from __future__ import annotations
 

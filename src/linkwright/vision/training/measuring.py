@@ -1,4 +1,4 @@
-"""Run a detector on labelled images and evaluate it."""
+"""The evaluation of a detector on labelled images."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from linkwright.vision.training.images import read_image
 from linkwright.vision.training.reading import LabelledFile
 
 EVALUATION_LIMITS = Limits(threshold=0.01, iou=0.6, most=MOST)
-"""The limits of evaluated detections. Uncertain ones count too, because average precision rates their order."""
+"""The limits of evaluated detections. They include uncertain ones, because average precision rates their order."""
 
 
 def evaluate_detector(model: str | Path, names: Sequence[str], images: Sequence[LabelledFile]) -> Evaluation:

@@ -1,4 +1,4 @@
-"""The options of a training."""
+"""The options of a training run."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class View:
 
 @dataclass(frozen=True, slots=True)
 class Options:
-    """The options of a training.
+    """The options of a training run.
 
     Attributes:
         dataset: the folder of the training dataset.

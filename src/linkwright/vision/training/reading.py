@@ -1,4 +1,4 @@
-"""Read datasets in the YOLO folder layout, which `linkwright dataset` writes.
+"""Datasets in the YOLO folder layout, which `linkwright dataset` writes.
 
 A YAML file in the folder names the classes and the image folders. Next to ``images`` is ``labels`` with a text file
 for each image. Each line of that file describes an object: its class, and the centre, width and height of its box as
@@ -129,7 +129,7 @@ def open_dataset(folder: Path) -> Dataset:
 
 
 def _description(folder: Path) -> Path:
-    """Return the path of a dataset's YAML file; `data` and `dataset` are preferred names."""
+    """Return the path of a dataset's YAML file, preferably ``data.yaml`` or ``dataset.yaml``."""
     if not folder.is_dir():
         raise _dataset_error(folder, phrase("it does not exist"), missing_file_hint(folder))
     files = sorted(folder.glob("*.y*ml"))

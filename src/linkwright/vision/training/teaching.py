@@ -1,4 +1,4 @@
-"""Train a network on a dataset, export it, evaluate the exported file, and write its card."""
+"""The training of a network: learning, export, evaluation of the exported file, and card."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class TrainingResult:
-    """The result of a training.
+    """The result of a training run.
 
     Attributes:
         network: the ONNX file.
@@ -141,7 +141,7 @@ def _training_facts(
         "output": "YOLOv8's: [1, 4 + classes, cells], middle, width, height in pixels, scores",
         "weights": f"{parameters}",
         "seed": str(options.seed),
-        "epochs": f"{epochs} of {options.epochs}; the best, which this is, was {best_epoch}",
+        "epochs": f"{epochs} of {options.epochs}; the weights are those of the best epoch, {best_epoch}",
     }
 
 
@@ -155,7 +155,7 @@ def _initial_weights_facts(weights: Path | None) -> dict[str, str]:
 
 
 def dataset_digest(images: Sequence[LabelledFile]) -> str:
-    """Return the SHA-256 of images and labels in order, which identifies a dataset."""
+    """Return the SHA-256 of images and labels in order, to identify a dataset."""
     digest = hashlib.sha256()
     for labelled in images:
         digest.update(hashlib.sha256(labelled.path.read_bytes()).digest())

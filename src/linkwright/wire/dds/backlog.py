@@ -1,10 +1,9 @@
-"""Holds samples back until readers have acknowledged the large samples before them.
+"""Holds back samples until readers have acknowledged the large samples before them.
 
 A reader of Fast DDS that has received part of a sample requests the rest. If a newer sample has replaced that sample in
 the writer's history, Cyclone answers with a GAP. Fast DDS up to 3.6 then frees the sample but keeps a reference to it,
-and the next ``take`` of the reader never returns (`docs/decisions/0095-large-messages-to-fast-dds.md`). Therefore no
-sample replaces a large one that may still be requested. Newer messages replace the samples that are queued here
-instead.
+and the next ``take`` of the reader never returns (`docs/decisions/0095-large-messages-to-fast-dds.md`). Therefore, no
+sample replaces a large sample that may still be requested. Newer messages replace the samples in this queue instead.
 """
 
 from __future__ import annotations
@@ -52,7 +51,7 @@ class Backlog:
         self._lock = threading.RLock()  # reentrant: the warning of a failed write may use this writer
 
     def send(self, sample: bytes) -> bool:
-        """Write a sample, or queue it; return whether any sample is queued."""
+        """Write a sample or queue it, and return whether any sample is queued."""
         with self._lock:
             if not self._unacknowledged_count and len(sample) <= self._fragment_size:
                 self._write(sample)
@@ -61,7 +60,7 @@ class Backlog:
             return self._write_queued()
 
     def review(self) -> bool:
-        """Write the queued samples that may be written now; return whether any remain queued."""
+        """Write the queued samples that may now be written, and return whether any remain queued."""
         with self._lock:
             return self._write_queued()
 

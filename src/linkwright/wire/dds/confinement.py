@@ -1,9 +1,9 @@
 """Keeps multicast announcements inside the machine, on Linux.
 
-A time to live of 0 is meant to do this. But Linux drops such a packet only on an interface where the machine itself is
-a member of the packet's group (``ip_mc_output``); on any other interface it sends the packet. The process therefore
-joins the group on each of its interfaces, with its own address as the only source, so that packets of other machines to
-the group are still refused.
+A time to live of 0 should have this effect. However, Linux drops such a packet only on an interface where the machine
+itself is a member of the packet's group (``ip_mc_output``); on any other interface it sends the packet. The process
+therefore joins the group on each of its interfaces, with its own address as the only source, so that packets of other
+machines to the group are still refused.
 """
 
 from __future__ import annotations

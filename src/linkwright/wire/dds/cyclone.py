@@ -2,9 +2,9 @@
 
 The functions are those of the wheel `cyclonedds`, whose Python classes are built on them. Two properties of these
 classes do not suit a process that publishes from the thread of an event loop: `DataWriter.write` holds Python's global
-interpreter lock (GIL) while it waits for slow readers, and every entity's `__del__` deletes it in whatever thread the
-garbage collector runs. So the Python package is used only where there is no C function: topics for types described in
-Python, and taking samples as bytes.
+interpreter lock (GIL) while it waits for slow readers, and every entity's `__del__` deletes the entity in the thread in
+which the garbage collector happens to run. Therefore, the Python package is used only where there is no C function: for
+topics of types that are described in Python, and for taking samples as bytes.
 
 Functions that may wait are called with the GIL released, and quick functions with the GIL held, because releasing it
 costs up to five milliseconds each time when another thread is computing.
@@ -20,7 +20,7 @@ from importlib.util import find_spec, module_from_spec
 from typing import Any
 
 INFINITY = 0x7FFF_FFFF_FFFF_FFFF
-"""DDS_INFINITY, nanoseconds."""
+"""DDS_INFINITY, in nanoseconds."""
 
 TIMEOUT = -10
 
@@ -212,7 +212,10 @@ class Cyclone:
             size = count + 16
 
     def writer_guid(self, reader: int, handle: int) -> bytes:
-        """Return the GUID of a remote writer matched with a reader; empty if the writer has left."""
+        """Return the GUID of a remote writer matched with a reader.
+
+        Return empty bytes if the writer has left.
+        """
         data = self.dds_get_matched_publication_data(reader, handle)
         if not data:
             return b""
@@ -222,7 +225,7 @@ class Cyclone:
             self.dds_builtintopic_free_endpoint(data)
 
     def user_data(self, qos: int) -> bytes:
-        """Return the USER_DATA in a set of policies; empty if there is none."""
+        """Return the USER_DATA in a set of policies, or empty bytes if there is none."""
         value, size = c.c_void_p(), c.c_size_t()
         if not self.dds_qget_userdata(qos, c.byref(value), c.byref(size)) or not value.value:
             return b""
@@ -232,12 +235,12 @@ class Cyclone:
             self.dds_free(value)
 
     def entity_name(self, qos: int) -> str:
-        """Return the name that a participant announces for itself; empty if there is none."""
+        """Return the name that a participant announces for itself, or an empty string."""
         value = c.c_void_p()
         return self._text(value) if self.dds_qget_entity_name(qos, c.byref(value)) else ""
 
     def property(self, qos: int, name: str) -> str:
-        """Return the value of a property that a participant announces; empty if it is not announced."""
+        """Return the value of a property that a participant announces, or an empty string."""
         value = c.c_void_p()
         return self._text(value) if self.dds_qget_prop(qos, name.encode(), c.byref(value)) else ""
 

@@ -1,4 +1,4 @@
-"""Tells lost publishers (killed, crashed, out of reach) from those that left in order.
+"""Distinguishes lost publishers (killed, crashed, unreachable) from those that left in order.
 
 A publisher that leaves announces this: ROS 2 withdraws an endpoint from ``ros_discovery_info`` before removing it from
 the domain (rmw_dds_common), and so does Linkwright. An endpoint that disappears without being withdrawn is lost: its
@@ -66,7 +66,7 @@ class Departures:
         remote.departures = self
 
     def watch(self, callback: Callable[[EndpointInfo], None]) -> None:
-        """Register a callback for lost publishers, which runs in the discovery thread."""
+        """Register a callback for lost publishers. The callback runs in the discovery thread."""
         self._watchers.append(callback)
 
     def endpoint_left(self, endpoint: RemoteEndpoint, node: NodeIdentity | None) -> None:
@@ -80,7 +80,10 @@ class Departures:
             self._gone.append(_MissingWriter(endpoint, node))
 
     def announced(self, participant: bytes, endpoints: Collection[bytes]) -> None:
-        """Handle an announcement: missing endpoints that are not in the announcement were withdrawn."""
+        """Handle an announcement.
+
+        Missing endpoints that the announcement does not contain were withdrawn.
+        """
         self._gone = [
             missing
             for missing in self._gone
@@ -111,7 +114,7 @@ class Departures:
         self._gone = undecided
 
     def _review_processes(self) -> bool:
-        """Check the processes of participants on this machine; return whether there are any."""
+        """Check the processes of participants on this machine, and return whether there are any."""
         now = self._now()
         local_participants = [
             participant for participant in self._remote.participants() if participant.process is not None

@@ -137,11 +137,11 @@ class Discovery:
         self._remote.add_participant(RemoteParticipant(guid, user_data.get("enclave", "/"), name, process, host))
 
     def _announced_host(self, qos: int) -> str:
-        """Return the machine that a Fast DDS or Cyclone participant announces; empty if none."""
+        """Return the host name that a Fast DDS or Cyclone participant announces, or an empty string."""
         return next((host for host, _ in announced_processes(partial(self._dds.property, qos)) if host), "")
 
     def _local_process(self, qos: int) -> int | None:
-        """Return the id of a participant's process on this machine; None if it is not known.
+        """Return the process id of a participant on this machine, or None if it is not known.
 
         The announced id is accepted only if such a process runs here. A process in a container may have the host name
         of this machine, and an id that belongs to another process here, or to none.
@@ -202,7 +202,7 @@ class Discovery:
     # --- announcing --------------------------------------------------------------------------------------------------
 
     def review_gid_size(self) -> None:
-        """Update the gid size to what the other participants understand."""
+        """Update the gid size to the size that the other participants understand."""
         own_participants = {participant.guid for participant in self._remote.participants() if participant.is_ours}
         sizes = {size for owner, size in self._gid_sizes.items() if owner not in own_participants}
         size = max(sizes, default=self.gid_size)
@@ -240,7 +240,7 @@ def announced_processes(get_property: Callable[[str], str]) -> Iterator[tuple[st
 
 @lru_cache(maxsize=1)
 def machine_id() -> str:
-    """Return the machine's id as systemd stores it; empty if there is none."""
+    """Return the id in ``/etc/machine-id``, or an empty string if there is none."""
     try:
         return Path("/etc/machine-id").read_text(encoding="ascii").strip()
     except (OSError, UnicodeError):
@@ -248,7 +248,7 @@ def machine_id() -> str:
 
 
 def _pointer(qos: int) -> int:
-    """Return the pointer itself: policies are read on demand, while the sample is on loan."""
+    """Return the pointer itself, because policies are read on demand while the sample is on loan."""
     return qos
 
 

@@ -59,10 +59,10 @@ def encode(info: ParticipantEntities, gid_size: int) -> bytes:
 
 
 def decode(data: bytes) -> ParticipantEntities | None:
-    """Decode an announcement of either gid size; return None if it has neither.
+    """Decode an announcement of either gid size, or return None if it has neither.
 
-    The size is the one with which the length matches exactly. If both match, there are no gids, and both sizes give the
-    same result.
+    The size is correct if it results in exactly the length of the data. If both sizes do, there are no gids, and the
+    result is the same.
     """
     for gid_size in (OLD_GID_SIZE, GID_SIZE):
         try:
@@ -115,7 +115,10 @@ class _Reader:
         return self._bytes(self._count(limit=1))[:-1].decode()
 
     def _count(self, limit: int = 4) -> int:
-        """Read a length; raise an error if the remaining bytes are too few for that many items."""
+        """Read the length of a sequence.
+
+        Raise an error if the remaining bytes are too few for that many items.
+        """
         self._offset += -self._offset % 4
         (count,) = struct.unpack_from(self._order + "I", self._data, self._offset)
         self._offset += 4

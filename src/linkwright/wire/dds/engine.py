@@ -1,7 +1,7 @@
 """Creates, serves and deletes the mirrors of this process's endpoints in a domain.
 
-Two threads do the work. One creates and deletes readers and writers in the order in which they were requested, and
-updates the tables of the remote graph. The other takes samples and passes them on.
+There are two threads. One thread creates and deletes readers and writers in the order of the requests, and updates the
+tables of the remote graph. The other thread takes samples and passes them on.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ _MAX_ANNOUNCE_DELAY_S = 0.1
 """Seconds after which new nodes are announced even if more nodes are being created."""
 
 _FIRST_ANNOUNCE_SPAN = 1.0
-"""The same for the first announcement, which other processes take to be complete."""
+"""The same for the first announcement, which other processes regard as complete."""
 
 
 class Engine(AnyEngine):
@@ -105,7 +105,7 @@ class Engine(AnyEngine):
         self._control.wake()
 
     def close(self) -> None:
-        """Leave the domain once reliable samples are acknowledged, after a second at the latest.
+        """Leave the domain, after waiting at most a second for reliable samples to be acknowledged.
 
         The departure of our nodes is announced, unless the process ends because of an error (`departures`).
         """
@@ -273,7 +273,7 @@ class Engine(AnyEngine):
             self._fast.expect(fast_participants)
 
     def _fast_address(self, reader: bytes) -> Address | None:
-        """Return the address of a Fast DDS reader on this machine; None if it is not known."""
+        """Return the address of a Fast DDS reader on this machine, or None if it is not known."""
         return None if self._fast is None else self._fast.reader_address(reader)
 
     def _on_match(self) -> None:
@@ -298,7 +298,7 @@ class Engine(AnyEngine):
         self._control.wake()
 
     def _log_mismatches(self) -> None:
-        """Report incompatible QoS. The node names become known shortly after the mismatch."""
+        """Report incompatible QoS. Node names become known shortly after a mismatch."""
         for topic, deadline in tuple(self._mismatch_deadlines.items()):
             is_due = time.monotonic() >= deadline
             topic.log_mismatches(finally_=is_due)

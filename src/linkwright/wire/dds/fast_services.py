@@ -32,13 +32,13 @@ _REPLY_TIMEOUT_S = 10.0
 """Seconds for which a reply waits until the client's reader is known. After that, the client counts as gone."""
 
 _SETTLING_TIME_S = 0.1
-"""Seconds after a client's writer was discovered, after which everything that it sent before has arrived."""
+"""Seconds after the discovery of a client's writer within which all its earlier samples arrive."""
 
 _EARLY_REQUEST_TIMEOUT_S = 10.0
 """Seconds for which an early request waits until its client is discovered."""
 
 _TIME_TOLERANCE_NS = 1000
-"""Two readings of one time stamp differ by less than this, in ns; on the wire it counts units of 2^-32 s."""
+"""The maximum difference, in ns, between two readings of one time stamp, whose unit on the wire is 2^-32 s."""
 
 _MAX_REMEMBERED = 64
 
@@ -63,9 +63,9 @@ class EarlyRequest:
 class FastServer:
     """A service of this process, as clients on Fast DDS call it.
 
-    Such a client considers a service ready as soon as it knows one reader and one writer of it, which may be those of
-    Cyclone. The client's request then reaches only Cyclone's reader, which does not provide the sequence number.
-    `on_early_request` accepts the request. Its number is determined when the client is discovered here.
+    Such a client considers a service ready as soon as it has discovered one reader and one writer of the service. These
+    may be Cyclone's. The client's request then reaches only Cyclone's reader, which does not provide the sequence
+    number. `on_early_request` accepts the request. Its number is determined when the client is discovered here.
 
     Args:
         service: the service.
@@ -96,7 +96,10 @@ class FastServer:
                 self._early_requests.append(request)
 
     def review(self) -> None:
-        """Write replies whose clients are now known; pass on early requests whose numbers are known."""
+        """Write replies to clients that are now known.
+
+        Early requests whose sequence numbers are now known are passed on.
+        """
         now = time.monotonic()
         with self._lock:
             late_replies, self._late_replies = self._late_replies, deque()
@@ -178,7 +181,7 @@ class FastServer:
                 self._forward(request.body, writer, writer, number)
 
     def _assign_numbers(self, writer: bytes, early_requests: list[EarlyRequest]) -> list[tuple[int, EarlyRequest]]:
-        """Return a writer's early requests that this reader does not receive as well, each with its number."""
+        """Return a writer's numbered early requests, without those that this reader also receives."""
         last_number = self._participant.last_of(self._requests, writer)
         with self._lock:
             if writer in self._first:
@@ -223,7 +226,7 @@ class FastClient:
         self._identities = (self._replies.reader.guid, self._requests.writer.guid)
 
     def send(self, request: Any, on_response: Callable[[Any], None]) -> Callable[[], None]:
-        """Write a request; return a function that cancels it."""
+        """Write a request, and return a function that cancels it."""
         inline = related_identity(self._replies.reader.guid, NO_NUMBER)
         with self._lock:
             number = self._participant.write(self._requests, to_cdr(request), inline=inline)
@@ -231,7 +234,10 @@ class FastClient:
         return partial(self._forget, number)
 
     def is_ready(self) -> bool:
-        """Return whether a server knows both endpoints of this client; otherwise its reply is lost."""
+        """Return whether a server knows both endpoints of this client.
+
+        Otherwise the server's reply would be lost.
+        """
         listening_prefixes = {guid[:PREFIX] for guid in self._participant.matched_readers(self._requests)}
         return any(
             heard_at is not None and guid[:PREFIX] in listening_prefixes and not self._is_dead(guid[:PREFIX])

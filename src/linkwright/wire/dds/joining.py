@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 def unavailable_reason(environment: Mapping[str, str] | None = None) -> Phrase:
-    """Return the reason why this process does not use DDS; empty if it uses DDS.
+    """Return the reason why this process does not use DDS, or an empty phrase if it uses DDS.
 
     Args:
         environment: the environment variables; those of this process if omitted.

@@ -48,7 +48,7 @@ def dds_topic(role: Role, name: str, *, plain: bool = False) -> str:
 
 
 def ros_name(topic: str) -> RosName | None:
-    """Return the ROS name of a DDS topic; None if the topic does not belong to ROS."""
+    """Return the ROS name of a DDS topic, or None if the topic does not belong to ROS."""
     prefix, slash, path = topic.partition("/")
     role = _ROLES.get(prefix)
     if role is None or not slash:
@@ -60,7 +60,7 @@ def ros_name(topic: str) -> RosName | None:
 
 
 def ros_service_type(type_name: str) -> str | None:
-    """Return the service type of a request or reply type; None for any other type."""
+    """Return the service type of a request or reply type, or None for any other type."""
     name = ros_type(type_name)
     if name is None:
         return None
@@ -81,6 +81,9 @@ def parse_user_data(data: bytes) -> dict[str, str]:
 
 
 def endpoint_id(guid: bytes) -> str:
-    """Format the id that links a client's or service's reader and writer, as rmw_cyclonedds_cpp."""
+    """Format the id that links the reader and the writer of a client or service.
+
+    The format is that of rmw_cyclonedds_cpp.
+    """
     first_byte, *other_bytes = guid
     return f"{first_byte:2x}" + "".join(f".{byte:x}" for byte in other_bytes)

@@ -1,4 +1,4 @@
-"""The DDS domains that this process has open, each of which any number of graphs share."""
+"""The open DDS domains of this process. Several graphs may share a domain."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ _lock = Lock()
 
 
 def open_domain(settings: Settings) -> OpenDomain:
-    """Return a domain for one more participant; if it is not open, open it with the settings.
+    """Return a domain for one more participant, opening it with the settings if necessary.
 
     Raises:
         LinkwrightError: DDS102 or DDS103, Cyclone cannot open the domain.

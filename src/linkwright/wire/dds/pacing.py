@@ -1,8 +1,8 @@
 """Sends large samples to Fast DDS readers on this machine as fast as these can receive them.
 
 Cyclone sends all packets of a sample at once. A reader of Fast DDS receives into a buffer of 208 kB, so most packets of
-an image are lost. A reliable reader requests the lost packets again, which takes milliseconds for every three packets,
-and a best-effort reader drops the image. Therefore the packets are sent from here first, one by one, with the GUID and
+an image are lost. A reliable reader requests the lost packets again, which costs milliseconds for every three packets,
+and a best-effort reader drops the image. Therefore, this module sends the packets first, one by one, with the GUID and
 the sequence number of Cyclone's writer. Then Cyclone writes the sample, and its packets are duplicates for a reader
 that already has them. Cyclone still handles discovery, acknowledgements and retransmission
 (`docs/decisions/0104-large-messages-packet-by-packet.md`).
@@ -27,16 +27,19 @@ _BUFFER = 212_992
 """Bytes of a receive buffer on Linux, unless a process asks for more."""
 
 _PACKET_SIZE = 61_440
-"""The bytes that a packet with a full fragment takes in that buffer, rounded up. Three packets fit."""
+"""The bytes that a packet with a full fragment occupies in that buffer, rounded up. Three packets fit."""
 
 _MIN_ROOM = 2
-"""How many packets must fit before sending resumes. A check after each packet would take longer than sending it."""
+"""The number of packets that must fit before sending resumes.
+
+A check after each packet would take longer than sending the packet.
+"""
 
 _PAUSE = 0.0002
 """Seconds between two checks of a full buffer."""
 
 _MAX_CHECKS = 200
-"""The maximum number of these checks for one sample, because a stopped reader takes nothing."""
+"""The maximum number of these checks for one sample, because a stopped reader never empties its buffer."""
 
 _BLIND_PAUSE, _BLIND_PACKETS = 0.0005, 2
 """The pause, in seconds, after each group of packets if the system does not report the bytes in a buffer."""
@@ -119,7 +122,7 @@ class Pacer:
         return {prefix: address for prefix, address in addresses.items() if address is not None}
 
     def add(self, writer: PacedWriter) -> None:
-        """Queue a writer, whose samples are then sent. Callable from any thread."""
+        """Queue a writer whose samples are to be sent. Callable from any thread."""
         with self._lock:
             if self._thread is None:
                 self._thread = threading.Thread(target=self._run, name="linkwright-dds-pace", daemon=True)
@@ -127,7 +130,7 @@ class Pacer:
         self._work.put(writer)
 
     def stop(self, timeout: float) -> None:
-        """End the thread; wait for it for at most `timeout` seconds."""
+        """End the thread, waiting at most `timeout` seconds."""
         self._work.put(None)
         if self._thread is not None:
             self._thread.join(timeout)
@@ -218,7 +221,10 @@ class PacedWriter:
         self._pacer.add(self)
 
     def send_next(self) -> bool:
-        """Send the next queued sample; return whether more are queued. Called in the pacer's thread."""
+        """Send the next queued sample. Return False if no sample was queued.
+
+        Called in the pacer's thread.
+        """
         with self._condition:
             if self._waiting:
                 sample, published_ns = self._waiting.popleft()
@@ -234,7 +240,7 @@ class PacedWriter:
         return True
 
     def wait_until_written(self, seconds: float) -> bool:
-        """Wait until no sample is queued; return False if that takes longer than `seconds`."""
+        """Wait until no sample is queued. Return False if that takes longer than `seconds`."""
         with self._condition:
             return self._condition.wait_for(lambda: not self._is_pacing, min(seconds, threading.TIMEOUT_MAX))
 
@@ -244,7 +250,10 @@ class PacedWriter:
             self._waiting.clear()
 
     def _paced_addresses(self, sample: bytes) -> dict[bytes, Address]:
-        """Return the addresses to which a sample is paced; empty if the sample fits into one packet."""
+        """Return the addresses to which a sample is paced.
+
+        The result is empty if the sample fits into one packet.
+        """
         return self._pacer.addresses_of(self._readers()) if len(sample) > FRAGMENT and self._is_numbered else {}
 
     def _write_now(self, sample: bytes, published_ns: int | None = None) -> bool:

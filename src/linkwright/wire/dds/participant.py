@@ -1,4 +1,4 @@
-"""The DDS participant of this process, which creates readers and writers."""
+"""The DDS participant of this process. It creates readers and writers."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def entity_name() -> str:
 
 
 def process_namespace() -> str:
-    """Return an identifier of this process's PID namespace; empty if it is not known.
+    """Return an identifier of this process's PID namespace, or an empty string.
 
     It distinguishes processes that have the same id in different containers.
     """

@@ -1,6 +1,6 @@
 """Endpoints that are announced in a domain but neither send nor receive.
 
-The samples that arrive at their readers are never taken.
+Samples that arrive at their readers are never taken (DDS ``take``).
 """
 
 from __future__ import annotations
@@ -78,4 +78,4 @@ class QuietClient:
 
 
 def _ignore(_: Any) -> None:
-    """Ignore a mismatch: the other process reports the incompatible QoS to its own users."""
+    """Ignore a mismatch, because the other process reports the incompatible QoS itself."""

@@ -20,7 +20,7 @@ from linkwright.wire.dds.cyclone import INFINITY, load
 UNLIMITED = -1
 
 MAX_BLOCKING_NS = 100_000_000
-"""How long a reliable write waits for readers that do not keep up: 100 ms."""
+"""The time for which a reliable write waits for slow readers, 100 ms."""
 
 _KEEP_LAST, _KEEP_ALL = 0, 1
 _BEST_EFFORT, _RELIABLE = 0, 1

@@ -67,12 +67,15 @@ class RemoteParticipant:
 
     @property
     def is_ours(self) -> bool:
-        """Whether the participant belongs to Linkwright, so that it indicates no ROS 2 distribution."""
+        """Whether the participant belongs to Linkwright.
+
+        Such a participant does not indicate a ROS 2 distribution.
+        """
         return self.entity_name.startswith(NAME + "/")
 
     @property
     def process(self) -> int | None:
-        """The id of the participant's process; None unless it is known to run on this machine."""
+        """The id of the participant's process, or None unless it is known to run on this machine."""
         if not self.is_ours:
             return self.peer_process
         _, _, process_path = self.entity_name.partition("/")
@@ -115,7 +118,7 @@ class RemoteEndpoint:
 
     @property
     def name(self) -> RosName | None:
-        """The ROS name of the DDS topic; None if the topic does not belong to ROS."""
+        """The ROS name of the DDS topic, or None if the topic does not belong to ROS."""
         return ros_name(self.topic)
 
     @property
@@ -153,7 +156,10 @@ class RemoteEndpoint:
 
 
 class DepartureWatch(Protocol):
-    """Receives notifications of endpoints that disappear; see `wire.dds.departures.Departures`."""
+    """Receives notifications of endpoints that disappear.
+
+    `wire.dds.departures.Departures` implements this protocol.
+    """
 
     def endpoint_left(self, endpoint: RemoteEndpoint, node: NodeIdentity | None) -> None:
         """Handle the disappearance of an endpoint.
@@ -168,7 +174,7 @@ class DepartureWatch(Protocol):
 
 
 class RemoteGraph(Outside):
-    """The nodes and endpoints of other processes; for thread safety see `Outside`."""
+    """The nodes and endpoints of other processes. `Outside` describes the thread safety."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -238,7 +244,7 @@ class RemoteGraph(Outside):
     # --- queries of the transport -------------------------------------------------------------------------------
 
     def endpoint(self, handle: int) -> RemoteEndpoint | None:
-        """Return the reader or writer with a handle; None if it is not known."""
+        """Return the reader or writer with a handle, or None if it is not known."""
         return self._by_handle.get(handle)
 
     def topic_endpoints(self, topic: str, *, writers: bool) -> list[RemoteEndpoint]:
@@ -296,7 +302,7 @@ class RemoteGraph(Outside):
 
         Discovery is complete when all participants have announced their nodes, and the endpoints of those nodes are
         known. A participant that listens to announcements belongs to ROS and will announce its own nodes. For a
-        participant without known endpoints, discovery waits for a moment.
+        participant without known endpoints, discovery waits briefly.
         """
         now = time.monotonic()
         with self._lock:
@@ -354,7 +360,10 @@ class RemoteGraph(Outside):
         return participant.host if participant else ""
 
     def node_name(self, endpoint: RemoteEndpoint) -> str:
-        """Return the full name of the node that owns an endpoint; empty until it is announced."""
+        """Return the full name of the node that owns an endpoint.
+
+        The name is empty until the node is announced.
+        """
         with self._lock:
             owner = self._endpoint_owner(endpoint)
         return owner.full_name if owner else ""
@@ -369,7 +378,10 @@ class RemoteGraph(Outside):
         return None
 
     def participant_writers(self, participant: bytes) -> list[tuple[RemoteEndpoint, NodeIdentity | None]]:
-        """Return a participant's writers, each with its node, or None until the node is announced."""
+        """Return a participant's writers with their nodes.
+
+        The node is None until it is announced.
+        """
         with self._lock:
             writers = [
                 endpoint

@@ -8,7 +8,7 @@ from linkwright.wire.dds.names import endpoint_id
 
 
 def service_user_data(identity: bytes, endpoint: Endpoint, *, is_server: bool) -> bytes:
-    """Return the USER_DATA for both endpoints of a client or server, which links them.
+    """Return the USER_DATA that links both endpoints of a client or server.
 
     Args:
         identity: 16 bytes that are unique to the client or server.
@@ -29,7 +29,7 @@ def request_and_response_types(service_type: str) -> tuple[str, str]:
 
 
 def _announced_hash(endpoint: Endpoint) -> str:
-    """Return the announced hash of a service's type, or the computed one; empty if unknown."""
+    """Return the announced or computed hash of a service's type, or an empty string."""
     if endpoint.type_hash:
         return endpoint.type_hash
     try:

@@ -97,7 +97,10 @@ class Pair:
         return bool(status.value)
 
     def samples(self) -> Iterator[tuple[bytes, Any]]:
-        """Take the samples that have arrived, as CDR; yield each with Cyclone's sample info."""
+        """Take the samples that have arrived.
+
+        Yield each as CDR, with Cyclone's sample info.
+        """
         results = self._dds.take_bytes(self.reader, ANY_STATE, _MAX_SAMPLES)
         return (sample for sample in (results if isinstance(results, list) else ()) if sample[1].valid_data)
 
@@ -138,7 +141,7 @@ class OutsideServer:
         self._fast = FastClient(self._client, participant, self._remote.is_dead)
 
     def send(self, request: Any, on_response: Callable[[Any], None], number: int) -> Callable[[], None]:
-        """Write a request; return a function that cancels it."""
+        """Write a request, and return a function that cancels it."""
         if self._fast is not None and not self._uses_cyclone:
             return self._fast.send(request, on_response)
         self._answers[number] = on_response
@@ -146,7 +149,7 @@ class OutsideServer:
         return partial(self._forget, number)
 
     def on_data(self) -> bool:
-        """Pass on the replies for this client; return whether there are more samples."""
+        """Pass on the replies for this client, and return whether there are more samples."""
         if self.pair.has_matched(self.pair.reader):
             self._on_match()
         count = 0
@@ -159,7 +162,10 @@ class OutsideServer:
         return count == _MAX_SAMPLES
 
     def on_writer_status(self) -> bool:
-        """Handle a change in the readers that match the writer. Returns False: there are no samples."""
+        """Handle a change of the readers that match the writer.
+
+        Returns False, because a status change brings no samples.
+        """
         if self.pair.has_matched(self.pair.writer):
             self._on_match()
         return False
@@ -215,7 +221,7 @@ class IncomingService:
         self._lock = Lock()
 
     def on_data(self) -> bool:
-        """Pass the requests that have arrived to the service; return whether there are more."""
+        """Pass requests that have arrived to the service, and return whether there are more."""
         count = 0
         for data, info in self.pair.samples():
             count += 1
@@ -237,7 +243,7 @@ class IncomingService:
             self._fast.on_early_request(request)
 
     def review(self) -> None:
-        """Write replies whose clients are reachable by now, or were unreachable for too long."""
+        """Write replies whose clients can now be reached or have been unreachable for too long."""
         with self._lock:
             for _ in range(len(self._late_replies)):
                 deadline, sender, client_id, number, response = self._late_replies.popleft()
@@ -260,7 +266,10 @@ class IncomingService:
         self.pair.close()
 
     def _accept_from_fast(self, sender: RemoteEndpoint | None, data: bytes, info: Any) -> bool:
-        """Return whether a request came from Fast DDS; if so, pass it to `FastServer`."""
+        """Pass a request from Fast DDS to `FastServer`.
+
+        Return whether the request came from Fast DDS.
+        """
         guid = sender.guid if sender else self._dds.writer_guid(self.pair.reader, info.publication_handle)
         if not is_fast(guid):
             return False
@@ -284,7 +293,10 @@ class IncomingService:
                 self._on_waiting()
 
     def _can_reach(self, sender: RemoteEndpoint | None) -> bool:
-        """Return whether the client's reader matches our writer; otherwise the client would miss the reply."""
+        """Return whether the client's reader matches our writer.
+
+        Otherwise the client would miss the reply.
+        """
         readers = (self._remote.endpoint(handle) for handle in self._dds.matched(self.pair.writer, writer=True))
         return any(_have_same_owner(sender, reader, "clientid") for reader in readers)
 

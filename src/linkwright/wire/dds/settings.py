@@ -51,7 +51,7 @@ def max_participants(domain_id: int) -> int:
 
 
 class Range(Enum):
-    """The range in which other participants are looked for (ROS_AUTOMATIC_DISCOVERY_RANGE)."""
+    """The range of discovery (ROS_AUTOMATIC_DISCOVERY_RANGE)."""
 
     MACHINE = "machine"
     """Linkwright's default: this machine, through all its interfaces."""
@@ -68,7 +68,7 @@ class Settings:
 
     Attributes:
         domain_id: the DDS domain.
-        range: the range in which other participants are looked for.
+        range: the range of discovery.
         configurations: XML fragments for Cyclone; the first one that Cyclone accepts is used.
         gid_size: the size in bytes of a gid in ``ros_discovery_info`` until a ROS 2 node is discovered.
         warnings: warnings for the user.
@@ -158,7 +158,7 @@ def _range(variables: Mapping[str, str], warnings: list[str]) -> Range:
 _AUTO_INDEX = "<ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>{0}</MaxAutoParticipantIndex>"
 
 _ANNOUNCEMENT_INTERVAL = "<SPDPInterval>3 s</SPDPInterval>"
-"""How often a process announces itself beyond this machine: as often as Fast DDS does."""
+"""The interval at which a process announces itself outside this machine, as in Fast DDS."""
 
 _THIS_MACHINE = '<Peer address="127.0.0.1" PruneDelay="inf"/>'
 """The ports of this machine, for as long as the process lives.
@@ -239,7 +239,7 @@ def _configurations(discovery_range: Range, peers: list[str], max_index: int) ->
             f"<Tag>ros_discovery_off_{os.getpid()}</Tag></Discovery></Domain></CycloneDDS>"
         )
         return [off]
-    from xml.sax.saxutils import quoteattr  # imported here: it loads modules of urllib, which are rarely needed
+    from xml.sax.saxutils import quoteattr  # imported here because it loads modules of urllib, which are rarely needed
 
     local = discovery_range is Range.LOCALHOST
     peer_elements = _THIS_MACHINE + "".join(f"<Peer address={quoteattr(peer)} PruneDelay='inf'/>" for peer in peers)
@@ -258,8 +258,8 @@ _REQUEST = "256s"
 def own_addresses() -> list[str]:
     """Return the IPv4 addresses of the interfaces other than loopback, in the system's order.
 
-    Cyclone prints an error if it is given an interface that does not exist. A process that is configured to stay on the
-    machine may be reachable only at the address of its interface.
+    Cyclone prints an error if an interface in its configuration does not exist. A process that is configured to stay on
+    the machine may be reachable only at the address of its interface.
     """
     addresses = _interface_addresses() if sys.platform.startswith("linux") else _addresses_by_name()
     return [address for address in dict.fromkeys(addresses) if address and not address.startswith("127.")]
@@ -271,7 +271,7 @@ def _interface_addresses() -> list[str]:
 
 
 def _address(query_socket: socket.socket, name: str) -> str:
-    """Return the address of an interface; empty if the interface has none."""
+    """Return the address of an interface, or an empty string if the interface has none."""
     from fcntl import ioctl
 
     try:

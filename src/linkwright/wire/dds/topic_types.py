@@ -1,4 +1,4 @@
-"""The Cyclone types of a domain's topics, which are kept until the domain is closed.
+"""The Cyclone types of a domain's topics. They are kept until the domain is closed.
 
 Two properties of Cyclone's Python package prevent using its types directly.
 
@@ -96,7 +96,7 @@ class TopicTypes:
 
 @lru_cache
 def _table_without_descriptions(table: int) -> int:
-    """Copy a function table without the functions that describe types; return its address.
+    """Copy a function table without the functions that describe types, and return its address.
 
     If the layout of the table is not known, the address of the table itself is returned. The copy is never freed,
     because Cyclone may use it until the process ends.

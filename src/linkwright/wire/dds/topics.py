@@ -62,11 +62,12 @@ glibc then keeps up to twice as many free bytes for each thread.
 
 @lru_cache(maxsize=1)
 def keep_large_blocks() -> None:
-    """Make the C library keep freed memory blocks of the size of images for the next image.
+    """Make the C library reuse freed memory blocks of the size of images.
 
-    By default glibc returns them to the system, which must clear each page again: half of the processor time of an
-    image publisher. It keeps blocks up to the size of the largest block that was ever mapped and freed
-    (``M_MMAP_THRESHOLD`` in mallopt(3)), so this function maps and frees such a block, without using its pages.
+    By default, glibc returns them to the system, which must then clear each page again. This takes half of the
+    processor time of an image publisher. glibc keeps blocks up to the size of the largest block that was ever mapped
+    and freed (``M_MMAP_THRESHOLD`` in mallopt(3)), so this function maps and frees such a block, without using its
+    pages.
     """
     bytes(_MAX_KEPT_BLOCK)
 
@@ -161,7 +162,10 @@ class OutgoingTopic(MirroredTopic):
         self.on_status()
 
     def on_status(self) -> bool:
-        """Handle status changes: matched readers and incompatible QoS."""
+        """Handle status changes: matched readers and incompatible QoS.
+
+        Returns False, because a writer has no samples to take.
+        """
         status = c.c_uint32()
         self._dds.dds_take_status(self.entity, c.byref(status), self._STATUS)
         match_status = MatchedStatus()
@@ -213,7 +217,9 @@ class OutgoingTopic(MirroredTopic):
         return self.acknowledged(0x7FFF_FFFF_FFFF_FFFF if seconds is None else int(seconds * 1e9))
 
     def _wait_for_acks(self, nanoseconds: int) -> bool:
-        """Wait until all readers have acknowledged the written samples; return False on timeout.
+        """Wait until all readers have acknowledged the written samples.
+
+        Return False on timeout.
 
         Samples in the backlog are not considered.
         """
@@ -241,7 +247,7 @@ class OutgoingTopic(MirroredTopic):
         return [endpoint.guid for endpoint in endpoints if endpoint is not None and endpoint.is_fast]
 
     def _make_backlog(self, fragment_size: int) -> Backlog | None:
-        """Return a queue for large samples; None if the writer never replaces requested samples."""
+        """Return a queue for large samples, or None if the writer never replaces requested samples."""
         profile = self._publisher.qos_profile
         is_reliable = profile.reliability is not ReliabilityPolicy.BEST_EFFORT
         if not is_reliable or profile.history is HistoryPolicy.KEEP_ALL:
@@ -278,7 +284,7 @@ class OutgoingTopic(MirroredTopic):
             self._write_published(data, None)
 
     def _write_published(self, data: bytes, published_ns: int | None) -> bool:
-        """Write a sample with Cyclone; return whether Cyclone accepted it.
+        """Write a sample with Cyclone, and return whether Cyclone accepted it.
 
         If the writer keeps all samples, or the pacer has already sent the sample, writing is retried until slow readers
         have caught up or the lease of dead readers has expired.
@@ -304,7 +310,10 @@ class OutgoingTopic(MirroredTopic):
         return code
 
     def _failed(self, code: int) -> None:
-        """Log that messages are not sent: once, and again after some time if they still fail."""
+        """Log that a message was not sent, if writing failed.
+
+        Further failures are logged only after some time.
+        """
         if code >= 0 or self._participant.closed or self._publisher.destroyed or not self._log_limits.is_due("failed"):
             return
         reason = "the subscribers outside do not keep up" if code == TIMEOUT else describe(code)
@@ -328,7 +337,7 @@ class OutgoingTopic(MirroredTopic):
 
 
 class IncomingTopic(MirroredTopic):
-    """A subscription's reader; see `MirroredTopic` for the arguments."""
+    """A subscription's reader. See `MirroredTopic` for the arguments."""
 
     _STATUS = DATA_AVAILABLE | SUBSCRIPTION_MATCHED | REQUESTED_INCOMPATIBLE_QOS | SAMPLE_LOST | LIVELINESS_CHANGED
 
@@ -372,7 +381,7 @@ class IncomingTopic(MirroredTopic):
         return len(samples) == MAX_SAMPLES
 
     def _publisher_gid(self, handle: int) -> bytes:
-        """Return the GID of a publisher; zeros if it is not known.
+        """Return the GID of a publisher, or 16 zero bytes if it is not known.
 
         The reader may know the GID before the discovery tables do.
         """
@@ -416,7 +425,7 @@ class IncomingTopic(MirroredTopic):
 
 
 class _LogLimits:
-    """Limits how often warnings of a topic are logged."""
+    """Limits the frequency of a topic's log messages."""
 
     _LOG_INTERVAL_S = 30.0
 
@@ -425,7 +434,7 @@ class _LogLimits:
         self._logged: dict[str, float] = {}
 
     def is_new(self, guid: bytes) -> bool:
-        """Return whether this is the first call for an endpoint, whose mismatch must be logged."""
+        """Return whether this is the first call for an endpoint. The mismatch must then be logged."""
         is_new = guid not in self._guids
         self._guids.add(guid)
         return is_new

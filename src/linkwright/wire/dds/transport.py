@@ -47,7 +47,7 @@ class DdsTransport(BackgroundTransport):
         return DdsEngine(self._settings, self._remote, self._departures, self._work, self._logger)
 
     def _has_settled(self, quiet: float) -> bool:
-        """Return whether all participants have announced their nodes and nothing changes any more."""
+        """Return whether all participants have announced their nodes and the remote graph is stable."""
         return self._remote.is_complete() and (
             quiet >= SETTLED_AFTER or (quiet >= _SETTLED_AMONG_KNOWN and self._knows_all_processes())
         )

@@ -1,4 +1,4 @@
-"""Descriptions of ROS types for Cyclone, which checks samples against them.
+"""Descriptions of ROS types for Cyclone. Cyclone checks samples against them.
 
 Cyclone also announces the descriptions to other tools, and compares types structurally if both sides describe theirs.
 Therefore types are described member by member, like the types that rmw_cyclonedds_cpp describes (final, keyless;
@@ -38,14 +38,14 @@ class WireTypes:
         return self._describe(definition_of(message_class))
 
     def discovery(self) -> Any:
-        """Return the description of ``rmw_dds_common/msg/ParticipantEntitiesInfo``: only its name.
+        """Return the description of ``rmw_dds_common/msg/ParticipantEntitiesInfo`` (only its name).
 
         The members differ between distributions (`discovery_info`), and Cyclone would reject data that do not match.
         """
         return self._describe_name(DISCOVERY_TYPE)
 
     def by_name(self, type_name: str) -> Any:
-        """Return a description with only a type's name, so that Cyclone does not check its samples."""
+        """Return a description with only a type's name. Cyclone does not check samples against it."""
         return self._describe_name(dds_type(type_name))
 
     def _describe_name(self, name: str) -> Any:

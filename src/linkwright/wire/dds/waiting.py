@@ -11,7 +11,10 @@ from linkwright.wire.dds.cyclone import INFINITY, check_call, load
 from linkwright.wire.living_threads import guarded
 
 Handler = Callable[[], bool]
-"""Does pending work; returns True if there is more, which waits until the other handlers have run."""
+"""Handles pending work, and returns whether more is left.
+
+The other handlers run before the handler is called again.
+"""
 
 _MAX_TRIGGERED = 64
 
@@ -45,7 +48,7 @@ class WaitingThread(threading.Thread):
         self._is_stopping = False
 
     def attach(self, entity: int, handler: Handler) -> None:
-        """Register a handler, which is called while an enabled status of the entity is set."""
+        """Register a handler to be called while an enabled status of the entity is set."""
         self._handlers[entity] = handler
         check_call(self._dds.dds_waitset_attach(self._waitset, entity, entity), "attaching")
 
@@ -55,11 +58,11 @@ class WaitingThread(threading.Thread):
         self._dds.dds_waitset_detach(self._waitset, entity)
 
     def wake(self) -> None:
-        """Wake the thread, which calls `idle`. Callable from any thread."""
+        """Wake the thread so that it calls `idle`. Callable from any thread."""
         self._dds.dds_set_guardcondition(self._guard, True)
 
     def stop(self, timeout: float) -> bool:
-        """End the thread; return whether it has ended within `timeout` seconds."""
+        """End the thread, and return whether it has ended within `timeout` seconds."""
         self._is_stopping = True
         self.wake()
         if threading.current_thread() is not self and self.is_alive():

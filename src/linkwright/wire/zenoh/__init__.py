@@ -1,4 +1,7 @@
-"""Zenoh as used by ROS 2 nodes with rmw_zenoh_cpp. Importing this does not load the library."""
+"""Zenoh as used by ROS 2 nodes with rmw_zenoh_cpp.
+
+Importing this package does not load the Zenoh library.
+"""
 
 from linkwright.wire.zenoh.joining import join, unavailable_reason
 from linkwright.wire.zenoh.transport import ZenohTransport

@@ -1,7 +1,7 @@
 """The attachment of each message, request and reply, in rmw_zenoh_cpp's format.
 
-The format is the one that zenoh-ext writes: 33 bytes with a sequence number, the time of sending, and the gid of the
-sender. A receiving rmw_zenoh_cpp terminates its process if the attachment is malformed, so each sample has one.
+The format is that of zenoh-ext: 33 bytes with a sequence number, the time of sending, and the gid of the sender. A
+receiving rmw_zenoh_cpp terminates its process if the attachment is malformed, so each sample has one.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ def write(number: int, sent_ns: int, gid: bytes) -> bytes:
 
 
 def read(data: bytes | None) -> Attachment | None:
-    """Decode an attachment; return None if it is missing or malformed."""
+    """Decode an attachment, or return None if it is missing or malformed."""
     if data is None or len(data) != _LAYOUT.size:
         return None
     number, sent_ns, size, gid = _LAYOUT.unpack(data)

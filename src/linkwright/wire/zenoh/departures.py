@@ -1,4 +1,4 @@
-"""Tells lost publishers (killed, crashed, out of reach) from those that left in order.
+"""Distinguishes lost publishers (killed, crashed, unreachable) from those that left in order.
 
 A token disappears when its owner withdraws it, and when its session ends for any reason. Linkwright's sessions have an
 additional token, and announce their departure before that token disappears. Without this announcement, their endpoints
@@ -6,9 +6,9 @@ are lost. Other sessions withdraw the endpoints of a node before the node itself
 tokens disappear together, in no particular order. So an endpoint of another session is lost if its node disappears
 before the endpoint.
 
-A client of a router requests a session's other tokens once it knows of a publisher of the session
-(`Interests.follow`). If the session ends before the router has answered, milliseconds later, nothing shows how it
-ended, and it is not counted as lost.
+A client of a router requests a session's other tokens once it knows of a publisher of the session (`Interests.follow`).
+The router answers within milliseconds. If the session ends before, its end cannot be classified, and it does not count
+as lost.
 """
 
 from __future__ import annotations
@@ -66,7 +66,7 @@ class Departures:
         self._nodes_removed_at: dict[tuple[str, str], float] = {}
 
     def watch(self, callback: Callable[[EndpointInfo], None]) -> None:
-        """Register a callback for lost publishers, which runs in the discovery thread."""
+        """Register a callback for lost publishers. The callback runs in the discovery thread."""
         self._watchers.append(callback)
 
     @property
@@ -76,7 +76,7 @@ class Departures:
 
     @property
     def here(self) -> AbstractSet[str]:
-        """The ids of the live sessions of Linkwright, which announce their departure."""
+        """The ids of Linkwright's live sessions. These sessions announce their departure."""
         return self._live_sessions
 
     def session_started(self, session: str) -> None:

@@ -311,7 +311,10 @@ class Engine(AnyEngine):
             self._remote.announce()
 
     def _record_token(self, *, appeared: bool, key: str) -> bool:
-        """Record that a token appeared or disappeared; return whether that changes the remote graph."""
+        """Record that a token appeared or disappeared.
+
+        Return whether that changes the remote graph.
+        """
         if key.startswith(OURS):
             self._record_session(appeared=appeared, key=key)
             return False

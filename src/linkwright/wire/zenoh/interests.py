@@ -1,8 +1,8 @@
 """The liveliness tokens to which a session subscribes.
 
-The router sends every token to each session that subscribes to all tokens. For a hall full of robots, this traffic
-grows with the square of their number. Therefore a client of a router, as robots are, subscribes only to the tokens that
-its own nodes and endpoints need, until the graph is queried (`docs/decisions/0076-tokens-on-demand.md`).
+The router sends every token to each session that subscribes to all tokens. This traffic grows with the square of the
+number of robots. Therefore, a client of a router, such as a robot, subscribes only to the tokens that its own nodes and
+endpoints need, until the graph is queried (`docs/decisions/0076-tokens-on-demand.md`).
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ class Interests:
             self._declare(key)
 
     def remove(self, key: str) -> bool:
-        """Undo one `add`; return whether the session no longer subscribes to these tokens."""
+        """Undo one `add`, and return whether the session no longer subscribes to these tokens."""
         self._counts[key] -= 1
         if self._counts[key]:
             return False
@@ -62,7 +62,7 @@ class Interests:
         return not self.subscribes_to_all
 
     def follow(self, publishing_sessions: AbstractSet[str], live_sessions: AbstractSet[str]) -> None:
-        """Subscribe to all tokens of other sessions, which show how these sessions end.
+        """Subscribe to all tokens of other sessions. Their changes show how these sessions end.
 
         The subscription to a session ends when none of its tokens is left.
 

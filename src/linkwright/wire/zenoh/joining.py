@@ -28,7 +28,7 @@ def is_installed() -> bool:
 
 
 def unavailable_reason(environment: Mapping[str, str] | None = None) -> Phrase:
-    """Return the reason why this process does not use Zenoh; empty if it uses Zenoh.
+    """Return the reason why this process does not use Zenoh, or an empty phrase if it does.
 
     Args:
         environment: the environment variables; those of this process if omitted.

@@ -1,4 +1,4 @@
-"""Opens a session, waiting for its router or peers, with log messages, until interrupted."""
+"""Opens a session. Waiting for a router or peers is logged and can be interrupted."""
 
 from __future__ import annotations
 
@@ -118,7 +118,7 @@ class ObstacleReporter:
 
 
 def _try_open(config: zenoh.Config) -> zenoh.Session | zenoh.ZError:
-    """Try to open a session; return the session, or the error."""
+    """Try to open a session, and return the session or the error."""
     try:
         return zenoh.open(config)
     except zenoh.ZError as error:
@@ -126,7 +126,7 @@ def _try_open(config: zenoh.Config) -> zenoh.Session | zenoh.ZError:
 
 
 def _wait_seconds(config: zenoh.Config) -> float:
-    """Return how many seconds a configuration lets a new session wait for a connection."""
+    """Return the seconds for which a configuration lets a new session wait for a connection."""
     is_client = mode_value(config, "mode", default="peer") == "client"
     if not configured_addresses(config) or not mode_value(config, "connect/exit_on_failure", default=is_client):
         return 0.0

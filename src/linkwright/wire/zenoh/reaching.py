@@ -1,4 +1,4 @@
-"""Finds the reasons why a connection to an address fails, which Zenoh does not report.
+"""Finds the reasons why a connection to an address fails. Zenoh does not report them.
 
 To do so, this module connects to the address with sockets and TLS in the same way as Zenoh.
 """
@@ -34,7 +34,7 @@ def configured_addresses(config: zenoh.Config) -> list[str]:
 
 
 def mode_value(config: zenoh.Config, key: str, *, default: Any) -> Any:
-    """Return the value of a setting for the session's mode; `default` if it is not set.
+    """Return the value of a setting for the session's mode, or `default` if it is not set.
 
     The setting may differ by mode, such as ``{client: 0, peer: -1}``.
     """
@@ -54,7 +54,9 @@ def obstacles(config: zenoh.Config) -> list[Phrase]:
 
 
 def obstacle(address: str, tls: Mapping[str, Any]) -> Phrase:
-    """Return the reason why a connection to an address fails; empty if no reason is found.
+    """Return the reason why a connection to an address fails.
+
+    Return an empty phrase if no reason is found.
 
     Args:
         address: the address, such as ``tls/cloud.example.com:7448``.
@@ -91,7 +93,7 @@ def obstacle(address: str, tls: Mapping[str, Any]) -> Phrase:
 
 
 def _protocol_obstacle(address: str, connection: socket.socket) -> Phrase:
-    """Send a first Zenoh message; return a reason if the listener answers with TLS.
+    """Send a first Zenoh message, and return a reason if the listener answers with TLS.
 
     Otherwise the phrase is empty.
     """

@@ -17,7 +17,7 @@ _GONE_FOR = 0.5
 
 
 class RemoteGraph(Outside):
-    """The nodes and endpoints of other sessions; for thread safety see `Outside`."""
+    """The nodes and endpoints of other sessions. `Outside` describes the thread safety."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -29,7 +29,7 @@ class RemoteGraph(Outside):
     # --- called by discovery -----------------------------------------------------------------------------------------
 
     def add(self, key: str, token: Token) -> bool:
-        """Record a token under its key expression; return whether it is new.
+        """Record a token under its key expression, and return whether it is new.
 
         The key expression may have additional chunks, from newer distributions.
         """
@@ -52,7 +52,7 @@ class RemoteGraph(Outside):
         return key in self._gone and time.monotonic() - self._gone[key] < _GONE_FOR
 
     def remove(self, key: str) -> Token | None:
-        """Remove a token and return it; None if the token was not known."""
+        """Remove a token and return it, or None if the token was not known."""
         now = time.monotonic()
         for expired_key in [gone_key for gone_key in islice(self._gone, 2) if now - self._gone[gone_key] > _GONE_FOR]:
             del self._gone[expired_key]  # removing two per call keeps the table small
@@ -68,7 +68,7 @@ class RemoteGraph(Outside):
         return token
 
     def forget_endpoints(self, kind: EndpointKind, data_key: str) -> None:
-        """Remove the endpoints of a kind at a key, whose tokens are no longer subscribed to."""
+        """Remove the endpoints of a kind at a key. The session no longer subscribes to their tokens."""
         with self._lock:
             removed_keys = [
                 key for key, token in self._tokens.items() if (token.kind, token.data_key) == (kind, data_key)
@@ -78,7 +78,7 @@ class RemoteGraph(Outside):
             self._counts.pop((kind, data_key), None)
 
     def forget_nodes(self, full_name: str) -> None:
-        """Remove the tokens of all nodes with a full name, which are no longer subscribed to."""
+        """Remove all nodes with a full name. The session no longer subscribes to their tokens."""
         with self._lock:
             for key in [key for key, token in self._tokens.items() if token.kind is None]:
                 if self._tokens[key].node.full_name == full_name:
@@ -100,7 +100,10 @@ class RemoteGraph(Outside):
         return key in self._tokens
 
     def sessions(self, kind: EndpointKind | None = None) -> set[str]:
-        """Return the ids of the known sessions, or of those that have endpoints of a kind."""
+        """Return the ids of the known sessions.
+
+        If a kind is given, only sessions that have endpoints of this kind are included.
+        """
         with self._lock:
             return {token.session for token in self._tokens.values() if kind is None or token.kind is kind}
 

@@ -60,7 +60,7 @@ class OutsideServer:
         self._listener = self._querier.declare_matching_listener(listener)
 
     def send(self, request: Any, on_response: Callable[[Any], None], number: int) -> Callable[[], None]:
-        """Send a request; return a function that cancels it."""
+        """Send a request, and return a function that cancels it."""
         self._answers[number] = on_response
         handler: Any = Callback(partial(self._receive, number), partial(self._end, number), indirect=False)
         metadata = attachment.write(number, time.time_ns(), self.token.gid)
@@ -192,5 +192,5 @@ class _PendingRequest:
         self._query.drop()
 
     def drop(self) -> None:
-        """Drop the query, which notifies the client that no reply will follow."""
+        """Drop the query. This notifies the client that no reply will follow."""
         self._query.drop()

@@ -35,8 +35,8 @@ def open_with(config: zenoh.Config) -> zenoh.Session:
 def close_session(session: zenoh.Session) -> None:
     """Close a session, in the background if that takes long.
 
-    Zenoh waits without a limit for connections whose buffers are full. This function returns after `_CLOSE_TIMEOUT_S`
-    at the latest, so that the process can end.
+    Zenoh waits without a limit for connections whose buffers are full. This function returns after `_CLOSING_LIMIT` at
+    the latest, so that the process can end.
     """
     close_thread = threading.Thread(target=session.close, name="linkwright-zenoh-close", daemon=True)
     try:

@@ -27,7 +27,7 @@ _WITHOUT_HASHES = "humble"
 _QUERY_TIMEOUT_MS = 600_000
 _LEASE_MS = 60_000
 _MAX_WAIT_US = 50_000
-"""How long a publisher waits for room before it drops a message, in microseconds.
+"""The time for which a publisher waits for space before it drops a message, in microseconds.
 
 Zenoh's default of 1 ms is shorter than the time after which a busy machine runs the receiver.
 """
@@ -158,7 +158,7 @@ def _overrides(variables: Mapping[str, str]) -> Entries:
 
 
 def _attempts(variables: Mapping[str, str]) -> int | None:
-    """Return the number of checks for a router; None for no limit.
+    """Return the number of checks for a router, or None for no limit.
 
     The default is 0, unlike in rmw_zenoh_cpp.
     """

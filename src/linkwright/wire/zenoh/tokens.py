@@ -90,11 +90,11 @@ class Token:
 
     @property
     def node_key(self) -> tuple[str, str]:
-        """The ids of the session and of the node in it, which a node and its endpoints share."""
+        """The id of the session and the id of the node in it. A node and its endpoints share them."""
         return self.session, self.node_id
 
     def described(self) -> EndpointInfo | None:
-        """Return the endpoint's description in ROS terms; None for nodes and non-ROS endpoints."""
+        """Return the endpoint's description in ROS terms, or None for nodes and non-ROS endpoints."""
         type_name = ros_type(self.type_name)
         if self.kind is None or type_name is None:
             return None
@@ -126,7 +126,7 @@ def peer_token_pattern(token: Token, kind: EndpointKind) -> str:
 
 
 def read(key: str) -> Token | None:
-    """Parse a key expression into a token; return None if it is not the key of a ROS token."""
+    """Parse a key expression into a token, or return None if it is not the key of a ROS token."""
     chunks = key.split("/")
     if len(chunks) < _NODE_CHUNKS or chunks[0] != ROOT or not chunks[1].isdecimal():
         return None

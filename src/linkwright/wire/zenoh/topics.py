@@ -187,13 +187,13 @@ class IncomingTopic:
         if not self._has_warned:
             self._has_warned = True
             self._subscription.node.logger.warning(
-                f"Dropped a message of topic '{self._subscription.name}': it does not name its sender and time, as "
-                "those of ROS 2 do over Zenoh"
+                f"Dropped a message of topic '{self._subscription.name}': it lacks the sender and the time that "
+                "ROS 2 sends with each message over Zenoh"
             )
 
 
 def _is_acknowledged(_seconds: float | None) -> bool:
-    """Return True, because a message that was passed to Zenoh counts as sent.
+    """Return True, because a message counts as sent when it was passed to Zenoh.
 
     Zenoh has reliable connections and no acknowledgements.
     """

@@ -23,15 +23,15 @@ class RefusalError(Exception):
 
 
 _MAX_EQUAL_HASHES = 1_000
-"""Python compares each of the keys that have one hash with each."""
+"""The maximum number of keys with the same hash; Python compares each of them with all others."""
 _MAX_COMPARED = 200_000_000
-"""Characters, in one call."""
+"""The maximum number of character comparisons in one call."""
 _MAX_NUMBERS = 1_000
 _QUICK_CODECS = frozenset({"utf-8", "utf-16", "utf-32", "ascii", "iso8859-1", "iso8859-15", "cp1252", "unicode-escape"})
 _MAX_CODED = 10_000
-"""Characters."""
+"""The maximum number of characters for a codec that is not in `_QUICK_CODECS`."""
 _SECONDS = 0.5
-"""The time limit of a regular expression, as for those of other files (decision 0020)."""
+"""The time limit of a regular expression, as for all expressions from files (decision 0020)."""
 
 HASHING = frozenset(
     {

@@ -19,7 +19,7 @@ from linkwright.xacro.faults import Fault
 
 _MAX_LENGTH = 20_000
 _ITERATOR_TYPES = frozenset({GeneratorType, enumerate, filter, map, reversed, zip})
-"""Types of iterators, which are exhausted immediately: thousands of nested ones would overflow the stack."""
+"""Types of iterators that are exhausted immediately: thousands of nested iterators would overflow the stack."""
 _WARNING_TRIGGERS = r"\\|\d\.?[^\W\d]"  # not compiled here because few files need it
 _CLOSING_BRACKETS = {"(": ")", "[": "]"}
 _SYNTAX_HINTS = (
@@ -70,7 +70,7 @@ expressions = _compiler.forms
 
 
 def compile_expression(source: str) -> Expression:
-    """Return the compiled form of an expression, which is cached by source.
+    """Return the compiled form of an expression, from the cache if possible.
 
     Raises:
         Fault: XAC102 or XAC204 if the expression is malformed or forbidden.
@@ -134,7 +134,7 @@ def _parse(source: str, stripped: str) -> ast.Expression:
 
 def _syntax_tree(source: str) -> ast.Expression:
     tree = compile(source, "<expression>", "eval", ast.PyCF_ONLY_AST)
-    assert isinstance(tree, ast.Expression), "that is what the mode 'eval' gives"
+    assert isinstance(tree, ast.Expression), "the mode 'eval' returns an ast.Expression"
     return tree
 
 

@@ -27,7 +27,7 @@ MAX_DIGITS = 1_000
 
 
 class Module:
-    """A named group of functions and constants, such as ``math``, whose members are accessed with a dot."""
+    """A named group of functions and constants, such as ``math``, with access by a dot."""
 
     __slots__ = ("name", "values")
 
@@ -191,7 +191,7 @@ def joined(parts: list[str]) -> str:
 
 
 def as_text(value: Any) -> str:
-    """Return ``str(value)``, which is the text that the expansion writes.
+    """Return the text that the expansion writes for a value: ``str(value)``.
 
     Raises:
         RefusalError: if the text would be too long.
@@ -266,7 +266,7 @@ def power(base: Any, exponent: Any) -> Any:
 
 
 def shift_left(value: Any, bits: Any) -> Any:
-    """Return ``value << by``."""
+    """Return ``value << bits``."""
     if isinstance(value, int) and isinstance(bits, int) and value.bit_length() + bits > MAX_BITS:
         raise RefusalError(phrase("the number has more than {max_bits:,} bits", max_bits=MAX_BITS))
     return value << bits

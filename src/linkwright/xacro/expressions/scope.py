@@ -67,7 +67,7 @@ def truth(value: Any) -> bool:
 
 
 class Context(Protocol):
-    """The interface of an expansion that the evaluation uses; a `Session` implements it.
+    """The interface that the evaluation of expressions needs from a `Session`.
 
     Attributes:
         arguments: the value of every argument passed or declared so far, by name.
@@ -89,11 +89,15 @@ class Context(Protocol):
 
     @property
     def working_directory(self) -> str:
-        """The working directory, which is the value of ``$(cwd)``."""
+        """The working directory: the value of ``$(cwd)``."""
         ...
 
     def evaluate(self, text: str, scope: Scope) -> Any:
-        """Return the value of a text in a scope; raises a `Fault` if the evaluation fails."""
+        """Return the value of a text in a scope.
+
+        Raises:
+            Fault: if the evaluation fails.
+        """
         ...
 
     def warn(self, code: str, message: Phrase, span: Span | None = None, hint: Phrase | None = None) -> object:
@@ -104,11 +108,19 @@ class Context(Protocol):
         ...
 
     def argument(self, name: str) -> str:
-        """Return the value of an argument; raises a `Fault` if it is neither declared nor passed."""
+        """Return the value of an argument.
+
+        Raises:
+            Fault: if the argument is neither declared nor passed.
+        """
         ...
 
     def package(self, name: str) -> str:
-        """Return the share folder of a package; raises a `Fault` if the package is not found."""
+        """Return the share folder of a package.
+
+        Raises:
+            Fault: if the package is not found.
+        """
         ...
 
     def undefined(self, name: str, environment: Environment, start: int, end: int) -> Fault:
@@ -143,7 +155,9 @@ class Scope:
         self.values: dict[str, Any] = {} if values is None else values
 
     def lookup(self, name: str) -> Any:
-        """Return the value of a name; a lazy property is evaluated at its first lookup.
+        """Return the value of a name.
+
+        A lazy property is evaluated at its first lookup.
 
         Raises:
             KeyError: if no scope of the chain defines the name.
@@ -206,7 +220,7 @@ class Scope:
             scope = scope.parent
 
     def document_scope(self) -> Scope:
-        """Return the scope of the document, which is directly inside the outermost scope."""
+        """Return the scope of the document: the one directly inside the outermost scope."""
         scope = self
         while scope.parent is not None and scope.parent.parent is not None:
             scope = scope.parent
@@ -262,7 +276,7 @@ class Scope:
 
 
 class Namespace(Scope):
-    """The scope of an include with a namespace, whose properties are accessed with a dot."""
+    """The scope of an include with a namespace. Expressions access its properties with a dot."""
 
     __slots__ = ()
 

@@ -19,9 +19,10 @@ from linkwright.xacro.expressions.bounded import RefusalError
 from linkwright.xacro.expressions.sandbox import CALLABLE_TYPES, MAX_BITS, MAX_LENGTH, Module
 from linkwright.xacro.faults import Fault
 
-_BARE = ("list", "dict", "map", "len", "str", "float", "int", "bool", "min", "max", "round")
+BARE = ("list", "dict", "map", "len", "str", "float", "int", "bool", "min", "max", "round")
+"""The functions of Python that expressions may call by their bare names."""
 _PYTHON = (
-    *_BARE,
+    *BARE,
     *("abs", "all", "any", "complex", "divmod", "enumerate", "filter", "frozenset", "hash", "isinstance"),
     *("issubclass", "ord", "range", "repr", "reversed", "set", "slice", "sorted", "sum", "tuple", "type"),
     *("vars", "zip"),
@@ -133,7 +134,7 @@ _PYTHON_NAMES: dict[str, Any] = {name: _GUARDED.get(name, getattr(builtins, name
 
 
 def tokenize(text: str, sep: str = ",; ", skip_empty: bool = True) -> list[str]:
-    """Return the parts of a text between any of some separator characters."""
+    """Split a text at each of the separator characters, and return the parts."""
     inside = re.sub(r"(?<!\\)([\[\]])", r"\\\1", sep)
     try:
         parts = bounded.split(f"[{inside}]", text)
@@ -200,7 +201,7 @@ def global_names(session: Provider) -> dict[str, Any]:
     for name in ("sorted", "range"):
         deprecated[name] = session.deprecated(f"python.{name}", _PYTHON_NAMES[name])
     return {
-        **{name: _PYTHON_NAMES[name] for name in _BARE},
+        **{name: _PYTHON_NAMES[name] for name in BARE},
         "True": True,
         "False": False,
         **MATHEMATICS,

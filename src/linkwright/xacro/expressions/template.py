@@ -37,7 +37,7 @@ from linkwright.xacro.faults import Fault
 
 _COMMANDS = ("arg", "find", "env", "optenv", "dirname", "cwd", "eval")
 _COMMANDS_HINT = phrase("the commands are {commands}", commands=joined(_COMMANDS))
-_DIRNAME_WARNING = phrase("ros/xacro knows the command 'dirname', but it always fails")
+_DIRNAME_WARNING = phrase("the command 'dirname' always fails in ros/xacro")
 _DIRNAME_HINT = phrase("write $(find PACKAGE)/FOLDER, or ${xacro.abs_filename('FILE')} for a file beside this one")
 _SUBSTITUTION = r"\$\(([^()$]+)\)"  # not compiled here because few files need it
 
@@ -248,7 +248,7 @@ _KINDS = {
 
 
 def tokenize(text: str) -> list[Token]:
-    """Return the tokens of a text, which together cover the whole text.
+    """Split a text into tokens that cover the whole text.
 
     Raises:
         Fault: XAC101 for a bracket that is never closed or a dollar sign without a meaning.
@@ -349,7 +349,7 @@ templates = _compiler.forms
 
 
 def compile_template(text: str) -> Template:
-    """Return the compiled form of a text, which is cached by text.
+    """Return the compiled form of a text, from the cache if possible.
 
     Raises:
         Fault: XAC101 or XAC102 if the text is malformed.

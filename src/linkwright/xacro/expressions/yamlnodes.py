@@ -48,7 +48,7 @@ class NodeLoader(getattr(yaml, "CSafeLoader", yaml.SafeLoader)):  # type: ignore
         """Check the nesting depth of a node; the path to a node does not affect its tag."""
         self.depth += 1
         if self.depth > _MAX_DEPTH:
-            message = f"the values are nested more than {_MAX_DEPTH} deep"
+            message = f"the values are nested more than {_MAX_DEPTH} levels deep"
             raise yaml.composer.ComposerError(None, None, message, node.start_mark)
 
     def ascend_resolver(self) -> None:

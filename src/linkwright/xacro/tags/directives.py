@@ -316,7 +316,7 @@ def expand_element(expander: Expander, site: Site) -> None:
     """
     node = site.node
     if "xacro:name" not in node.attributes:
-        expander.fail_at("XAC301", phrase("'xacro:element' lacks its attribute 'xacro:name'"), node, node.span())
+        expander.fail_at("XAC301", phrase("'xacro:element' needs the attribute 'xacro:name'"), node, node.span())
     tag = expander.text_value(node, "xacro:name", site.scope)
     _check_name(expander, node, "xacro:name", "element", tag)
     attributes = {name: value for name, value in node.attributes.items() if name != "xacro:name"}

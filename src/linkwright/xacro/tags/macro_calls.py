@@ -55,7 +55,7 @@ def call_dynamically(expander: Expander, site: Site) -> None:
     """Expand ``<xacro:call macro>``: call the macro that the attribute names."""
     node = site.node
     if not node.attributes.get("macro"):
-        expander.fail_at("XAC301", phrase("'xacro:call' lacks its attribute 'macro'"), node, node.span())
+        expander.fail_at("XAC301", phrase("'xacro:call' needs the attribute 'macro'"), node, node.span())
     name = expander.text_value(node, "macro", site.scope)
     attributes = {attribute: value for attribute, value in node.attributes.items() if attribute != "macro"}
     call = Element(PREFIX + name, attributes, node.source, node.offset)
@@ -227,13 +227,12 @@ class _Call:
         try:
             body = macro.body
             container = Container(body.tag)
-            for name, value in body.attributes.items():
+            for name, value in body.attributes.items():  # xacro evaluates `params` here, too, and fails if it cannot
                 if name == "xmlns:xacro" or ("$" not in value and not name.startswith("xmlns:")):
                     continue
-                if name.startswith("xmlns:") or session.changes(value):
-                    evaluated_value = expander.text_value(body, name, scope)
-                    if name.startswith("xmlns:"):
-                        container.attributes[name] = evaluated_value
+                evaluated_value = expander.text_value(body, name, scope)
+                if name.startswith("xmlns:"):
+                    container.attributes[name] = evaluated_value
             expander.children(body, container, scope, macros)
         finally:
             session.frame = outer_frame

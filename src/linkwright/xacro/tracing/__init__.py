@@ -1,1 +1,1 @@
-"""Traced expansions, which yield arguments, provenance of elements, and the property log."""
+"""Traced expansions: arguments, provenance of elements, and the property log."""

@@ -13,7 +13,7 @@ from linkwright.xacro.tracing.provenance_text import place
 def arguments_text(arguments: tuple[Argument, ...]) -> str:
     """Return a line for each argument: name, default, location, and remarks."""
     if not arguments:
-        return "the file takes no arguments\n"
+        return "the file has no arguments\n"
     name_width = max(len(argument.name) for argument in arguments)
     default_width = min(max(len(_default_text(argument)) for argument in arguments), 40)
     lines = []
@@ -67,7 +67,7 @@ def _remarks(argument: Argument) -> list[str]:
     if argument.given:
         remarks.append(f'given "{argument.value}"')
     elif argument.required and argument.default is not None:
-        remarks.append(f'asked for before its default "{argument.default}" is declared')
+        remarks.append(f'used before its default "{argument.default}" is declared')
     elif argument.default is None:
         remarks.append("not declared")
     elif argument.value is not None and argument.value != argument.default:

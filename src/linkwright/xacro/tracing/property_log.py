@@ -16,7 +16,9 @@ from linkwright.xmltree import Element
 
 
 def log_properties(inputs: Inputs, put: Callable[[str], None], *, everywhere: bool) -> None:
-    """Expand a file and log its properties; an error ends the log but is not raised.
+    """Expand a file and log its properties.
+
+    An error ends the log but is not raised.
 
     Args:
         inputs: the inputs of the expansion.

@@ -89,7 +89,7 @@ class Recorder:
         return self._settings_by_attribute.get((id(element), name))
 
     def parameters(self, frame: Frame) -> tuple[Value, ...]:
-        """Return the parameters of a macro call with their values; empty if none are recorded."""
+        """Return the recorded parameters of a macro call with their values."""
         return self._frame_parameters.get(id(frame), ())
 
     # watching

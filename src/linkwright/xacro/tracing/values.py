@@ -1,4 +1,4 @@
-"""The values of all expressions of a description, and of the texts that contain them, in each macro call."""
+"""The values of expressions, and of the texts that contain them, in each macro call."""
 
 from __future__ import annotations
 
@@ -101,6 +101,8 @@ class _RecordingSession(Session):
         place = self.current_node
         if "$" not in text or place is None or place.source is None or self.changes(text):
             return
+        if self.current_attribute == "params" and isinstance(place, Element) and text == place.attributes.get("params"):
+            return  # a list of parameters; the value of each default is recorded when a call needs it
         start = self._start(text)
         if start is None:
             return

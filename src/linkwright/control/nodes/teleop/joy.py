@@ -1,8 +1,9 @@
-"""joy_node of joy and joy_linux_node of joy_linux, which publish the state of a joystick on ``joy``.
+"""joy_node and joy_linux_node, which publish the state of a joystick on ``joy``.
 
-Parameters, the order of axes and buttons, and their signs (forwards and left are positive) are those of the ROS nodes;
-a directional pad is represented by two axes after the others. Deliberate differences: when a joystick is unplugged, the
-node publishes a last message in which nothing is pressed, so that subscribers stop the robot; rumble is not supported.
+Parameters, the order of axes and buttons, and their signs (forwards and left are positive) are those of the ROS nodes
+of the packages joy and joy_linux. A directional pad is represented by two axes after the others. Deliberate
+differences: when a joystick is unplugged, the node publishes a last message in which nothing is pressed, so that
+subscribers stop the robot; rumble is not supported.
 """
 
 from __future__ import annotations
@@ -200,7 +201,10 @@ class JoyNode(SingleNode):
 
 
 class JoyLinuxNode(JoyNode):
-    """The running joy_linux_node, a `JoyNode` with the parameters ``dev``, ``dev_name`` and ``coalesce_interval``."""
+    """The running joy_linux_node, a `JoyNode` with other parameters.
+
+    These are ``dev``, ``dev_name`` and ``coalesce_interval``.
+    """
 
     def _read_settings(self, node: Node) -> _Settings:
         path = Path(node.declare_parameter("dev", "/dev/input/js0").value)

@@ -67,7 +67,10 @@ class JoystickDevice:
             raise
 
     def close(self) -> None:
-        """Close the device; further calls do nothing."""
+        """Close the device.
+
+        Further calls do nothing.
+        """
         descriptor, self._descriptor = self._descriptor, None
         if descriptor is not None:
             asyncio.get_running_loop().remove_reader(descriptor)

@@ -137,11 +137,14 @@ class TeleopTwistKeyboard(SingleNode):
             self.finished.set_result(0)
 
     def _follow(self) -> bool:
-        """Adopt the message type that the subscriptions expect, and return whether there are subscriptions."""
+        """Adopt the message type of the subscriptions, and return whether there are any."""
         return self._topic.review(may_change=self._direction == STILL or self._has_warned) > 0
 
     def _review(self) -> None:
-        """Adopt the type of the subscriptions; warn once if there are none while the robot should move."""
+        """Adopt the message type of the subscriptions.
+
+        If there are none while the robot should move, warn once.
+        """
         if self._follow():
             self._has_warned = False
         elif self._direction != STILL and not self._has_warned:

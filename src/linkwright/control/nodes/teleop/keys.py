@@ -61,7 +61,10 @@ SPEEDS = {
 
 
 def keys_in(text: str) -> Iterator[str]:
-    """Iterate over the keys in a terminal's input; some keys send several characters."""
+    """Iterate over the keys in a terminal's input.
+
+    Some keys send several characters.
+    """
     return (match[0] for match in _KEYS.finditer(text))
 
 

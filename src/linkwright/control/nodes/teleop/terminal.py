@@ -35,7 +35,10 @@ class KeyTerminal:
         self._undo = _watch_windows(self._on_data) if sys.platform == "win32" else self._watch(descriptor)
 
     def close(self) -> None:
-        """Restore the terminal; further calls do nothing."""
+        """Restore the terminal.
+
+        Further calls do nothing.
+        """
         restore, self._undo = self._undo, lambda: None
         restore()
 

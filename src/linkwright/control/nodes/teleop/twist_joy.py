@@ -1,4 +1,4 @@
-"""teleop_node of teleop_twist_joy, which drives a robot by joystick while a button is held.
+"""teleop_twist_joy's teleop_node, which drives a robot by joystick while a button is held.
 
 Parameters and defaults are those of the ROS node. Deliberate differences: unless ``publish_stamped_twist`` is set, the
 node publishes the type that the subscriptions of the topic expect; and it stops the robot when the last publisher of
@@ -40,7 +40,7 @@ class _Axis:
     turbo_scale: float
 
     def velocity(self, axes: Sequence[float], *, turbo: bool) -> float:
-        """Return the velocity for the axis values of a message, or 0 if the joystick does not have the axis."""
+        """Return the velocity for axis values, or 0 if the joystick does not have the axis."""
         if not 0 <= self.number < len(axes):
             return 0.0
         return axes[self.number] * (self.turbo_scale if turbo else self.scale)

@@ -42,7 +42,10 @@ class _Source:
         self._latest_message_ns = now_ns
 
     def expired(self, now_ns: int) -> bool:
-        """Return whether no message arrived within the timeout; False if the input has no timeout."""
+        """Return whether no message arrived within the timeout.
+
+        An input without a timeout never expires.
+        """
         if self.timeout == 0.0:
             return False
         return (

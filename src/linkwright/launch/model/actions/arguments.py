@@ -114,7 +114,7 @@ class DeclareLaunchArgument(Action):
 
     @property
     def default_value(self) -> list[Substitution] | None:
-        """The default value, as substitutions; None for a required argument."""
+        """The default value as substitutions, or None for a required argument."""
         return self._default
 
     @property
@@ -134,7 +134,7 @@ class DeclareLaunchArgument(Action):
 
     @property
     def _conditionally_included(self) -> bool:
-        """The value of `conditionally_included`, for code that reads it under its private name in ROS."""
+        """The value of `conditionally_included`, under the private name that it has in ROS."""
         return self.conditionally_included
 
     def describe(self) -> str:
@@ -198,7 +198,7 @@ class DeclareBooleanLaunchArgument(DeclareLaunchArgument):
 
     @classmethod
     def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
-        """Return the class and keyword arguments for the tag, which accepts no choices."""
+        """Return the class and keyword arguments for the tag. The tag accepts no choices."""
         _, kwargs = super().parse(entity, parser)
         if "choices" in kwargs:
             raise ValueError("Cannot specify choices for bool_arg")

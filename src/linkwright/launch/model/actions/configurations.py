@@ -80,7 +80,7 @@ class ResetLaunchConfigurations(Action):
         return cls, kwargs
 
     def execute(self, context: LaunchContext) -> None:
-        """Replace all launch configurations by the given ones."""
+        """Replace all launch configurations with the given ones."""
         configurations = perform_pairs(context, self._new_configurations)
         context.launch_configurations.clear()
         context.launch_configurations.update(configurations)

@@ -99,7 +99,7 @@ class AppendEnvironmentVariable(AssigningAction):
 
 @expose_action("rep_env")
 class ReplaceEnvironmentVariables(Action):
-    """Replaces the entire environment by the given variables.
+    """Replaces the entire environment with the given variables.
 
     Args:
         environment: maps the names of the variables to their values.

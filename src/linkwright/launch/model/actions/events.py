@@ -45,7 +45,7 @@ class RegisterEventHandler(_HandlerAction):
         context.register_event_handler(self._event_handler)
 
     def describe_conditional_sub_entities(self) -> list[tuple[str, Iterable[LaunchDescriptionEntity]]]:
-        """Return the entities that the handler visits, with a text about the event, if they are known."""
+        """Return the handler's entities with a text about the event, or an empty list if unknown."""
         entities = self.get_sub_entities()
         return [(f"{self._event_handler} handles an event", entities)] if entities else []
 
@@ -67,7 +67,7 @@ class UnregisterEventHandler(_HandlerAction):
 
 
 class EmitEvent(Action):
-    """Emits an event, which the launch then handles."""
+    """Emits an event for the launch to handle."""
 
     def __init__(self, *, event: events.Event, **kwargs: Any) -> None:
         super().__init__(**kwargs)

@@ -159,7 +159,10 @@ class ExecuteLocal(Action):
         return self._read_cached_output(2)
 
     def get_sub_entities(self) -> Sequence[LaunchDescriptionEntity]:
-        """Return the entities to visit when the process has ended; empty if a function returns them."""
+        """Return the entities to visit when the process has ended.
+
+        The result is empty if a function returns the entities.
+        """
         return self._on_exit
 
     def describe(self) -> str:
@@ -306,7 +309,7 @@ class ExecuteLocal(Action):
 
     def _read_cached_output(self, stream: int) -> str:
         if self._output_chunks is None:
-            raise RuntimeError("cached output must be true to be able to get stdout: give it cached_output=True")
+            raise RuntimeError("cached output must be true to be able to get stdout: pass cached_output=True")
         return b"".join(self._output_chunks[stream]).decode(errors="replace")
 
 
@@ -418,26 +421,17 @@ class ExecuteProcess(ExecuteLocal):
 
     @property
     def name(self) -> Any:
-        """The name of the process in the log, such as ``talker-1``; substitutions until it is evaluated.
-
-        The property contains substitutions until the name is evaluated.
-        """
+        """The name of the process in the log, such as ``talker-1``, or substitutions before evaluation."""
         return self._description.final_name or self._description.name
 
     @property
     def cwd(self) -> Any:
-        """The folder in which the process runs; substitutions until it is evaluated.
-
-        The property contains substitutions until the folder is evaluated.
-        """
+        """The folder in which the process runs, or substitutions before evaluation."""
         return self._description.final_cwd or self._description.cwd
 
     @property
     def env(self) -> Any:
-        """The environment of the process; substitutions until it is evaluated.
-
-        The property contains substitutions until the environment is evaluated.
-        """
+        """The environment of the process, or substitutions before evaluation."""
         return self._description.final_env or self._description.env
 
     @property

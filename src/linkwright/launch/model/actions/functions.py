@@ -82,7 +82,7 @@ class OpaqueCoroutine(Action):
 
         loop = context.asyncio_loop
         if loop is None:
-            raise RuntimeError("a coroutine needs a launch that runs")
+            raise RuntimeError("a coroutine can be started only while a launch is running")
         args = self._args if self._ignore_context else (context, *self._args)
         task = loop.create_task(self._coroutine(*args, **self._kwargs))
         self._task = task

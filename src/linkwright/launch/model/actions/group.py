@@ -53,7 +53,7 @@ class GroupAction(Action):
 
     @classmethod
     def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
-        """Return the class and keyword arguments for the tag, with the ``keep`` tags and actions inside."""
+        """Return the class and keyword arguments for the tag, its ``keep`` tags and its actions."""
         _, kwargs = super().parse(entity, parser)
         for name in ("scoped", "forwarding"):
             value = entity.get_attr(name, data_type=bool, optional=True, can_be_str=False)

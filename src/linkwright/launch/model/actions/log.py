@@ -132,7 +132,7 @@ class LogInfo(_LogOfLevel):
 
 @expose_action("log_debug")
 class LogDebug(_LogOfLevel):
-    """Writes a line at level DEBUG, which is shown only with ``--debug``."""
+    """Writes a line at level DEBUG, shown only with ``--debug``."""
 
     _LEVEL = "DEBUG"
 

@@ -66,7 +66,7 @@ class ForEach(Action):
         return f"{type(self).__name__}(input_values={describe(self._input_values)}, function={_name(self._function)})"
 
     def execute(self, context: LaunchContext) -> Sequence[LaunchDescriptionEntity]:
-        """Return the entities for all sets of values, which are visited next.
+        """Return the entities to visit next, for all sets of values.
 
         Raises:
             LinkwrightError: LAUNCH151, a set is not a mapping.
@@ -146,7 +146,7 @@ class ForLoop(Action):
         return f"{type(self).__name__}(length={length}, name='{self._name}', function={function})"
 
     def execute(self, context: LaunchContext) -> Sequence[LaunchDescriptionEntity]:
-        """Return a `ForEach` over the indices, which is visited next.
+        """Return a `ForEach` over the indices, to be visited next.
 
         Raises:
             ValueError: LAUNCH151, the length is not an integer.

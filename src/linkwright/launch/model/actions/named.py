@@ -64,7 +64,7 @@ class AssigningAction(NamedAction):
 
     @classmethod
     def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
-        """Return the class and keyword arguments for the tag, with its attributes ``name`` and ``value``."""
+        """Return the class and keyword arguments for the tag, including its name and value."""
         _, kwargs = super().parse(entity, parser)
         kwargs["value"] = parser.parse_substitution(entity.get_attr("value"))
         return cls, kwargs

@@ -62,7 +62,10 @@ class _ArgumentSplitter:
         self._has_begun = True
 
     def add_text(self, text: str) -> None:
-        """Add literal text, which may end the current argument and start others."""
+        """Add literal text.
+
+        The text may end the current argument and start others.
+        """
         characters = iter(text)
         for character in characters:
             if self.quote == character:

@@ -33,7 +33,7 @@ class Entity:
 
     @property
     def place(self) -> Place | None:
-        """The location of the entity in its file; None if a program created the entity."""
+        """The location of the entity in its file, or None if a program created the entity."""
         return None
 
     def assert_entity_completely_parsed(self) -> None:
@@ -108,14 +108,17 @@ class Parser(Protocol):
         """Parse a text that may contain ``$(...)`` into substitutions."""
 
     def parse_if_substitutions(self, value: Any) -> Any:
-        """Return a value with the substitutions in its strings parsed; strings without any are unchanged."""
+        """Return a value with the substitutions in its strings parsed.
+
+        Strings without substitutions are unchanged.
+        """
 
     def escape_characters(self, value: str) -> str:
         """Return the text with its backslash escapes resolved."""
 
 
 def parse_texts(entity: Entity, parser: Parser, **attributes: str) -> dict[str, list[Substitution]]:
-    """Return keyword arguments for those of the given attributes that the tag has.
+    """Return keyword arguments for the given attributes, without those that the tag lacks.
 
     Args:
         entity: the tag.

@@ -42,7 +42,7 @@ _BOOLEANS_BY_DIGIT = {"1": "true", "0": "false"}
 
 
 def is_typing_list(data_type: Any) -> bool:
-    """Return whether a type is ``List``, ``List[...]`` or ``list[...]``; ``list`` alone is not."""
+    """Return whether a type is ``List``, ``List[...]`` or ``list[...]``, but not plain ``list``."""
     return data_type is typing.List or typing.get_origin(data_type) is list  # noqa: UP006 - users may pass it
 
 
@@ -65,7 +65,7 @@ def extract_type(data_type: Any) -> tuple[Any, bool]:
 
 
 def is_instance_of_valid_type(value: Any, can_be_str: bool = False) -> bool:
-    """Return whether a value is a scalar of an allowed type, or a list with items of one such type.
+    """Return whether a value is a scalar of an allowed type, or a list of one such type.
 
     If `can_be_str` is set, lists may contain strings among other items.
     """
@@ -99,7 +99,7 @@ def is_instance_of(value: Any, data_type: Any = None, can_be_str: bool = False) 
 
 
 def coerce_to_type(value: str, data_type: Any = None, can_be_str: bool = False) -> Any:
-    """Return the value of a type that a string represents.
+    """Convert a string to a value of a type.
 
     Args:
         value: the string.
@@ -163,7 +163,7 @@ def _parse_yaml(value: str, message: str, can_be_str: bool) -> Any:
 
 
 def coerce_list(value: list[str], data_type: Any = None, can_be_str: bool = False) -> list[Any]:
-    """Return the values of a scalar type that a list of strings represents; see `coerce_to_type`.
+    """Convert a list of strings to a list of values of a scalar type. See `coerce_to_type`.
 
     Raises:
         TypeError: the value is not a list of strings.
@@ -178,7 +178,7 @@ def coerce_list(value: list[str], data_type: Any = None, can_be_str: bool = Fals
 
 
 def get_typed_value(value: str | list[str], data_type: Any = None, can_be_str: bool = False) -> Any:
-    """Return the value of a type that a string or a list of strings represents; see `coerce_to_type`.
+    """Convert a string or a list of strings to a value of a type. See `coerce_to_type`.
 
     Raises:
         TypeError: the value is a list although the type is not, or it is neither a string nor a list of strings.
@@ -197,7 +197,10 @@ def get_typed_value(value: str | list[str], data_type: Any = None, can_be_str: b
 
 
 def is_substitution(value: Any) -> bool:
-    """Return whether a value is a substitution, or an iterable of strings and at least one substitution."""
+    """Return whether a value is a substitution, or an iterable with at least one.
+
+    The other items of the iterable must be strings.
+    """
     if isinstance(value, Substitution):
         return True
     if isinstance(value, str) or not isinstance(value, Iterable):
@@ -250,7 +253,7 @@ def normalize_typed_substitution(value: Any, data_type: Any) -> Any:
 
 
 def perform_typed_substitution(context: Any, value: Any, data_type: Any = None) -> Any:
-    """Return the value of a type to which the result of `normalize_typed_substitution` evaluates.
+    """Evaluate the result of `normalize_typed_substitution` to a value of a type.
 
     Raises:
         TypeError: a value without substitutions has another type.

@@ -36,8 +36,8 @@ class Command(DeclaredSubstitution, tag="command", shown="Command({command})"):
 
     Args:
         command: the program and its arguments, quoted as in a shell.
-        on_stderr: what output to stderr causes: ``fail`` (the default), ``warn``, ``ignore`` or ``capture``, which
-            appends it to the result.
+        on_stderr: the effect of output to stderr: ``fail`` (the default), ``warn``, ``ignore``, or ``capture`` to
+            append the output to the result.
     """
 
     command: Texts = Texts()

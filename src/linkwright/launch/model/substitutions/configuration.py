@@ -34,7 +34,10 @@ _NAME_REPLACEMENTS = str.maketrans(".-:", "___")
 
 
 def normalize_default(default: Any) -> list[Substitution]:
-    """Return a default as substitutions; it may also be, or contain, numbers and booleans."""
+    """Return a default as substitutions.
+
+    The default may be or contain numbers and booleans.
+    """
     values = default if isinstance(default, (list, tuple)) else [default]
     return normalize_to_list_of_substitutions(
         [value if isinstance(value, Substitution) else str(value) for value in values]
@@ -191,7 +194,7 @@ class ThisLaunchFileDir(DeclaredSubstitution, tag="dirname"):
         folder = context.get_locals_as_dict().get("current_launch_file_directory")
         if folder is not None:
             return str(folder)
-        path: str = ThisLaunchFile.perform(self, context)  # type: ignore[arg-type]  # asks nothing of self
+        path: str = ThisLaunchFile.perform(self, context)  # type: ignore[arg-type]  # does not use self
         return str(Path(path).parent)
 
 
@@ -216,7 +219,7 @@ class AnonName(DeclaredSubstitution, tag=_ANONYMOUS):
         name = perform_substitutions(context, self.name)
         unique_names: dict[str, str] = context.launch_configurations.setdefault(_ANONYMOUS, {})
         if name not in unique_names:
-            random_number = random.randint(0, sys.maxsize)  # noqa: S311 - a name, no secret
+            random_number = random.randint(0, sys.maxsize)  # noqa: S311 - a name, not a secret
             unique_name = f"{name}_{socket.gethostname()}_{os.getpid()}_{random_number}"
             unique_names[name] = unique_name.translate(_NAME_REPLACEMENTS)
         return unique_names[name]

@@ -155,7 +155,7 @@ class AllSubstitution(_MultiValueSubstitution):
 class IfElseSubstitution(
     DeclaredSubstitution, tag="if", shown="IfElseSubstitution({condition}, {if_value}, {else_value})"
 ):
-    """Evaluates to one of two texts, which a boolean selects.
+    """Evaluates to one of two texts, selected by a boolean.
 
     Args:
         condition: the boolean.

@@ -1,4 +1,4 @@
-"""Substitutions for the values of loops; see `linkwright.launch.model.actions.loops`."""
+"""Substitutions for the values of loops. See `linkwright.launch.model.actions.loops`."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class ForEachVar(DeclaredSubstitution, tag="for-var", shown="{kind}(name={name},
     default_value: OptionalTexts = OptionalTexts(default=None, kw_only=True)
 
     @classmethod
-    def wrong_count(cls, expected: str, given: int) -> Exception:  # noqa: ARG003 - the interface
+    def wrong_count(cls, expected: str, given: int) -> Exception:  # noqa: ARG003 - the interface requires it
         """Return a ValueError for a wrong number of arguments, as ROS does."""
         return ValueError(f"{cls.__name__} substitution expects {expected}")
 

@@ -114,7 +114,7 @@ def _event_loop() -> Iterator[asyncio.AbstractEventLoop]:
     loop.close()
 
 
-def _launch_service(event_loop: asyncio.AbstractEventLoop) -> Iterator[LaunchService]:  # noqa: ARG001 - to outlast it
+def _launch_service(event_loop: asyncio.AbstractEventLoop) -> Iterator[LaunchService]:  # noqa: ARG001 - closed first
     """Yield the service that launches the description."""
     service = ProcessLaunchService()
     yield service
@@ -157,4 +157,4 @@ def finish(service: LaunchService, phase: str, *, ask: bool = True) -> None:
         service.shutdown(force_sync=True)
     status = loop.run_until_complete(task)
     if status != 0:
-        pytest.fail(f"{phase}: the launch failed with status {status}; its output says why", pytrace=False)
+        pytest.fail(f"{phase}: the launch failed with status {status}; see its output", pytrace=False)

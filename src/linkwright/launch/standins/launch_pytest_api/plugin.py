@@ -104,7 +104,7 @@ def _launch(
     """Start a launch, and wait until its `ReadyToTest` action is executed."""
     actions = list(find_ready_actions(description.entities))
     if len(actions) > 1:
-        pytest.fail(f"launch fixture '{options.fixture}': only one ReadyToTest action may be in it", pytrace=False)
+        pytest.fail(f"launch fixture '{options.fixture}': it may contain only one ReadyToTest action", pytrace=False)
     if not actions:
         actions.append(ReadyToTest())
         description.add_action(actions[0])
@@ -162,7 +162,10 @@ class LaunchTest(pytest.Function):
 
     @property
     def launch(self) -> tuple[object, ...]:
-        """The key of the launch that the test belongs to, which is equal for all tests of one launch."""
+        """The key of the launch that the test belongs to.
+
+        All tests of one launch have the same key.
+        """
         kinds: dict[str, Any] = {"function": pytest.Function, "class": pytest.Class, "module": pytest.Module}
         scope_node = self.getparent(kinds.get(self.options.scope, pytest.Session)) or self.getparent(pytest.Module)
         params = self.callspec.indices if hasattr(self, "callspec") else {}

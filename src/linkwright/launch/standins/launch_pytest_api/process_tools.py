@@ -1,9 +1,9 @@
 """Functions that wait for output or the exit of processes (``launch_pytest.tools.process``).
 
-Each function takes the launch's context, the action that runs the process, and a timeout in seconds, or None to wait
-without limit. The coroutines are for tests that run on the launch's event loop. The functions whose names end in
-``_sync`` are for tests that run in another thread. As in ROS, a start or an exit before the call does not count: the
-functions wait for the next start or exit. Output is available only for actions with ``cached_output=True``.
+The arguments of each function are the launch's context, the action that runs the process, and a timeout in seconds, or
+None to wait without limit. The coroutines are for tests that run on the launch's event loop. The functions whose names
+end in ``_sync`` are for tests that run in another thread. As in ROS, a start or an exit before the call does not count:
+the functions wait for the next start or exit. Output is available only for actions with ``cached_output=True``.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ class _Wait:
 
     Args:
         context: the context of the launch.
-        create_handler: returns an event handler that calls the function that it is given.
+        create_handler: returns an event handler that calls the given function.
         timeout: the timeout in seconds; None to wait without limit.
         condition: the condition that must hold now or after an event; None if the first event ends the wait.
         on_timeout: called if the wait times out.
@@ -122,7 +122,7 @@ def _remaining_seconds(deadline: float | None) -> float | None:
 def _wait_functions(
     create_wait: Callable[_P, _Wait],
 ) -> tuple[Callable[_P, Coroutine[Any, Any, Any]], Callable[_P, Any]]:
-    """Return a coroutine function and a function that each perform the wait that `create_wait` creates.
+    """Return a coroutine function and a plain function that wait as `create_wait` specifies.
 
     Both have the signature and docstring of `create_wait`.
     """
@@ -203,13 +203,13 @@ def _exit_wait(
 
 
 def _output_access(action: ExecuteLocal, stream: str) -> tuple[Callable[[Reaction], Handler], Callable[[], str]]:
-    """Return a factory of event handlers for output, and a function that returns the output so far.
+    """Return a factory of handlers for the output of a process, and a getter of its output.
 
-    The parameter `stream` is ``stdout`` or ``stderr``.
+    `stream` is ``stdout`` or ``stderr``.
     """
 
     def handler(react: Reaction) -> Handler:
-        return OnProcessIO(target_action=action, **{f"on_{stream}": react})  # type: ignore[arg-type]  # a keyword by its name
+        return OnProcessIO(target_action=action, **{f"on_{stream}": react})  # type: ignore[arg-type]  # a keyword name
 
     return handler, getattr(action, f"get_{stream}")
 

@@ -1,4 +1,4 @@
-"""The command ``launch_test``, which runs tests during and after their launch.
+"""The command ``launch_test``: runs tests during and after their launch.
 
 This module replaces ``launch_testing.launch_test``.
 """
@@ -70,7 +70,7 @@ def run(
     try:
         parse_launch_arguments(args.launch_arguments)
         runner.validate()
-    except Exception as error:  # noqa: BLE001 - launch_testing raises no class of its own
+    except Exception as error:  # noqa: BLE001 - launch_testing raises plain Exception
         parser.error(str(error))
     if args.show_args:
         print_arguments_of_launch_description(launch_description=runs[0].get_launch_description())
@@ -88,7 +88,10 @@ def print_arguments_of_launch_description(*, launch_description: LaunchDescripti
 
 
 def main() -> None:
-    """Run the command, and exit with status 0 if all tests passed, 1 if not, and 2 for a usage error."""
+    """Run the command, and exit.
+
+    The status is 0 if all tests passed, 1 if not, and 2 for a usage error.
+    """
     parser, args = parse_arguments()
     sys.exit(run(parser, args))
 

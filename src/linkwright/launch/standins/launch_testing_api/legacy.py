@@ -132,7 +132,7 @@ class LaunchTestService:
         return action
 
     def run(self, launch_service: Any, *args: Any, **kwargs: Any) -> int:
-        """Run a launch service and return its status, or that of the first failed test if the launch succeeds.
+        """Run a launch service, and return its status.
 
         If this status is 0, return the status of the first failed test.
         """

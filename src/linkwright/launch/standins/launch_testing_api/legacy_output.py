@@ -23,7 +23,7 @@ def get_default_filtered_patterns() -> list[bytes]:
 def create_output_lines_filter(
     filtered_prefixes: Sequence[bytes] | None = None,
     filtered_patterns: Sequence[bytes] | None = None,
-    filtered_rmw_implementation: str | None = None,  # noqa: ARG001  # ours writes nothing
+    filtered_rmw_implementation: str | None = None,  # noqa: ARG001  # Linkwright's writes no lines
 ) -> Callable[[bytes], bytes]:
     """Return a function that removes the lines with certain prefixes or patterns from an output."""
     prefixes = tuple(filtered_prefixes or get_default_filtered_prefixes())

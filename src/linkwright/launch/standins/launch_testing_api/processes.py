@@ -32,7 +32,7 @@ class ProcessRecords(Protocol):
 
 
 def KeepAliveProc() -> ExecuteProcess:
-    """Return a process that does nothing but keeps the launch running until the tests end."""
+    """Return an idle process that keeps the launch running until the tests end."""
     return ExecuteProcess(cmd=[sys.executable, "-c", _KEEP_ALIVE_SCRIPT])
 
 

@@ -15,11 +15,11 @@ from linkwright.launch.standins.launch_testing_api.records import ActiveIoHandle
 
 
 class Outcome:
-    """The result of a wait, with the output up to the end of the wait.
+    """The result of a wait: true if the wait succeeded before its timeout.
 
-    is_true: whether the wait succeeded before its timeout.
+    Args:
+        is_true: whether the wait succeeded before its timeout.
         output: the output of the process up to the end of the wait; None if it was not read.
-        output: the output.
     """
 
     def __init__(self, is_true: bool, output: str | None) -> None:
@@ -109,7 +109,7 @@ class ProcessProxy:
             return self._proc_info.proc_event.wait_for(lambda: self.terminated, timeout=timeout)
 
     def wait_for_output(self, condition: Callable[[str], Any] | None = None, timeout: float | None = None) -> Outcome:
-        """Wait for output of the process, and return whether it arrived in time, with the output so far.
+        """Wait for output of the process.
 
         Return whether the output arrived in time, with the output so far.
 

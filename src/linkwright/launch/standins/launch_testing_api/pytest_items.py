@@ -64,7 +64,7 @@ class LaunchTestItem(pytest.Item):
     runner_cls: type[LaunchTestRunner]
 
     @classmethod
-    def from_parent(  # type: ignore[override]  # pytest's own way for items with more arguments
+    def from_parent(  # type: ignore[override]  # as pytest documents for more arguments
         cls,
         parent: pytest.Collector,
         *,

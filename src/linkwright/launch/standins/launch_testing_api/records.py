@@ -1,7 +1,7 @@
 """Records of the output and exits of processes in a launch, for tests.
 
-These are the handlers of ``launch_testing``. The active handlers are for tests that run during the launch; they can
-wait for records. Each active handler contains a plain handler, which is for tests that run after the launch.
+These are the handlers of ``launch_testing``. The active handlers are for tests that run during the launch, and can wait
+for records. Each active handler contains a plain handler for tests that run after the launch.
 """
 
 from __future__ import annotations
@@ -138,7 +138,7 @@ class ActiveIoHandler:
             return self._io_handler[key]
 
     def assertWaitFor(self, *args: Any, **kwargs: Any) -> None:
-        """Raise AssertionError unless a text arrives in the output in time; see `waitFor`."""
+        """Raise AssertionError unless a text arrives in the output in time. See `waitFor`."""
         if not self.waitFor(*args, **kwargs):
             raise AssertionError("Waiting for output timed out")
 

@@ -107,7 +107,7 @@ class SkipResult(_NotRunResult):
 def unittestResultsToXml(
     *, name: str = "launch_test", test_results: Mapping[Any, Any] | None = None
 ) -> ET.ElementTree[ET.Element]:
-    """Return an XML document with a root ``testsuites`` that contains the results of several launches.
+    """Return an XML document ``testsuites`` with the results of several launches.
 
     Args:
         name: the name of the document.

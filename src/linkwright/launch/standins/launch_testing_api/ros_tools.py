@@ -215,7 +215,9 @@ class DataRepublisher:
 
 
 def get_rmw_output_filter(rmw_implementation: str, filter_type: str) -> list[str]:
-    """Return the prefixes or patterns of lines that tests ignore in the output of an rmw implementation.
+    """Return the prefixes or patterns of lines that tests ignore.
+
+    The lines are those of an rmw implementation's output.
 
     Args:
         rmw_implementation: the package of the rmw implementation.

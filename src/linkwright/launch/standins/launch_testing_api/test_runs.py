@@ -108,7 +108,7 @@ class TestRun:
                 setattr(case, name, _bind_arguments(getattr(case, name), injected_args or {}))
 
     def all_cases(self) -> Iterator[unittest.TestCase]:
-        """Return an iterator over all tests, including finished ones."""
+        """Return an iterator over all tests, including finished tests."""
         return iter(self._cases)
 
     def __str__(self) -> str:
@@ -166,7 +166,7 @@ class PostShutdownTestLoader(_Loader):
 
 
 def _iterate_cases(tests: Iterable[Any]) -> Iterator[Any]:
-    """Yield the tests in test suites, which may be nested."""
+    """Yield the tests in test suites, including nested ones."""
     for test in tests:
         if isinstance(test, Iterable):
             yield from _iterate_cases(test)
@@ -180,6 +180,9 @@ def _rename(case: Any, name: str) -> None:
 
 
 def _bind_arguments(function: Callable[..., Any], given: Mapping[str, Any]) -> Callable[..., Any]:
-    """Return a function with those of the given arguments bound that it has parameters for."""
+    """Bind given arguments to the parameters of a function.
+
+    Arguments without a parameter are ignored.
+    """
     parameters = inspect.signature(function).parameters
     return functools.partial(function, **{name: value for name, value in given.items() if name in parameters})

@@ -15,11 +15,11 @@ Range = tuple[int, int]
 """The start and end index of a match: in a text, or in a list of lines."""
 
 Match = Callable[..., "Range | None"]
-"""Takes a text or lines, and an optional start index; returns the range of the match, or None."""
+"""Returns the range of a match in a text or lines, or None. A start index is optional."""
 
 
 def normalize_lineseps(lines: str) -> str:
-    r"""Return a text with ``\n`` line ends instead of those of a terminal."""
+    r"""Return a text with each line end of the system or a terminal replaced with ``\n``."""
     return lines.replace(os.linesep, "\n").replace("\r\n", "\n")
 
 

@@ -214,7 +214,7 @@ def _sensor(node: Node, kind: str, name: str, topic: str) -> SensorSettings:
     declare("nodelay", False)  # A parameter of ROS 1 that parameter files still contain.
     if not any(sensor.used):
         node.get_logger().warning(
-            f"{topic} is listed as an input topic ({name}), but nothing that it gives is true in {name}_config"
+            f"{topic} is listed as an input topic ({name}), but {name}_config enables none of its values"
         )
     return sensor
 
@@ -261,7 +261,10 @@ def _control(node: Node, sensors: Sequence[SensorSettings]) -> Control | None:
 
 
 def _covariance(node: Node, name: str, default: Matrix) -> Matrix:
-    """Return a covariance from a parameter, which has all 225 numbers or the 15 numbers of the diagonal."""
+    """Return a covariance from a parameter, or the default if the parameter is not set.
+
+    The parameter has all 225 numbers or the 15 numbers of the diagonal.
+    """
     numbers = _numbers(node, name, (SIZE * SIZE, SIZE))
     if numbers is None:
         return default

@@ -1,4 +1,4 @@
-"""ekf_node and ukf_node of robot_localization, which estimate pose and motion from several sensors.
+"""robot_localization's ekf_node and ukf_node, which estimate pose and motion from sensors.
 
 The nodes follow robot_localization 3.5 (ROS 2 Humble) and later, with these deliberate differences:
 

@@ -1,4 +1,4 @@
-"""navsat_transform_node of robot_localization, which converts satellite fixes to odometry and back.
+"""robot_localization's navsat_transform_node: satellite fixes to odometry, and back.
 
 The node follows robot_localization 3.5 (ROS 2 Humble). The origin and rotation of the map on the earth come from a
 datum, or from the first fix, the first odometry and the heading of an IMU (0 is east). Deliberate differences: the
@@ -196,7 +196,7 @@ class NavsatTransformNode(SingleNode):
             self._send_transform()
 
     def _send_transform(self) -> None:
-        assert self._grid_in_map is not None, "it was placed"
+        assert self._grid_in_map is not None, "the map was placed on the earth"
         parent, child, pose = self._world_frame, "local_enu" if self._local else "utm", self._grid_in_map
         if self._grid_is_parent:
             parent, child, pose = child, parent, invert(pose)
@@ -217,7 +217,7 @@ class NavsatTransformNode(SingleNode):
         """Convert a geodetic position (degrees and metres) to a point of the grid, in metres."""
         if self._plane is not None:
             return self._plane.point_from_geodetic(*place)
-        assert self._zone is not None, "it comes with the first place"
+        assert self._zone is not None, "`_place_map` sets it"
         easting, northing = utm_from_degrees(place[0], place[1], self._zone)
         return easting, northing, place[2]
 
@@ -225,16 +225,16 @@ class NavsatTransformNode(SingleNode):
         """Convert a point of the grid, in metres, to a geodetic position (degrees and metres)."""
         if self._plane is not None:
             return self._plane.geodetic_from_point(point)
-        assert self._zone is not None, "it comes with the first place"
+        assert self._zone is not None, "`_place_map` sets it"
         latitude, longitude = degrees_from_utm(point[0], point[1], self._zone)
         return latitude, longitude, point[2]
 
     def _map_from_geodetic(self, place: Vector3) -> Vector3:
-        assert self._grid_in_map is not None, "it was placed"
+        assert self._grid_in_map is not None, "the map was placed on the earth"
         return compose(self._grid_in_map, (*self._grid_from_geodetic(place), 0.0, 0.0, 0.0, 1.0))[:3]
 
     def _geodetic_from_map(self, point: Vector3) -> Vector3:
-        assert self._grid_in_map is not None, "it was placed"
+        assert self._grid_in_map is not None, "the map was placed on the earth"
         return self._place(compose(invert(self._grid_in_map), (*point, 0.0, 0.0, 0.0, 1.0))[:3])
 
     # --- output ------------------------------------------------------------------------------------------------------

@@ -1,4 +1,4 @@
-"""The sensors of ekf_node, which convert their messages to measurements in the filter's frames."""
+"""The sensors of ekf_node, which convert messages to measurements in the filter's frames."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ class Surroundings:
 
     @property
     def filter(self) -> KalmanFilter:
-        """The filter; its estimate is needed to convert some measurements."""
+        """The filter, whose estimate is needed to convert some measurements."""
         return self.estimator.filter
 
 
@@ -102,7 +102,10 @@ class Source:
             )
 
     def forget(self, *, time: bool) -> None:
-        """Treat the next pose as the first pose; if `accept_older` is set, also accept older stamps."""
+        """Treat the next pose as the first pose.
+
+        If `time` is set, also accept messages with older stamps.
+        """
         self._pose.forget()
         if time:
             self._latest_ns = -1
@@ -194,7 +197,7 @@ class Source:
         self._add(reading, "acceleration", stamp_ns, self._settings.acceleration_threshold)
 
     def _attitude(self, message: Any, mounting: Transform) -> Quaternion:
-        """Return the orientation that an IMU measured, or the estimated orientation if it measures none."""
+        """Return the orientation from an IMU's message, or the estimate if the IMU measures none."""
         if _is_measured(message.orientation_covariance):
             return _orientation(message.orientation)
         roll, pitch, yaw = (float(angle) for angle in self._around.filter.state[ANGLES])

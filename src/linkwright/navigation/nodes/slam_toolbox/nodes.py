@@ -33,7 +33,7 @@ class _Managed(ManagedNode):
     kind: type[AsyncSlamToolbox]
 
     def declare(self) -> None:
-        """Declare ``use_lifecycle_manager``; a bond is formed only if it is true."""
+        """Declare ``use_lifecycle_manager``, and disable the bond if its value is false."""
         if not self.declare_parameter("use_lifecycle_manager", False).value:
             self._beats = 0.0
 
@@ -118,6 +118,6 @@ class LocalizationSlamToolbox(AsyncSlamToolbox):
 
 
 class MapAndLocalizationSlamToolbox(AsyncSlamToolbox):
-    """The running map_and_localization node, which maps until a service switches it to localization."""
+    """The running map_and_localization node, which a service switches to localization."""
 
     SWITCHES = True

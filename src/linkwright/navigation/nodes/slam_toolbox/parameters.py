@@ -1,4 +1,4 @@
-"""The parameters of slam_toolbox's nodes, with their names, types and defaults in 2.6 (Humble) and 2.8 (Jazzy)."""
+"""The parameters of slam_toolbox's nodes, as in 2.6 (Humble) and 2.8 (Jazzy)."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ class Settings:
 
 
 class _ParameterReader:
-    """A reader of a node's parameters, which declares each parameter when it is first read."""
+    """A parameter reader that declares each parameter of a node on the first read."""
 
     def __init__(self, node: Node) -> None:
         self._node = node

@@ -115,7 +115,7 @@ class Toolbox:
             self._begin(self._redraw())
 
     def stop(self) -> None:
-        """Stop mapping; the map is kept."""
+        """Stop mapping, and keep the map."""
         if self._active:
             self._jump_handle.unregister()
         for endpoint in self._active:
@@ -180,7 +180,10 @@ class Toolbox:
             self._begin(self._redraw())
 
     def place(self, pose: Floats) -> None:
-        """Start a session at a pose in the map, of shape (3,); the next scan is matched around it."""
+        """Start a session at a pose, of shape (3,), in the map.
+
+        The next scan is matched around this pose.
+        """
         self._drop_work()
         self.queue.clear()
         self.mapper.begin_session(pose)
@@ -264,7 +267,7 @@ class Toolbox:
         scan, odometry = self.queue.popleft()
         if self.localizes and not self.mapper.scans:
             self.node.get_logger().error(
-                "There is no map to localise in: give map_file_name, or call slam_toolbox/deserialize_map",
+                "There is no map to localize in: set map_file_name, or call slam_toolbox/deserialize_map",
                 throttle_duration_sec=_WARNING_PERIOD,
             )
             return
@@ -300,7 +303,7 @@ class Toolbox:
         yield from self.mapper.redraw()
 
     def _publish_outcome(self, outcome: Outcome) -> None:
-        assert self._processed_odometry is not None, "a scan was taken"
+        assert self._processed_odometry is not None, "a scan was processed"
         self._map_to_odom = compose(outcome.pose, inverse(self._processed_odometry))
         if outcome.loops:
             self.node.get_logger().info(

@@ -1,1 +1,1 @@
-"""Readers for calls of xacro in launch files, tests and build files, which are not run."""
+"""Readers for calls of xacro in launch files, tests and build files, without running these files."""

@@ -87,7 +87,7 @@ def _join_pieces(parts: Iterable[Text]) -> Text:
 
 
 def _unquote(word: Text) -> Text:
-    """Return a word without the quotes around it, which a shell would remove."""
+    """Return a word without the surrounding quotes that a shell would remove."""
     if not word:
         return word
     first, last = word[0], word[-1]

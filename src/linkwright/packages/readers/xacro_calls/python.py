@@ -174,7 +174,7 @@ class _Reader:
 
 
 def _assigned_expressions(node: ast.expr, scope: Scope) -> Iterator[ast.AST]:
-    """Yield the expressions that are assigned to a name; none for any other node."""
+    """Yield the expressions that are assigned to a name, or nothing for any other node."""
     lookup = scope.find(node.id) if isinstance(node, ast.Name) else None
     yield from (binding.value for binding in (lookup[1] if lookup else ()) if binding.value is not None)
 

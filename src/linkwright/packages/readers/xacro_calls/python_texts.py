@@ -27,7 +27,7 @@ from linkwright.packages.readers.xacro_calls.texts import (
 
 _MAX_DEPTH = 30
 _MAX_PIECES = 100
-"""The maximum number of pieces of a text; a longer text counts as unknown."""
+"""The maximum number of pieces of a text. A longer text counts as unknown."""
 _JOIN_FUNCTIONS = frozenset({"join", "Path", "PurePath", "joinpath", "PathJoinSubstitution"})
 _SHARE_FUNCTIONS = frozenset({"get_package_share_directory", "get_package_share_path", "FindPackageShare"})
 _IDENTITY_FUNCTIONS = frozenset(
@@ -87,7 +87,7 @@ class PythonTexts:
             self._depth -= 1
 
     def text(self, node: ast.expr | None, scope: Scope) -> Text:
-        """Return the text of an expression; the texts of several items are concatenated."""
+        """Return the text of an expression, with the texts of several items concatenated."""
         return _as_text(self.value(node, scope))
 
     def _value(self, node: ast.expr, scope: Scope) -> Value:

@@ -12,7 +12,7 @@ _MAX_DEPTH = 12
 _MAX_SELECTIONS = 64
 _SHARE_DELIMITER = "\0"
 MAX_VARIATIONS = 24
-"""The maximum number of variations, and of pairs of variations; the rest are omitted."""
+"""The maximum number of variations, and of pairs of variations. The rest are omitted."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,7 +28,7 @@ class Share:
 
 @dataclass(frozen=True, slots=True)
 class Open:
-    """A placeholder in a text; its value is determined when the program runs.
+    """A placeholder in a text for a value that is determined when the program runs.
 
     Attributes:
         choice: the name of the `Choice` that determines the value.
@@ -104,7 +104,7 @@ def joined_path(parts: Sequence[Text]) -> Text:
 
 
 def resolve(text: Text, choices: Mapping[str, Choice], selection: Selection, depth: int = 0) -> str | None:
-    """Fill the placeholders of a text, and return the string; None if a value is missing.
+    """Fill the placeholders of a text, and return the string, or None if a value is missing.
 
     A share folder is written as its `share_mark`.
     """

@@ -1,4 +1,4 @@
-"""The base class of all displays: check box, properties, status rows, content and event methods."""
+"""The base classes of all displays: check box, properties, status rows, content and events."""
 
 from __future__ import annotations
 
@@ -30,13 +30,13 @@ from linkwright.rviz.frames.stream import FrameView, TimeControl
 
 
 class DisplayHost(Protocol):
-    """The visualization that contains displays, as far as displays use it.
+    """The interface of the visualization for the displays that it contains.
 
     Attributes:
         context: the viewer's node, files and pages.
         pages: the pages that show the display.
         frames: the current frames.
-        time: whether time is paused, and what it is synchronized with.
+        time: whether time is paused, and its synchronization.
     """
 
     context: ViewerContext
@@ -45,7 +45,10 @@ class DisplayHost(Protocol):
     time: TimeControl
 
     def robot_changed(self, gone: set[str]) -> None:
-        """Handle a change of a display's robot; `gone` contains the frames that only the previous robot had."""
+        """Handle a change of a display's robot.
+
+        `gone` contains the frames that only the previous robot had.
+        """
 
     def fading_changed(self) -> None:
         """Handle a change of a TF display's frame timeout or check box."""
@@ -58,7 +61,10 @@ _LEVEL_RANK: dict[StatusLevel, int] = {"ok": 0, "warn": 1, "error": 2}
 
 
 def worst_level(rows: list[StatusRow]) -> StatusLevel:
-    """Return the most severe level of status rows, which is also the level of the row of the display."""
+    """Return the most severe level of status rows.
+
+    It is the level of the display's own row.
+    """
     return max((row.level for row in rows), key=_LEVEL_RANK.__getitem__, default="ok")
 
 
@@ -146,12 +152,15 @@ class ViewerDisplay:
         self.pages.publish(PropertyChanged(self.property_id(path), accepted_value))
 
     def set_checked(self, value: bool) -> None:
-        """Set the check box, and send its value to all pages; the caller then calls `enabled_changed`."""
+        """Set the check box, and send its value to all pages.
+
+        The caller must then call `enabled_changed`.
+        """
         self.config.checked = value
         self.pages.publish(PropertyChanged(f"{self.id}/Enabled", value))
 
     def recall(self, memories: Sequence[Memory]) -> None:
-        """Restore previous entries of properties in the file, apply the values, and send them to all pages."""
+        """Restore and apply previous values of properties, and send all property rows to the pages."""
         for path in self.properties.recall(memories):
             self.changed(path)
         self.properties.recall(memories)  # `changed` may have set further properties, so restore again
@@ -167,7 +176,10 @@ class ViewerDisplay:
         self.pages.publish(DisplayProperties(self.id, self.properties.rows()))
 
     def set_status(self, rows: list[StatusRow]) -> None:
-        """Set the status rows, or no rows while the display is off; changed rows are sent to the pages."""
+        """Set the status rows, and send them to the pages if they changed.
+
+        A disabled display has no status rows.
+        """
         if not self.enabled:
             rows = []
         if rows != self.status:
@@ -201,7 +213,7 @@ class ViewerDisplay:
         """
 
     def frames_changed(self) -> None:
-        """Handle a change of the set of frames, of the frames with a known pose, or of the Fixed Frame."""
+        """Handle a change of the frames, of their known poses, or of the Fixed Frame."""
 
     def receive(self, message: Any) -> None:
         """Handle a page's message for this display, such as a mesh status or a marker action."""
@@ -252,7 +264,7 @@ class DataDisplay(ViewerDisplay):
         self._data[key] = packed
 
     def forget(self, key: str | None = None) -> None:
-        """Remove the content that was sent under a key, or all content, from the display and the pages."""
+        """Remove the content sent under a key, or all content, from the display and the pages."""
         for data_key in self._data if key is None else (key,):
             self._mark_replaced(data_key)
         if key is None:
@@ -262,7 +274,10 @@ class DataDisplay(ViewerDisplay):
         self.pages.publish(DisplayForgotten(self.id, key))
 
     def set_status_row(self, name: str, level: StatusLevel, text: str) -> None:
-        """Add or replace a status row; pages show a `Phrase` in their own language."""
+        """Add or replace a status row.
+
+        Pages translate a `Phrase` into their own language.
+        """
         row = StatusRow(name, level, text)
         if self._rows.get(name) != row:
             self._rows[name] = row

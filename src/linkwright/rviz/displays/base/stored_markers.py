@@ -1,4 +1,4 @@
-"""A base class for displays that are drawn as markers, which sends only changes to pages."""
+"""A base class for displays that draw markers and send only changes to pages."""
 
 from __future__ import annotations
 
@@ -15,7 +15,10 @@ from linkwright.rviz.markers import MarkerStore
 
 
 class StoredMarkersDisplay(TopicDisplay):
-    """A base class for displays with a `MarkerStore`; `show_markers` sends the changes of a subclass."""
+    """A base class for displays with a `MarkerStore`.
+
+    A subclass changes the store, and then calls `show_markers`.
+    """
 
     TRANSFORMED = False
 
@@ -43,6 +46,6 @@ class StoredMarkersDisplay(TopicDisplay):
             )
 
     def show_markers(self) -> None:
-        """Send all changes of the store to the pages, and give them access to the files of the markers."""
+        """Send all changes of the store to the pages, with access to the files of the markers."""
         self.context.meshes.replace(self.id, self._meshes.folders)
         self.pages.send_data(self._store.key, self._store)

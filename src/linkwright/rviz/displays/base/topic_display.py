@@ -25,7 +25,9 @@ from linkwright.rviz.displays.base.display import DataDisplay, DisplayHost, Pose
 
 
 class SideTopic:
-    """An additional subscription of a display, which queues messages while time is paused.
+    """An additional subscription of a display.
+
+    Messages are queued while time is paused.
 
     Args:
         host: the display's host.
@@ -41,7 +43,10 @@ class SideTopic:
         self._paused_messages: deque[Any] = deque()
 
     def listen(self, topic: str, qos: QoSProfile) -> Phrase | None:
-        """Subscribe to a topic instead of the previous one; return None, or RViz's error text on failure."""
+        """Subscribe to a topic instead of the previous one.
+
+        Return None, or RViz's error text if that fails.
+        """
         self.close()
         self._paused_messages = deque(maxlen=max(1, qos.depth))
         try:
@@ -71,7 +76,7 @@ class SideTopic:
 
 
 def camera_info_topic(image_topic: str) -> str:
-    """Return the CameraInfo topic of an image topic, which by convention has the same namespace."""
+    """Return the CameraInfo topic for an image topic, by convention in the same namespace."""
     for transport in ("/compressed", "/compressedDepth", "/theora"):
         image_topic = image_topic.removesuffix(transport)
     return image_topic.rpartition("/")[0] + "/camera_info"
@@ -81,7 +86,7 @@ TOPIC = "Topic"
 TRANSFORM = "Transform"
 
 _FAILURE_ROW = "Failure"
-"""The status row for a message that the display cannot process; RViz has no such row."""
+"""The status row for a message that the display cannot process. RViz has no such row."""
 
 _LATE_TIMEOUT = 1.0
 """Seconds to wait for the transforms of a message, which often arrive later, before an error is reported."""
@@ -145,7 +150,7 @@ class TopicDisplay(DataDisplay, ABC):
         self._late_timer: asyncio.TimerHandle | None = None
         self._late_reason = ""
 
-    # --- what subclasses override ------------------------------------------------------------------------------
+    # --- methods to override -----------------------------------------------------------------------------------
 
     @abstractmethod
     def process_message(self, message: Any, pose: Pose | None) -> None:
@@ -162,23 +167,32 @@ class TopicDisplay(DataDisplay, ABC):
         self.forget()
 
     def transforms_received(self) -> None:
-        """Handle new transforms; by default, process the queued messages that can be placed now."""
+        """Handle new transforms.
+
+        By default, show the queued messages that can be placed now.
+        """
         self._show_placeable()
 
     def frame_of(self, message: Any) -> tuple[str, int]:
-        """Return the frame and the stamp of a message's header; a stamp of 0 ns means the latest transform."""
+        """Return the frame and the stamp, in ns, of a message's header.
+
+        A stamp of 0 means the latest transform.
+        """
         stamp = message.header.stamp
         return message.header.frame_id, stamp.nanoseconds
 
     def subscription(self) -> tuple[str, str, QoSProfile]:
-        """Return the message type, topic and QoS to subscribe with; the topic is empty if none is set."""
+        """Return the message type, topic and QoS to subscribe with.
+
+        The topic is empty if none is set.
+        """
         return self.MESSAGE, self.properties.text(TOPIC).strip(), qos_of(self.properties)
 
     def most_waiting(self) -> int:
         """Return the maximum number of messages that are queued until their transforms are available."""
         return int(self.properties.number(TOPIC, FILTER_SIZE))
 
-    # --- what subclasses call ----------------------------------------------------------------------------------
+    # --- methods for subclasses --------------------------------------------------------------------------------
 
     def show_again(self) -> None:
         """Process the last message again, for example after a property has changed."""
@@ -221,7 +235,7 @@ class TopicDisplay(DataDisplay, ABC):
             self._offer(self._paused_messages.popleft())
 
     def time_reset(self) -> None:
-        """Discard the content; nothing is shown until new messages arrive."""
+        """Discard all messages and the content. The display stays empty until a new message arrives."""
         self.last = None
         self._waiting.clear()
         self._paused_messages.clear()
@@ -247,7 +261,7 @@ class TopicDisplay(DataDisplay, ABC):
         if not topic:
             self.set_status_row(self.TOPIC_ROW, "error", phrase("Error subscribing: Empty topic name"))
             return
-        from linkwright.graph import SubscriptionEventCallbacks  # imported late, because the view of a robot does not
+        from linkwright.graph import SubscriptionEventCallbacks  # imported late: a page with only a robot does not
         # need it
 
         try:
@@ -347,7 +361,7 @@ class TopicDisplay(DataDisplay, ABC):
             return phrase("no message arrived yet from {nodes}", nodes=joined(sorted({name for name, _ in publishers})))
         topics = self.context.published.topics_of_type(message)
         if topics:
-            from difflib import SequenceMatcher  # imported here because most topics have a publisher
+            from difflib import SequenceMatcher  # imported late, because most topics have a publisher
 
             topics = sorted(topics, key=lambda name: -SequenceMatcher(None, topic, name).ratio())[
                 :_MAX_SUGGESTED_TOPICS
@@ -421,7 +435,7 @@ class TopicDisplay(DataDisplay, ABC):
             self._late_timer = asyncio.get_running_loop().call_later(_LATE_TIMEOUT, self._report_late)
 
     def _add_clock_advice(self, reason: Phrase, stamp_ns: int) -> Phrase:
-        """Return the reason, preceded by advice on the clocks if the stamp is far from the local time."""
+        """Return the reason, preceded by advice on clocks if the stamp is far from the local time."""
         seconds_ahead = (stamp_ns - self.context.node.get_clock().now().nanoseconds) * 1e-9
         if abs(seconds_ahead) < _MIN_CLOCK_DIFFERENCE:
             return reason
@@ -450,11 +464,11 @@ class TopicDisplay(DataDisplay, ABC):
             self._late_timer = None
 
     def _process(self, message: Any, pose: Pose | None) -> None:
-        """Show a message, or log an exception, after which later messages are still shown."""
+        """Show a message. An exception is logged, and does not prevent later messages."""
         self.last = message
         try:
             self.process_message(message, pose)
-        except Exception as error:  # noqa: BLE001  # the message is a stranger's
+        except Exception as error:  # noqa: BLE001  # a message may have any content
             if not self._has_failed:
                 self.context.node.get_logger().error(f"'{self.config.name}' failed:\n{traceback.format_exc().rstrip()}")
             self._has_failed = True
@@ -500,7 +514,10 @@ class RecentDisplay(TopicDisplay):
 
     @abstractmethod
     def content(self, message: Any) -> DataContent | None:
-        """Return the content of a message, in the frame that `frame_of` returns, or None to ignore the message."""
+        """Return the content of a message, or None to ignore it.
+
+        The content is in the frame that `frame_of` returns.
+        """
 
     def process_message(self, message: Any, pose: Pose | None) -> None:
         """Show a message, and remove the oldest message if there are more than `LENGTH` allows."""
@@ -543,7 +560,7 @@ class RecentDisplay(TopicDisplay):
         self.delete_status_row(_MESSAGE_ROW)
 
     def is_finite(self, *numbers: ArrayLike) -> bool:
-        """Return whether all numbers are finite; if not, show an error in the status."""
+        """Return whether all numbers are finite, and show an error in the status if not."""
         if all(np.isfinite(number).all() for number in numbers):
             self.accept()
             return True

@@ -1,4 +1,4 @@
-"""The base class of the displays of MoveIt, which draw a robot in any state and groups of markers."""
+"""The base class of MoveIt's displays: a robot in any state, and groups of markers."""
 
 from __future__ import annotations
 
@@ -41,16 +41,19 @@ class MoveItDisplay(StoredMarkersDisplay):
         self._description_topic = SideTopic(host, "std_msgs/msg/String", self._on_description)
         self._groups: dict[str, dict[str, MarkerShape]] = {}
 
-    # --- what subclasses override ------------------------------------------------------------------------------
+    # --- methods to override -----------------------------------------------------------------------------------
 
     def draw(self) -> None:
-        """Draw all markers again; an implementation calls `put` for each group, and then `drawn`."""
+        """Draw all markers again.
+
+        An implementation calls `put` for each group, and then `drawn`.
+        """
 
     def description_topic(self) -> str:
         """Return the topic of the robot's description, or an empty string if none is set."""
         return self.properties.text(DESCRIPTION).strip()
 
-    # --- what subclasses call ----------------------------------------------------------------------------------
+    # --- methods for subclasses --------------------------------------------------------------------------------
 
     def put(self, group: str, shapes: Iterable[MarkerShape]) -> None:
         """Replace the markers of a group."""
@@ -69,7 +72,7 @@ class MoveItDisplay(StoredMarkersDisplay):
         self._report_frames()
 
     def report_unknown_joints(self, joints: list[str]) -> None:
-        """Show a warning with the joints of a state that the robot does not have, or clear it if there are none."""
+        """Show a warning that names joints unknown to the robot, or clear it if there are none."""
         if joints:
             names, extra_count = quoted_names(joints[:5]), len(joints) - 5
             text = phrase("The robot has no joint {names}", names=names)

@@ -33,7 +33,9 @@ _REQUEST_SPEC = PropertySpec(
 
 
 class MotionPlanningDisplay(PlanningSceneDisplay):
-    """A display of the planning scene, the planned motions, and the first and last states of the last motion.
+    """A display of the planning scene and of planned motions.
+
+    The first and the last state of the last motion are also drawn.
 
     The display does not plan. The properties of planning requests stay in the file, but have no rows in the page.
     """
@@ -72,7 +74,7 @@ class MotionPlanningDisplay(PlanningSceneDisplay):
         self._subscribe_motions()
 
     def changed(self, path: Path) -> None:
-        """Subscribe to other motions, or play the last motion again if looping was just switched on."""
+        """Subscribe to another motion topic, or restart the motion if looping was just enabled."""
         if path == (PATH, TRAJECTORY_TOPIC):
             self._player.forget()
             self._subscribe_motions()

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from linkwright.diagnostics import phrase
 
 _MAX_DEPTH = 16
-"""The number of levels below the root; cells of the last level have the size of the resolution."""
+"""The number of levels below the root. Cells of the last level have the size of the resolution."""
 
 _FREE, _OCCUPIED, _INNER = 1, 2, 3
 
@@ -33,7 +33,10 @@ MAX_CELLS = 1_000_000
 
 
 class BadOctreeError(ValueError):
-    """Raised if the data is not a supported octree; the message gives the reason."""
+    """Raised if the data is not a supported octree.
+
+    The message gives the reason.
+    """
 
 
 @dataclass(frozen=True, slots=True)

@@ -37,7 +37,7 @@ _ATTACHED_NAMESPACE = "Scene Robot holds"
 
 
 class PlanningSceneDisplay(MoveItDisplay):
-    """A display of the robot of a planning scene, its attached objects, and the objects around it.
+    """A display of a planning scene: the robot, its attached objects, and the objects around it.
 
     The topic carries only changes. The display therefore requests the full scene from move_group, when the display
     starts or as soon as move_group is available.
@@ -61,9 +61,9 @@ class PlanningSceneDisplay(MoveItDisplay):
         return (NAMESPACE_SPEC, DESCRIPTION_SPEC, SCENE_TOPIC_SPEC, GEOMETRY_SPEC, scene_robot_spec(self.link_names))
 
     def description_topic(self) -> str:
-        """Return the topic of the robot's description, in move_group's namespace unless it is absolute.
+        """Return the topic of the robot's description, by default in move_group's namespace.
 
-        Return the value of the property if no namespace or no topic is set.
+        An absolute topic name is returned unchanged, as is any name if no namespace is set.
         """
         name, namespace = super().description_topic(), self.properties.text(NAMESPACE).strip("/ ")
         return f"/{namespace}/{name}" if namespace and name and not name.startswith("/") else name
@@ -84,7 +84,10 @@ class PlanningSceneDisplay(MoveItDisplay):
         self._request_scene()
 
     def changed(self, path: Path) -> None:
-        """Apply a changed property; a new namespace or topic also requests the full scene again."""
+        """Apply a changed property.
+
+        A new namespace or topic also requests the full scene again.
+        """
         if path == (NAMESPACE,):
             self._restart()
             self._follow()
@@ -106,7 +109,10 @@ class PlanningSceneDisplay(MoveItDisplay):
         super().reset()
 
     def robot_changed(self) -> None:
-        """Apply the last state to the new robot, because the state may have arrived before the description."""
+        """Apply the last state to the new robot.
+
+        The state may have arrived before the description.
+        """
         self.scene.state = JointPositions()
         if self._state is not None:
             self._apply_state(self._state)

@@ -1,4 +1,4 @@
-"""The properties shared by MoveIt's displays, with the names and defaults of moveit_rviz_plugin."""
+"""The properties of MoveIt's displays, with the names and defaults of moveit_rviz_plugin."""
 
 from __future__ import annotations
 
@@ -91,7 +91,7 @@ def scene_robot_spec(links: Sequence[str]) -> PropertySpec:
 
 
 def path_specs(links: Sequence[str]) -> tuple[PropertySpec, ...]:
-    """Return the declarations of the properties that control how a motion is played."""
+    """Return the declarations of the properties for playing motions."""
     return (
         PropertySpec(
             TRAJECTORY_TOPIC,
@@ -146,7 +146,10 @@ def rgba(message: object) -> Color:
 
 
 def link_alphas(properties: PropertyStore, robot: PosableRobot, group_path: Path = ()) -> dict[str, float]:
-    """Return the opacity of each link by name, which is 0 if the check box of the link is off."""
+    """Return the opacity of each link by name.
+
+    It is 0 if the check box of the link is off.
+    """
     alphas = {}
     for name in robot.shaped_links:
         if name != ALL_LINKS:

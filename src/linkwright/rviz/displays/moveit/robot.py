@@ -1,4 +1,4 @@
-"""Draws a robot as markers in a state from a message; tf is not needed for the poses of the links."""
+"""Draws a robot as markers in a state from a message, without tf."""
 
 from __future__ import annotations
 
@@ -69,7 +69,10 @@ class Look:
 
 
 class UnusableStateError(ValueError):
-    """Raised when a robot state cannot be shown; the message gives the reason."""
+    """Raised when a robot state cannot be shown.
+
+    The message gives the reason.
+    """
 
 
 class PosableRobot:

@@ -29,7 +29,7 @@ _HIGHLIGHTS_ROW = "Highlights"
 
 
 class RobotStateDisplay(MoveItDisplay):
-    """A display of the robot in the state of the last message, with the link colours of the message."""
+    """A display of a robot in the state, and with the link colours, of the last message."""
 
     CLASS = "moveit_rviz_plugin/RobotState"
     MESSAGE = "moveit_msgs/msg/DisplayRobotState"

@@ -1,4 +1,4 @@
-"""A planning scene, which is updated by messages that contain changes."""
+"""A planning scene, to which messages with changes are applied."""
 
 from __future__ import annotations
 
@@ -124,7 +124,7 @@ class Scene:
             self._map(octomap)
 
     def attach(self, messages: Iterable[Any]) -> None:
-        """Apply moveit_msgs/msg/AttachedCollisionObject messages, which attach or detach objects."""
+        """Attach and detach objects, as moveit_msgs/msg/AttachedCollisionObject messages request."""
         for attached in messages:
             self._attach(attached)
 

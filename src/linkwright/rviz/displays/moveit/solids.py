@@ -31,7 +31,10 @@ _CONE_CORNERS = 24
 
 
 class BadObjectError(ValueError):
-    """Raised when a collision object cannot be drawn; the message gives the reason."""
+    """Raised when a collision object cannot be drawn.
+
+    The message gives the reason.
+    """
 
 
 def object_markers(message: Any, namespace: str, color: Color, *, frame: str, base: Transform) -> list[MarkerShape]:

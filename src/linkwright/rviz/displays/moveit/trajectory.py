@@ -23,7 +23,7 @@ _LOOP_PROPERTY = "Loop Animation"
 _MIN_WAIT = 0.005
 _MAX_STATES = 100_000
 _MAX_TRAIL_STATES = 200
-"""The largest number of states in a trail; longer trails are drawn with larger steps."""
+"""The largest number of states in a trail. Longer trails are drawn with larger steps."""
 
 DEFAULT_DISPLAY_TIME = "3x"
 """The value that is used if the State Display Time is not valid."""
@@ -152,7 +152,7 @@ class MotionPlayer:
         self._begin()
 
     def property_changed(self, path: Path) -> None:
-        """Play the last motion again if looping was just switched on."""
+        """Play the last motion again if looping was just enabled."""
         if path == (*self._group_path, _LOOP_PROPERTY) and self._flag(_LOOP_PROPERTY) and not self.is_playing:
             self.begin_again()
 
@@ -258,7 +258,7 @@ class TrajectoryDisplay(MoveItDisplay):
         self._player.play(message)
 
     def changed(self, path: Path) -> None:
-        """Apply a changed property; play the last motion again if looping was just switched on."""
+        """Apply a changed property, and play the last motion again if looping was just enabled."""
         super().changed(path)
         self._player.property_changed(path)
 

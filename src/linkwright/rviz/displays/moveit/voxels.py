@@ -1,4 +1,4 @@
-"""Draws the cells of octrees as markers, and declares the properties that select cells and colours."""
+"""Markers for octree cells, and the properties for selecting and colouring the cells."""
 
 from __future__ import annotations
 
@@ -111,9 +111,9 @@ _NEIGHBOUR_OFFSETS = (1, -1, 1 << _BITS, -(1 << _BITS), 1 << 2 * _BITS, -(1 << 2
 
 
 def _cell_codes(indices: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Return an integer for the grid indices of each cell, which is unique among cells of the same size.
+    """Return an integer for each cell, unique among cells of the same size.
 
-    There are at most 2^16 cells of one size along each axis.
+    The integer encodes the grid indices of the cell. There are at most 2^16 cells of one size along each axis.
     """
     shifted = indices + (1 << (_BITS - 1))
     codes: NDArray[np.int64] = shifted[:, 0] << 2 * _BITS | shifted[:, 1] << _BITS | shifted[:, 2]

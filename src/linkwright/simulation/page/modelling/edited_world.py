@@ -87,7 +87,7 @@ class EditedWorld:
 
     @property
     def file(self) -> Path | None:
-        """The file to which the world is saved; None if the user has to name one."""
+        """The file to which the world is saved, or None if the user has to name one."""
         return None if self._content is None else self.path
 
     @property
@@ -183,7 +183,9 @@ class EditedWorld:
             self.world = WorldText(self.world.text, target, self.world.finder, self.world.reserved)
 
     def store_unsaved(self, folder: Path) -> Diagnostic:
-        """Write the unsaved text to a recovery file in a folder, and replace earlier recovery texts of the world.
+        """Write the unsaved text to a recovery file in a folder.
+
+        The file replaces earlier recovery files of the world.
 
         Returns:
             The finding RVIZ301, which names the file, or RVIZ104, which reports that the text is lost.

@@ -1,4 +1,4 @@
-"""World editing in the page: pages edit the text of the world, and the simulation loads the result.
+"""World editing in the page: pages edit the world's text, and the simulation loads it.
 
 The text comes from the file that the simulator's parameter ``world`` names. If there is no such file, or if it
 contains another world, the text is the description that the simulator publishes. All pages edit the same text, and
@@ -40,7 +40,7 @@ _PATIENCE = 30.0
 
 
 class ModellingFeature(PageFeature):
-    """The feature that shows the models and lights of the world in pages, and applies the pages' edits."""
+    """The feature that shows models and lights of the world in pages, and applies edits."""
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
@@ -53,7 +53,7 @@ class ModellingFeature(PageFeature):
         self._worker: asyncio.Task[None] | None = None
 
     def opening(self) -> list[ServerMessage]:
-        """Return the initial message for a new page: whether the world can be edited, and its entities."""
+        """Return the initial message for a new page, with the entities of an editable world."""
         if not self._is_watching:
             self._is_watching = True
             self.context.graph_changes.watch(self._update_availability)
@@ -61,13 +61,13 @@ class ModellingFeature(PageFeature):
         return [self._state()]
 
     def page_closed(self, page: Page) -> None:
-        """Stop watching the graph after the last page has closed; edits are kept."""
+        """Stop watching the graph after the last page has closed, and keep the edits."""
         if self._is_watching and len(self.context.pages) == 0:
             self._is_watching = False
             self.context.graph_changes.unwatch(self._update_availability)
 
     def keep_unsaved(self) -> list[Diagnostic]:
-        """Store the unsaved text of the world in the recovery folder, and return the finding that reports this.
+        """Store the unsaved text of the world in the recovery folder, and return a finding.
 
         The list is empty if there are no unsaved changes.
         """
@@ -83,7 +83,10 @@ class ModellingFeature(PageFeature):
             self._worker.cancel()
 
     def receive(self, page: Page, message: Any) -> None:
-        """Queue a request of a page; requests are handled in the order in which they arrive."""
+        """Queue a request of a page.
+
+        Requests are handled in the order in which they arrive.
+        """
         self._waiting.put_nowait((page, message))
         if self._worker is None:
             self._worker = asyncio.get_running_loop().create_task(self._work())
@@ -189,7 +192,7 @@ class ModellingFeature(PageFeature):
         return self._edited_world
 
     async def _read(self) -> EditedWorld:
-        """Return the simulated world from its file, or from the published description if the file is unusable."""
+        """Return the simulated world from its file, or else from the published description."""
         from linkwright.sdf.editing import EditError
         from linkwright.sdf.resources import ResourceFinder
         from linkwright.simulation.page.modelling.edited_world import EditedWorld
@@ -283,7 +286,10 @@ class ModellingFeature(PageFeature):
 
 
 def _edit(edited_world: EditedWorld, message: PageMessage) -> Callable[[], None]:
-    """Return a slow function that applies a page's request to a world; the caller runs it in a thread."""
+    """Return a function that applies a page's request to a world.
+
+    The function is slow, so the caller runs it in a thread.
+    """
     from linkwright.simulation.page.modelling.entities import apply_edit
 
     if isinstance(message, UndoWorld):

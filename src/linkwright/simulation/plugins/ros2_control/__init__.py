@@ -1,1 +1,1 @@
-"""ros2_control in a simulated world: the hardware of simulated joints, and the plugin that runs the controllers."""
+"""ros2_control in a simulated world: hardware of simulated joints, and its plugin."""

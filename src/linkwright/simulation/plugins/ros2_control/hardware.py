@@ -40,7 +40,7 @@ class ControlledModel(Protocol):
         """Return the full name of a movable joint of the plugin's model, as used in the simulation."""
 
     def random_of(self, name: str) -> np.random.Generator:
-        """Return the random number generator of a sensor, which depends on the seed."""
+        """Return the random number generator of a sensor, determined by the seed."""
 
 
 class SimulatedSystem(Hardware):
@@ -138,7 +138,7 @@ class SimulatedSystem(Hardware):
             joint.set_mode(mode)
 
     def on_activate(self) -> None:
-        """Read the joints, so that controllers that start before the first update get valid positions."""
+        """Read the joints, so that controllers get valid positions before the first update."""
         for joint in self._joints.values():
             joint.read()
 
@@ -164,6 +164,9 @@ class SimulatedSystem(Hardware):
             joint.write(period_s)
 
     def push(self, period_s: float) -> None:
-        """Apply the forces of the PID controllers; call this after each step of the world."""
+        """Apply the forces of the PID controllers.
+
+        Call this after each step of the world.
+        """
         for joint in self._joints.values():
             joint.push(period_s)

@@ -81,7 +81,10 @@ class SimulatedJoint:
         self.set_mode("")
 
     def set_mode(self, kind: str) -> None:
-        """Set the kind of interface that commands the joint; empty if no controller commands the joint."""
+        """Set the kind of interface that commands the joint.
+
+        The kind is empty if no controller commands the joint.
+        """
         previous_mode, self._mode = self._mode, kind
         if previous_mode in (VELOCITY, EFFORT) and self._motor is not None:  # In other modes the target is already 0.
             self._motor.target = 0.0
@@ -97,7 +100,7 @@ class SimulatedJoint:
 
     @property
     def mode(self) -> str:
-        """The kind of interface that commands the joint; empty if no controller commands the joint."""
+        """The kind of interface that commands the joint, or an empty string for none."""
         return self._mode
 
     def read(self) -> None:
@@ -136,7 +139,10 @@ class SimulatedJoint:
             self._simulation.push_joint(self._name, value)
 
     def push(self, period_s: float) -> None:
-        """Apply the force of the current mode's PID controller, if it has one; call this after each simulation step."""
+        """Apply the force of the current mode's PID controller, if it has one.
+
+        Call this after each simulation step.
+        """
         pid = self._pids.get(self._mode)
         if pid is None:
             return

@@ -30,7 +30,7 @@ _TRUE_VALUES = ("true", "True", True)
 def pids_of(
     description: HardwareDescription, values: Mapping[str, Any], logger: Logger
 ) -> tuple[HardwareDescription, dict[tuple[str, str], PidGains]]:
-    """Return a description with the interface names that controllers use, and the declared PID gains.
+    """Return a description with controllers' interface names, and the declared PID gains.
 
     Args:
         description: the hardware description in the URDF.
@@ -60,7 +60,10 @@ def pids_of(
 def _declared_gains(
     joint: ComponentDescription, kind: str, values: Mapping[str, Any], *, is_pid: bool
 ) -> Mapping[str, Any] | None:
-    """Return the gains of a joint's PID controller, by name without prefix; None if it has no controller."""
+    """Return the gains of a joint's PID controller, by name without prefix.
+
+    Returns None if the joint has no PID controller.
+    """
     prefix_of_parameters = f"pid_gains.{kind}.{joint.name}."
     node_gains = {
         name.removeprefix(prefix_of_parameters): value

@@ -1,4 +1,6 @@
-"""``libgazebo_ros2_control.so``, ``gz_ros2_control-system`` and ``ign_ros2_control-system``: controllers in a world.
+"""The plugins of ros2_control for simulated robots.
+
+The libraries are ``libgazebo_ros2_control.so``, ``gz_ros2_control-system`` and ``ign_ros2_control-system``.
 
 Controllers are updated in the thread of the world, in simulated time, at the manager's ``update_rate``.
 
@@ -43,7 +45,7 @@ class Parameters:
 
 
 class SimulatedControl(SimulatedPlugin[Parameters]):
-    """The substitute for the ros2_control plugins, which runs the controllers of a robot in the world."""
+    """The substitute for the ros2_control plugins: it runs the controllers of a robot."""
 
     PARAMETERS = Parameters
     IGNORED = (
@@ -102,7 +104,7 @@ class SimulatedControl(SimulatedPlugin[Parameters]):
             self._manager_node.subscribe("std_msgs/msg/String", topic, self._on_description, DESCRIPTION_QOS)
 
     def reset(self) -> None:
-        """Restore the initial state of the hardware; active controllers stay active."""
+        """Restore the initial state of the hardware, and keep active controllers active."""
         self._last_update = self.simulation.time
         for system in self._systems:
             system.begin()
@@ -110,14 +112,20 @@ class SimulatedControl(SimulatedPlugin[Parameters]):
             controller.next_ns = 0
 
     def stop(self) -> None:
-        """Close the controller manager, and save its state for the plugin that replaces this one in a changed model."""
+        """Close the controller manager, and save its state for the next instance.
+
+        The next instance replaces this plugin in a changed model.
+        """
         if hasattr(self, "_manager"):
             self.left[self._manager_node.name] = self._manager.saved_state()
             self._manager.close()
             self._manager_node.close()
 
     def random_of(self, name: str) -> Any:
-        """Return the random number generator of a sensor, seeded from the simulation's seed and the sensor's name."""
+        """Return the random number generator of a sensor.
+
+        The generator is seeded from the simulation's seed and the sensor's name.
+        """
         return self._environment.random(name)
 
     def _on_description(self, message: Any) -> None:

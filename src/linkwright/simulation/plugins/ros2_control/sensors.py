@@ -33,7 +33,10 @@ class SimulatedSensor:
         self._states = states
 
     def read(self) -> None:
-        """Measure, and update the state interfaces; an interface without a measured value keeps its value."""
+        """Measure, and update the state interfaces.
+
+        An interface without a measured value keeps its value.
+        """
         values = self._measure()
         for state in self._states:
             state.value = values.get(state.kind, state.value)

@@ -1,4 +1,4 @@
-"""Base classes of sensor plugins, which handle mounts, rates, frames and topics."""
+"""Base classes of sensor plugins, with their mounts, rates, frames and topics."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ SENSOR_QOS = QoSProfile(depth=5)
 
 @dataclass(frozen=True, kw_only=True)
 class FrameName:
-    """The parameter ``frame_name``, which all sensors of Gazebo classic have."""
+    """The parameter ``frame_name`` of all sensors of Gazebo classic."""
 
     frame_name: str = parameter("", aliases=("frameName",))
 
@@ -37,7 +37,7 @@ class SensorPlugin(SimulatedPlugin[P], ABC, Generic[P]):
         self.every(self.rate, self._measure)
 
     def reset(self) -> None:
-        """Create the sensor model again, which restarts its random numbers."""
+        """Create the sensor model again, so that its random numbers restart."""
         self.make_sensor()
 
     @abstractmethod
@@ -53,7 +53,10 @@ class SensorPlugin(SimulatedPlugin[P], ABC, Generic[P]):
         """Return whether a topic of the sensor has a subscription."""
 
     def is_needed(self) -> bool:
-        """Return whether to measure; by default, whether a topic has a subscription."""
+        """Return whether to measure.
+
+        By default, this is whether a topic has a subscription.
+        """
         return self.is_wanted()
 
     @abstractmethod
@@ -62,7 +65,7 @@ class SensorPlugin(SimulatedPlugin[P], ABC, Generic[P]):
 
     @property
     def rate(self) -> float:
-        """The number of measurements per simulated second; 0 for a measurement after each step."""
+        """The number of measurements per simulated second, or 0 to measure after each step."""
         return self.sensor.sensor.update_rate
 
     @property
@@ -71,23 +74,26 @@ class SensorPlugin(SimulatedPlugin[P], ABC, Generic[P]):
         return Mount(self.simulation, self.sensor.link, self.sensor.pose)
 
     def classic_frame(self) -> str:
-        """Return the frame of Gazebo classic's messages: the parameter ``frame_name``, or the link if it is empty."""
+        """Return the frame of Gazebo classic's messages.
+
+        This is the parameter ``frame_name``, or the link if the parameter is empty.
+        """
         frame: str = getattr(self.parameters, "frame_name", "")
         return frame.lstrip("/") or self.sensor.link.rpartition(SEPARATOR)[2]
 
     def gz_frame(self) -> str:
-        """Return the frame of gz's messages: the one that the sensor declares, or else ``model/link/sensor``."""
+        """Return the frame of gz's messages: the declared frame, or else ``model/link/sensor``."""
         return self.sensor.sensor.frame_id or self.sensor.name.replace(SEPARATOR, "/")
 
     def gz_topic(self, leaf: str) -> str:
-        """Return the default topic that gz gives a sensor; `leaf` is the last part of the name."""
+        """Return the default topic of a sensor in gz, with `leaf` as the last part of its name."""
         model, *nested_names = self.sensor.name.split(SEPARATOR)
         entity_type = "joint" if self.sensor.joint else "link"
         place = f"/world/{self.place.world.name}/model/{model}/{entity_type}/{'/'.join(nested_names[:-1])}"
         return f"{place}/sensor/{nested_names[-1]}/{leaf}"
 
     def gz_output(self, kind: str, leaf: str, usual: str = "") -> Output:
-        """Create the publisher of a gz sensor, on the topic that the sensor declares or on the default topic of gz.
+        """Create the publisher of a gz sensor, on its declared topic or on gz's default topic.
 
         Args:
             kind: the message type.

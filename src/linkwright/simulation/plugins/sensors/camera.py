@@ -1,4 +1,4 @@
-"""Cameras: ``gazebo_ros_camera``, the cameras of ROS 1, and the cameras and depth cameras of gz.
+"""Cameras and depth cameras: ``gazebo_ros_camera``, the cameras of ROS 1, and gz's cameras.
 
 Source: gazebo_ros_pkgs for ROS 2 (topics, parameters, encodings, point clouds), for ROS 1 (names), gz-sensors (topics).
 The colours of point clouds have the byte order that PCL and RViz expect; ``gazebo_ros_camera`` swaps red and blue.
@@ -88,7 +88,7 @@ class CameraPlugin(SensorPlugin[P], Generic[P]):
     def publish_image(self, output: Output, camera: MountedCamera, rendered: RenderedImage, frame: str) -> None:
         """Publish the colours of a rendered image in the camera's encoding."""
         message = self.message(IMAGE, frame)
-        fill_image(message, rendered.colour, camera.encoding)  # type: ignore[arg-type]  # it was asked for
+        fill_image(message, rendered.colour, camera.encoding)  # type: ignore[arg-type]  # requested
         output.publish(message)
 
     def _mount_camera(self, camera: Camera, generator: np.random.Generator) -> MountedCamera:
@@ -160,7 +160,7 @@ class ClassicCamera(CameraPlugin[CameraParameters]):
     )
 
     def make_topics(self) -> None:
-        """Create the topics of each camera, and subscribe to the trigger if the parameters enable it."""
+        """Create the topics of each camera, and subscribe to the trigger if it is enabled."""
         parameters, sensor = self.parameters, self.sensor.sensor
         name = parameters.camera_name or sensor.name
         self._frame = self.classic_frame()
@@ -192,13 +192,16 @@ class ClassicCamera(CameraPlugin[CameraParameters]):
         return self.sensor.sensor.update_rate or self.parameters.update_rate
 
     def is_wanted(self) -> bool:
-        """Return whether a topic has a subscription and, if the camera is triggered, an image was requested."""
+        """Return whether a topic has a subscription.
+
+        A triggered camera also requires that an image was requested.
+        """
         return self._is_image_requested and any(
             image.is_wanted for image in (*self._images, *self._infos, *self._depths)
         )
 
     def measure(self) -> None:
-        """Render the images whose topics have subscriptions, and publish them with their camera info."""
+        """Render and publish the images and camera info whose topics have subscriptions."""
         self._is_image_requested = not self.parameters.triggered
         for camera, image, info in zip(self.cameras, self._images, self._infos, strict=True):
             depth, depth_info, cloud = self._depths or (None, None, None)
@@ -258,7 +261,7 @@ class GzCamera(CameraPlugin[NoParameters]):
     """
 
     def make_topics(self) -> None:
-        """Create the topics for images, depth images, points and camera info that the sensor type requires."""
+        """Create the topics of the sensor type: images, depth images, points, camera info."""
         kind = self.sensor.sensor.type
         self._frame = self.gz_frame()
         camera = self.cameras[0].description
@@ -313,13 +316,13 @@ class GzCamera(CameraPlugin[NoParameters]):
         clip = camera.description.depth_clip or camera.description.clip
         if self._depth is not None and self._depth.is_wanted:
             message = self.message(IMAGE, self._optical)
-            fill_depth(message, rendered.depth, clip.near, clip.far)  # type: ignore[arg-type]  # it was asked for
+            fill_depth(message, rendered.depth, clip.near, clip.far)  # type: ignore[arg-type]  # requested
             self._depth.publish(message)
         if self._cloud is not None and self._cloud.is_wanted:
             message = self.message(CLOUD, self._frame)
             points = points_of(camera.optics, clip_depth(rendered.depth, clip.near, clip.far))  # type: ignore[arg-type]  # see above
             forward_points = np.stack([points[:, :, 2], -points[:, :, 0], -points[:, :, 1]], axis=-1)
-            fill_camera_cloud(message, forward_points, rendered.colour)  # type: ignore[arg-type]  # it was asked for
+            fill_camera_cloud(message, forward_points, rendered.colour)  # type: ignore[arg-type]  # requested
             self._cloud.publish(message)
         if self._info.is_wanted:
             message = self.message(INFO, self._optical)

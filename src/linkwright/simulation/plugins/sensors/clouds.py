@@ -68,7 +68,9 @@ def fill_lidar_cloud(
 
 
 def fill_camera_cloud(message: Any, points: Points, colour: Points, *, swap_red_blue: bool = False) -> None:
-    """Fill a PointCloud2 with the points of an image, shape (height, width, 3), and their colours.
+    """Fill a PointCloud2 with the points of an image and their colours.
+
+    The points have shape (height, width, 3).
 
     With `swap_red_blue`, red and blue are exchanged as in Gazebo classic.
 
@@ -85,7 +87,10 @@ def fill_camera_cloud(message: Any, points: Points, colour: Points, *, swap_red_
 
 
 def _fill(message: Any, rows: Points, height: int) -> None:
-    """Fill a PointCloud2 with points of a structured NumPy type, shape (n,), arranged in `height` rows."""
+    """Fill a PointCloud2 with points of a structured NumPy type, in `height` rows.
+
+    The points have shape (n,).
+    """
     message.fields = list(_fields(rows.dtype))
     message.height, message.width = height, len(rows) // max(height, 1)
     message.point_step = rows.dtype.itemsize

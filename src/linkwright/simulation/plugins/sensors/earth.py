@@ -25,7 +25,7 @@ class _Receiver(SensorPlugin[P], Generic[P]):
     """A satellite navigation receiver that publishes ``sensor_msgs/msg/NavSatFix``."""
 
     def make_sensor(self) -> None:
-        """Create the receiver, which uses the geographic position of the world's origin."""
+        """Create the receiver for the geographic position of the world's origin."""
         place = self.place.world.spherical_coordinates
         self._receiver = NavsatSensor(self.mount, self.sensor.sensor.navsat, place, self.random)
 

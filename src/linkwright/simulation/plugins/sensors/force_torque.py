@@ -69,7 +69,7 @@ class ClassicForceTorque(_ForceTorque[ForceTorqueParameters]):
 
 
 class GzForceTorque(_ForceTorque[NoParameters]):
-    """The sensor ``force_torque`` of gz, which belongs to a joint."""
+    """The sensor ``force_torque`` of gz, in a joint."""
 
     def make_sensor(self) -> None:
         """Find the joint that contains the sensor, and create the sensor model."""

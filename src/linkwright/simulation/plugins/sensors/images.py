@@ -47,7 +47,7 @@ class PixelNoise:
         self._negative_noise: Pixels = np.empty(0, np.uint8)
 
     def apply(self, colour: Pixels) -> Pixels:
-        """Return RGB colours with noise added; the colours themselves if there is no noise."""
+        """Return RGB colours with noise, or the colours themselves if there is no noise."""
         noise = self._noise
         if noise.type == "none" or not (noise.stddev > 0 or noise.mean):
             return colour
@@ -95,7 +95,7 @@ def fill_depth(message: Any, depth: Pixels, nearest: float, farthest: float) -> 
 
 
 def clip_depth(depth: Pixels, nearest: float, farthest: float) -> Pixels:
-    """Return depths with -inf where they are at most `nearest`, and inf where they are at least `farthest`."""
+    """Return depths, with -inf up to `nearest` and inf from `farthest` on."""
     result: Pixels = np.array(depth, dtype=np.float32)
     np.copyto(result, np.inf, where=depth >= farthest)
     np.copyto(result, -np.inf, where=depth <= nearest)
@@ -112,7 +112,10 @@ def _fill(message: Any, pixels: Pixels, encoding: str) -> None:
 
 
 def _bayer_mosaic(colour: Pixels, order: str) -> Pixels:
-    """Return a Bayer mosaic with one colour per pixel; `order` names the colours of each square of 2 x 2 pixels."""
+    """Return a Bayer mosaic with one colour per pixel.
+
+    `order` names the colours of each square of 2 x 2 pixels.
+    """
     mosaic = np.empty(colour.shape[:2], np.uint8)
     for index, letter in enumerate(order):
         row, column = divmod(index, 2)

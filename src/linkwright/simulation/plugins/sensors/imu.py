@@ -66,7 +66,10 @@ class ClassicImu(_ImuPlugin[ImuParameters]):
     IGNORED = ("body_name", "bodyName", "updateRateHZ", "update_rate", "gaussianNoise", "xyzOffset", "rpyOffset")
 
     def make_sensor(self) -> None:
-        """Create the IMU; if the parameters request it, orientations are relative to the initial orientation."""
+        """Create the IMU.
+
+        If the parameters request it, orientations are relative to the initial orientation.
+        """
         initial = self.parameters.initial_orientation_as_reference
         imu = self.sensor.sensor.imu
         self.imu = ImuSensor(self.mount, imu, generator=self.random, initial_reference=initial)
@@ -90,7 +93,10 @@ class OldImuParameters(FrameName):
 
 
 class OldImu(_ImuPlugin[OldImuParameters]):
-    """The substitute for the model plugin ``libgazebo_ros_imu.so`` of ROS 1, of which a parameter names the link."""
+    """The substitute for the model plugin ``libgazebo_ros_imu.so`` of ROS 1.
+
+    A parameter names the link.
+    """
 
     PARAMETERS = OldImuParameters
     IGNORED = ("serviceName",)

@@ -1,4 +1,4 @@
-"""Cameras that publish ground truth about their images: ``segmentation_camera``, ``boundingbox_camera``.
+"""Cameras with ground truth: ``segmentation_camera`` and ``boundingbox_camera``.
 
 The plugin ``gz-sim-label-system`` of a model or visual contains its ``<label>``; anything else has the label 0.
 
@@ -93,7 +93,10 @@ def _declared_labels(plugins: tuple[Plugin, ...]) -> Iterator[int]:
 
 
 def _label_of(labels: dict[str, int], part: str) -> int:
-    """Return the label of a visual, or else of the closest enclosing model with a label; 0 if there is none."""
+    """Return the label of a visual, or else of the closest enclosing model with a label.
+
+    Returns 0 if there is no label.
+    """
     name = part
     while name:
         if name in labels:
@@ -207,7 +210,10 @@ class GzBoxes(_LabellingCamera):
             self.publish_colours(self._images, colour)
 
     def _boxes_of(self, geoms: Any) -> Iterator[tuple[int, int, int, int, int]]:
-        """Yield the label, left, top, right and bottom of each box, in pixels; the box includes all four edges."""
+        """Yield the label, left, top, right and bottom of each box, in pixels.
+
+        The box includes all four edges.
+        """
         labels, instances = self.labels.labels(geoms), self.labels.instances(geoms)
         for instance in np.unique(instances[instances > 0]):
             for label in np.unique(labels[(instances == instance) & (labels > 0)]):

@@ -1,4 +1,4 @@
-"""Lidars and sonars: ``gazebo_ros_ray_sensor``, the lasers of ROS 1, and ``gpu_lidar`` of gz.
+"""Lidars and sonars: ``gazebo_ros_ray_sensor``, ROS 1's lasers, and gz's ``gpu_lidar``.
 
 Source: gazebo_ros_pkgs for ROS 2 (output types, the row in a LaserScan, the value of a Range) and for ROS 1 (names),
 velodyne_simulator (points), gz-sensors and gz-msgs (topics, points).
@@ -32,7 +32,7 @@ _RADIATION_TYPES = {"ultrasound": 0, "infrared": 1}
 
 
 class _LidarPlugin(SensorPlugin[P], Generic[P]):
-    """The base class of lidars, which also publish their rays for pages that display them."""
+    """The base class of lidars that also publish their rays for display in pages."""
 
     def start(self) -> None:
         """Create the lidar and the topics for measurements and rays."""
@@ -74,7 +74,10 @@ class _LidarPlugin(SensorPlugin[P], Generic[P]):
         )
 
     def scan_message(self, frame: str, scan: Scan, min_intensity: float = 0.0) -> Any:
-        """Return a LaserScan of the middle row of a scan; intensities are at least `min_intensity`."""
+        """Return a LaserScan of the middle row of a scan.
+
+        Intensities are at least `min_intensity`.
+        """
         message, row = self._empty_scan(frame), self.lidar.vertical.count // 2
         message.ranges = scan.ranges[row].astype(np.float32)
         message.intensities = np.maximum(scan.intensities[row], min_intensity).astype(np.float32)
@@ -97,7 +100,10 @@ class _LidarPlugin(SensorPlugin[P], Generic[P]):
             return self.lidar.directions * scan.ranges.reshape(-1, 1)
 
     def hit_points(self, scan: Scan, min_intensity: float = 0.0) -> tuple[Any, Any]:
-        """Return the points in m, shape (n, 3), and the intensities of the rays of a scan that hit something."""
+        """Return the points and the intensities of the rays of a scan with a hit.
+
+        The points are in m, and have shape (n, 3).
+        """
         points, intensities = self.points(scan), scan.intensities.ravel()
         is_hit = np.isfinite(scan.ranges.ravel())
         return points[is_hit], np.maximum(intensities[is_hit], min_intensity)
@@ -212,12 +218,12 @@ class OldLaser(_OneLidar[LaserParameters]):
         self.output.publish(self.output_message(self.classic_frame(), scan))
 
     def output_message(self, frame: str, scan: Scan) -> Any:
-        """Return a scan as a message of type `KIND`; by default a LaserScan."""
+        """Return a scan as a message of type `KIND`, by default a LaserScan."""
         return self.scan_message(frame, scan)
 
 
 class OldBlockLaser(OldLaser):
-    """The substitute for ``libgazebo_ros_block_laser.so`` of ROS 1, which publishes a PointCloud."""
+    """The substitute for ``libgazebo_ros_block_laser.so`` of ROS 1: it publishes a PointCloud."""
 
     KIND = "sensor_msgs/msg/PointCloud"
 
@@ -235,7 +241,7 @@ class RangeParameters(LaserParameters):
 
 
 class OldRange(OldLaser):
-    """The substitute for ``libgazebo_ros_range.so`` of ROS 1, which publishes the minimum distance."""
+    """The substitute for ``libgazebo_ros_range.so`` of ROS 1: it publishes minimum distances."""
 
     PARAMETERS = RangeParameters
     IGNORED = ("gaussianNoise", "fov")

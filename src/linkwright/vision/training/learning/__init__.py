@@ -1,1 +1,1 @@
-"""The code that imports PyTorch; import it only after `linkwright.vision.training.library` has found PyTorch."""
+"""The code that imports PyTorch. Call `linkwright.vision.training.library.need_pytorch` before importing it."""

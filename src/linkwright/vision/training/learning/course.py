@@ -52,7 +52,7 @@ class Epoch:
 
 
 class Course:
-    """Trains a network.
+    """The training of a network.
 
     Args:
         names: the names of the classes.
@@ -65,7 +65,7 @@ class Course:
         options: the options.
         shape: the shape of the network.
         network: the network that is trained.
-        smooth: the network with the moving average of the weights; it is evaluated.
+        smooth: the network with the moving average of the weights, which is evaluated.
         best: the weights of the moving average with the best evaluation.
         best_map: the mAP50-95 of the best weights; -1 before the first evaluation.
         best_epoch: the epoch of the best weights.
@@ -223,7 +223,7 @@ class Course:
         )
 
     def save(self, path: Path) -> None:
-        """Write a checkpoint to a file, which is replaced only when it is complete."""
+        """Write a checkpoint atomically."""
         state = {
             "shape": asdict(self.shape),
             "names": list(self.names),

@@ -1,4 +1,4 @@
-"""Export a network to an ONNX file in the layout of YOLOv8."""
+"""The export of a network to an ONNX file in the layout of YOLOv8."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class _YoloOutput(nn.Module):
         self.shift = math.log((1 - threshold) / threshold)
 
     def forward(self, images: Tensor) -> Tensor:
-        """Return a tensor of shape (batch, 4 + classes, cells): centre, width and height in pixels, then the scores."""
+        """Return centre, width and height in pixels, then the scores, shape (batch, 4 + classes, cells)."""
         boxes, logits = self.network(images)
         top_left, bottom_right = boxes[..., :2], boxes[..., 2:]
         return torch.cat(

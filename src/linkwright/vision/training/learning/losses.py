@@ -1,4 +1,4 @@
-"""Assign cells to objects, and compute the loss.
+"""The assignment of cells to objects, and the loss.
 
 An object is assigned to the cells that already predict it best, judged by score and overlap combined. The better a
 cell's box is, the higher its target score (task-aligned assignment, Feng and others 2021).

@@ -52,7 +52,7 @@ class Convolution(nn.Module):
 
 
 class HalfStage(nn.Module):
-    """Residual blocks over one half of the channels; the other half bypasses them."""
+    """Residual blocks that process one half of the channels, while the other half bypasses them."""
 
     def __init__(self, inputs: int, outputs: int, blocks: int, *, residual: bool = True) -> None:
         super().__init__()
@@ -73,7 +73,7 @@ class HalfStage(nn.Module):
 
 
 class Pooling(nn.Module):
-    """Spatial pyramid pooling, which concatenates the results of zero to three chained poolings (SPPF)."""
+    """Spatial pyramid pooling (SPPF): the concatenated results of zero to three chained poolings."""
 
     def __init__(self, channels: int) -> None:
         super().__init__()
@@ -101,7 +101,7 @@ class Head(nn.Module):
         nn.init.constant_(self.box[-1].bias, 1.0)
 
     def forward(self, features: Tensor) -> Tensor:
-        """Return the logarithms of the distances of the four sides, then the class logits, shape (batch, n, cells)."""
+        """Return the log distances of the four sides, then the class logits, shape (batch, n, cells)."""
         shared = self.shared(features)
         boxes, scores = self.box[0](shared), self.scores[0](shared)
         # bfloat16 has 8 significant bits, so the side distances would be off by up to 1 %.

@@ -18,7 +18,7 @@ _NEWTON_SCHULZ_STEPS = 5
 
 
 class Optimizer:
-    """Updates the kernels of convolutions with Muon (Jordan and others 2024), and all other weights with AdamW.
+    """An optimizer that updates convolution kernels with Muon (Jordan and others 2024), and the rest with AdamW.
 
     Muon makes each update of a kernel nearly orthogonal: all directions of its inputs and outputs change equally, even
     those with small gradients. In the same number of steps, a network learns much more than with AdamW alone.

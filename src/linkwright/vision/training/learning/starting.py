@@ -107,7 +107,7 @@ def _execution_order(network: Network) -> list[nn.Conv2d]:
 
 
 def _set_bias(layer: nn.Conv2d | nn.BatchNorm2d, bias: Tensor) -> None:
-    """Set the bias of a layer; a normalisation then only adds this bias."""
+    """Set the bias of a layer, and turn a normalisation into the addition of this bias."""
     layer.bias.copy_(bias)
     if isinstance(layer, nn.BatchNorm2d):
         layer.weight.fill_(1.0)

@@ -1,4 +1,7 @@
-"""Announcements of participants and endpoints (SPDP and SEDP; DDSI-RTPS 2.5, 8.5 and 9.6.2)."""
+"""Announcements of participants (SPDP) and endpoints (SEDP).
+
+Source: DDSI-RTPS 2.5, 8.5 and 9.6.2.
+"""
 
 from __future__ import annotations
 
@@ -85,7 +88,10 @@ def describe_endpoint(guid: bytes, topic: str, type_name: str, user_data: bytes)
 
 
 def key_parameters(guid: bytes, *, is_gone: bool = False) -> bytes:
-    """Return the inline QoS that identifies an endpoint, and announces its end if `is_gone` is true."""
+    """Return the inline QoS that identifies an endpoint.
+
+    If `is_gone` is true, the inline QoS also announces that the endpoint was deleted.
+    """
     status = ((v.PID_STATUS_INFO, bytes((0, 0, 0, _GONE_FLAGS))),) if is_gone else ()
     return v.parameters((v.PID_KEY_HASH, guid), *status)
 

@@ -1,4 +1,4 @@
-"""Parsing of incoming RTPS messages, and building of outgoing ones (DDSI-RTPS 2.5, 9.4).
+"""Parses incoming RTPS messages and builds outgoing ones (DDSI-RTPS 2.5, 9.4).
 
 Only the submessages that Linkwright uses are supported.
 """
@@ -94,7 +94,7 @@ class Gap:
 
 @dataclass(frozen=True, slots=True)
 class AckNack:
-    """ACKNACK: a reader has every sample before `base`, and lacks the samples in `missing`."""
+    """ACKNACK: a reader has all samples before `base`, except the samples in `missing`."""
 
     source: bytes
     reader: bytes
@@ -127,7 +127,10 @@ class _Context:
 
 
 def read_vendor(packet: bytes) -> bytes:
-    """Return the vendor id of a message's sender; empty if the packet is not an RTPS message."""
+    """Return the vendor id of a message's sender.
+
+    Return empty bytes if the packet is not an RTPS message.
+    """
     return packet[6:8] if packet[:4] == b"RTPS" and len(packet) >= _HEADER else b""
 
 
@@ -222,7 +225,7 @@ def _bits(body: bytes, offset: int, base: int, count: int, order: str) -> list[i
 
 
 def message(prefix: bytes, *submessages: bytes, to: bytes = b"") -> bytes:
-    """Build a message from a participant, to the participant with the prefix `to`, or to all."""
+    """Build a message from a participant to the participant with the prefix `to`, or to all."""
     destination = _submessage(_INFO_DST, 0, to) if to else b""
     return b"RTPS" + VERSION + VENDOR + prefix + destination + b"".join(submessages)
 
@@ -255,7 +258,7 @@ def data_fragment(
 
 
 def fragment_start(reader: bytes, writer: bytes, number: int, size: int, fragment_number: int, length: int) -> bytes:
-    """Build the beginning of DATA_FRAG, which the bytes of the fragment must follow.
+    """Build the beginning of DATA_FRAG. The caller appends the bytes of the fragment.
 
     Args:
         reader: the entity that the fragment is for.
@@ -288,7 +291,9 @@ def gap(reader: bytes, writer: bytes, start: int, base: int) -> bytes:
 def acknack(
     reader: bytes, writer: bytes, base: int, missing: Collection[int], count: int, *, final: bool = True
 ) -> bytes:
-    """Build ACKNACK: every sample before `base` has arrived, and those in `missing` are missing.
+    """Build ACKNACK for a reader that lacks the samples in `missing`.
+
+    All samples before `base` have arrived.
 
     At most the first 256 sample numbers from `base` can be listed as missing.
     """

@@ -50,7 +50,10 @@ class NetworkAddresses:
 
 
 def addresses_from_settings(settings: Settings) -> NetworkAddresses:
-    """Return the addresses that follow from the settings; see `docs/decisions/0011-dds.md`."""
+    """Return the addresses that follow from the settings.
+
+    See `docs/decisions/0011-dds.md`.
+    """
     interface_addresses = tuple(own_addresses()[:3])
     is_localhost = settings.range is Range.LOCALHOST and bool(settings.peers)
     is_machine = settings.range is Range.MACHINE or (settings.range is Range.LOCALHOST and not is_localhost)
@@ -114,7 +117,7 @@ class Network:
         self.addresses: list[Address] = [(host, port) for host in self._network_addresses.own]
 
     def receive(self) -> tuple[bytes, Address] | None:
-        """Return the next message and its sender; None if there is none."""
+        """Return the next message and its sender, or None if no message is waiting."""
         while True:
             try:
                 packet, source = self.socket.recvfrom(_MAX_PACKET_SIZE)
@@ -155,7 +158,10 @@ class Network:
                 self.socket.sendto(packet, self._group)
 
     def best_addresses(self, addresses: Iterable[Address]) -> tuple[Address, ...]:
-        """Return the addresses to use for one receiver: one on this machine if any, otherwise all."""
+        """Return the addresses to use for one receiver.
+
+        The result is one address if the receiver is on this machine, otherwise all addresses.
+        """
         unique_addresses = tuple(dict.fromkeys(addresses))
         local_addresses = sorted(
             (address for address in unique_addresses if self.is_here(address[0])),

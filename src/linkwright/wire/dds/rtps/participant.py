@@ -154,7 +154,7 @@ class RtpsParticipant:
         return local
 
     def add_writer(self, topic: str, type_name: str, user_data: bytes) -> LocalWriter:
-        """Create a writer; see `add_reader` for the arguments."""
+        """Create a writer. See `add_reader` for the arguments."""
         with self._lock:
             guid = self._new_guid(v.WRITER_KIND)
             packets = self._publications_writer.write(
@@ -180,7 +180,7 @@ class RtpsParticipant:
         self._network.send(packets)
 
     def write(self, local: LocalWriter, payload: bytes, *, inline: bytes = b"", to: bytes = b"") -> int:
-        """Write a sample; see `Writer.write` for the arguments.
+        """Write a sample. See `Writer.write` for the arguments.
 
         Returns:
             The sequence number of the sample.
@@ -206,7 +206,7 @@ class RtpsParticipant:
             return {guid: local.reader.heard_at(guid) for guid in local.reader.writers}
 
     def reader_address(self, reader: bytes) -> Address | None:
-        """Return the address of a remote reader on this machine; None if it is not known."""
+        """Return the address of a remote reader on this machine, or None if it is not known."""
         with self._lock:
             peer = self._peers.get(reader[: v.PREFIX])
             endpoint = peer.endpoints.get(reader) if peer is not None else None
@@ -270,7 +270,7 @@ class RtpsParticipant:
         self._network.send(packets)
 
     def _due(self) -> float:
-        """Do the work that is due; return the seconds until the next work is due."""
+        """Do the work that is due, and return the seconds until the next work is due."""
         now = time.monotonic()
         packets: list[Packet] = []
         with self._lock:
@@ -422,7 +422,7 @@ class RtpsParticipant:
     # --- incoming packets ---------------------------------------------------------------------------------------------
 
     def _process_packet(self, packet: bytes, source: Address, calls: list[Callable[[], None]]) -> list[Packet]:
-        """Process a packet; return the packets that answer it.
+        """Process a packet, and return the packets that answer it.
 
         Callbacks are appended to `calls`, because they must be called without holding the lock.
         """
@@ -446,7 +446,9 @@ class RtpsParticipant:
         return packets
 
     def _on_unmatched_peer(self, submessage: Submessage, source: Address) -> list[Packet]:
-        """Tell a participant that is not matched that no samples are missing on either side.
+        """Return the packets that answer an unmatched participant.
+
+        They state that no samples are missing on either side.
 
         After this answer, the participant stops repeating its messages.
         """

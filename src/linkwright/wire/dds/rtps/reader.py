@@ -1,7 +1,7 @@
 """RTPS readers that request missing samples (DDSI-RTPS 2.5, 8.4.12).
 
-A sample is passed on when it arrives, even if an earlier one is still missing: the order of requests and responses does
-not matter, and no call waits for another one.
+A sample is passed on when it arrives, even if an earlier sample is missing. The order of requests and responses does
+not matter, and no call waits for another call.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ _FIRST_REPEAT, _LAST_REPEAT = 0.05, 2.0
 
 _MAX_MISSING = 256
 _MAX_AHEAD = 100_000
-"""How far the number of a sample may be ahead of the next expected number. Later samples are ignored."""
+"""The maximum distance of a sample's number from the next expected number. Later samples are ignored."""
 
 _MAX_SAMPLE_SIZE = 1 << 30
 _MAX_INCOMPLETE = 8
@@ -34,7 +34,7 @@ class _Incomplete:
     parts: dict[int, bytes] = field(default_factory=dict)
 
     def add(self, first: int, payload: bytes) -> bytes | None:
-        """Add consecutive fragments; return the sample once it is complete, otherwise None.
+        """Add consecutive fragments, and return the complete sample or None.
 
         Args:
             first: the number of the first fragment.
@@ -122,7 +122,7 @@ class Reader:
         return writer_state.last if writer_state is not None else 0
 
     def match(self, writer: bytes, addresses: tuple[Address, ...]) -> list[Packet]:
-        """Match a writer; return the packets that request its samples."""
+        """Match a writer, and return the packets that request its samples."""
         if writer in self._writers:
             self._writers[writer].addresses = addresses
             return []
@@ -134,7 +134,10 @@ class Reader:
         self._writers.pop(writer, None)
 
     def on_data(self, sample: Data) -> Data | None:
-        """Handle a sample or fragment; return the sample if it is new and complete, otherwise None."""
+        """Handle a sample or fragment.
+
+        Return the sample if it is new and complete, otherwise None.
+        """
         writer_state = self._writers.get(sample.writer)
         if (
             writer_state is None
@@ -152,7 +155,7 @@ class Reader:
         return complete
 
     def on_heartbeat(self, heartbeat: Heartbeat) -> list[Packet]:
-        """Handle a heartbeat; return its acknowledgement, with the numbers of missing samples."""
+        """Handle a heartbeat, and return its acknowledgement with the numbers of missing samples."""
         writer_state = self._writers.get(heartbeat.writer)
         if writer_state is None:
             return []
@@ -165,7 +168,7 @@ class Reader:
         return [self._acknowledge(heartbeat.writer, writer_state)]
 
     def on_gap(self, gap: Gap) -> None:
-        """Handle a GAP: the samples in it count as received.
+        """Handle a GAP. The samples in it count as received.
 
         Such samples are not for this reader, or the writer no longer has them.
         """
@@ -210,7 +213,7 @@ class Reader:
         return incomplete_sample.add(sample.first, sample.payload)
 
     def _request_heartbeat(self, writer: bytes, writer_state: _Writer, now: float) -> Packet:
-        """Return an acknowledgement of no samples, with base 0, as a request for a heartbeat.
+        """Return an acknowledgement of no samples (base 0), which requests a heartbeat.
 
         Fast DDS answers base 0, but not base 1, with a heartbeat.
         """

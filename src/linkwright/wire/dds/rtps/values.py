@@ -154,7 +154,7 @@ def related_identity(guid: bytes, number: int) -> bytes:
 
 
 def read_related_identity(inline: Parameters, order: str) -> tuple[bytes, int] | None:
-    """Return the GUID and sequence number of the related sample in inline QoS; None if absent."""
+    """Return the GUID and sequence number of the related sample in inline QoS, or None."""
     for pid in (PID_RELATED_SAMPLE_IDENTITY, PID_RELATED_SAMPLE_IDENTITY_OF_FAST_DDS):
         for value in inline.get(pid, ()):
             if len(value) >= 24:

@@ -1,4 +1,4 @@
-"""RTPS writers, which ensure that every reader receives every sample (DDSI-RTPS 2.5, 8.4.9)."""
+"""RTPS writers. They ensure that every reader receives every sample (DDSI-RTPS 2.5, 8.4.9)."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ class Writer:
         return self._readers.keys()
 
     def has_answered(self, reader: bytes) -> bool:
-        """Return whether a reader has answered, which shows that the reader has matched this writer."""
+        """Return whether a reader has answered. An answer shows that it has matched this writer."""
         reader_state = self._readers.get(reader)
         return reader_state is not None and reader_state.heard
 
@@ -96,7 +96,7 @@ class Writer:
         return self._history_packets(reader, reader_state)
 
     def unmatch(self, reader: bytes) -> None:
-        """Remove a reader, to which nothing more is written."""
+        """Remove a reader. No more samples are written to it."""
         self._readers.pop(reader, None)
         self._forget_acknowledged()
 
@@ -133,7 +133,7 @@ class Writer:
         return self._last_number
 
     def on_acknack(self, acknack: AckNack) -> list[Packet]:
-        """Handle an ACKNACK; return the packets that resend the missing samples."""
+        """Handle an ACKNACK, and return the packets that resend the missing samples."""
         reader_state = self._readers.get(acknack.reader)
         if reader_state is None:
             return []
@@ -151,7 +151,7 @@ class Writer:
         return packets
 
     def on_nack_frag(self, nack: NackFrag) -> list[Packet]:
-        """Handle a NACK_FRAG; return the packets that resend the missing fragments."""
+        """Handle a NACK_FRAG, and return the packets that resend the missing fragments."""
         reader_state, change = self._readers.get(nack.reader), self._changes.get(nack.number)
         if reader_state is None or change is None or change.payload is None or not change.is_for(nack.reader):
             return []

@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Launches localization or mapping, and navigation, with the arguments of nav2_bringup's file of the same name."""
+"""Launch localization or mapping, and navigation.
+
+The arguments are those of nav2_bringup's file of the same name.
+"""
 
 from ament_index_python.packages import get_package_share_path
 from launch.actions import DeclareLaunchArgument, GroupAction, IncludeLaunchDescription, OpaqueFunction
@@ -14,10 +17,10 @@ DECLARED = {
     **ARGUMENTS,
     "use_namespace": ("false", "Whether all nodes are in the namespace"),
     "use_composition": ("True", "Whether the servers are composed in a container"),
-    "slam": ("False", "Whether to build a map instead of localizing on one"),
-    "map": ("", "The map: path of its YAML file"),
-    "use_localization": ("True", "Whether to run mapping or localization at all"),
-    "params_file": (str(HERE / "params" / "nav2_params.yaml"), "Parameters: path"),
+    "slam": ("False", "Whether to build a map instead of localizing in one"),
+    "map": ("", "The path of the map's YAML file"),
+    "use_localization": ("True", "Whether to run mapping or localization"),
+    "params_file": (str(HERE / "params" / "nav2_params.yaml"), "The path of the parameter file"),
     "graph": ("", "Not used"),
     "keepout_mask": ("", "Not used"),
     "speed_mask": ("", "Not used"),

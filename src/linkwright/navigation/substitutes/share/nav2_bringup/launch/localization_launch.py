@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Launches the map server and localization, with the arguments of nav2_bringup's file of the same name."""
+"""Launch the map server and localization.
+
+The arguments are those of nav2_bringup's file of the same name.
+"""
 
 from ament_index_python.packages import get_package_share_path
 from launch.actions import DeclareLaunchArgument, OpaqueFunction, SetEnvironmentVariable
@@ -29,8 +32,8 @@ def generate_launch_description():
     parameters = get_package_share_path("nav2_bringup") / "params" / "nav2_params.yaml"
     declared = {
         **ARGUMENTS,
-        "map": ("", "The map: path of its YAML file"),
-        "params_file": (str(parameters), "Parameters: path"),
+        "map": ("", "The path of the map's YAML file"),
+        "params_file": (str(parameters), "The path of the parameter file"),
     }
     arguments = [
         DeclareLaunchArgument(name, default_value=default, description=description)

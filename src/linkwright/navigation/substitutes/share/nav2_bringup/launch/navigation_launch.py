@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Launches path planning and following, with the arguments of nav2_bringup's file of the same name."""
+"""Launch path planning and following.
+
+The arguments are those of nav2_bringup's file of the same name.
+"""
 
 from ament_index_python.packages import get_package_share_path
 from launch.actions import DeclareLaunchArgument, OpaqueFunction, SetEnvironmentVariable
@@ -50,7 +53,7 @@ def generate_launch_description():
     parameters = get_package_share_path("nav2_bringup") / "params" / "nav2_params.yaml"
     declared = {
         **ARGUMENTS,
-        "params_file": (str(parameters), "Parameters: path"),
+        "params_file": (str(parameters), "The path of the parameter file"),
         "graph": ("", "Not used"),
     }
     arguments = [

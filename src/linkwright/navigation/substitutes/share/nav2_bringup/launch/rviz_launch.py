@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Launches RViz with a view for navigation, with the arguments of nav2_bringup's file of the same name."""
+"""Launch RViz with a view for navigation.
+
+The arguments are those of nav2_bringup's file of the same name.
+"""
 
 from ament_index_python.packages import get_package_share_path
 from launch.actions import DeclareLaunchArgument, OpaqueFunction, Shutdown
@@ -10,7 +13,7 @@ from launch import LaunchDescription
 from linkwright.navigation.substitutes.servers import is_true
 
 ARGUMENTS = {
-    "namespace": ("navigation", "The replacement for <robot_namespace> in the view"),
+    "namespace": ("navigation", "The replacement for <robot_namespace> in the configuration"),
     "use_namespace": ("false", "Whether RViz is in the namespace"),
     "use_sim_time": ("false", "Whether to use simulated time"),
 }
@@ -42,7 +45,7 @@ def start(context):
 def generate_launch_description():
     """Return a launch description with the arguments and the actions of `start`."""
     view = get_package_share_path("nav2_bringup") / "rviz" / "nav2_default_view.rviz"
-    declared = {**ARGUMENTS, "rviz_config": (str(view), "The view: path")}
+    declared = {**ARGUMENTS, "rviz_config": (str(view), "The path of the RViz configuration")}
     arguments = [
         DeclareLaunchArgument(name, default_value=default, description=description)
         for name, (default, description) in declared.items()

@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Launches mapping, with the arguments of nav2_bringup's file of the same name."""
+"""Launch mapping.
+
+The arguments are those of nav2_bringup's file of the same name.
+"""
 
 from ament_index_python.packages import get_package_share_path
 from launch.actions import DeclareLaunchArgument, IncludeLaunchDescription, OpaqueFunction
@@ -13,7 +16,7 @@ SERVERS = (Server("nav2_map_server", "map_saver_server", "nav2_map_server::MapSa
 ARGUMENTS = {
     "namespace": ("", "Namespace of all nodes"),
     "use_sim_time": ("True", "Whether to use simulated time"),
-    "autostart": ("True", "Whether the map saver is activated at once"),
+    "autostart": ("True", "Whether the map saver is activated at the start"),
     "use_respawn": ("False", "Whether the map saver is restarted if it dies"),
     "log_level": ("info", "The log level"),
 }
@@ -37,7 +40,7 @@ def start(context):
 def generate_launch_description():
     """Return a launch description with the arguments and the actions of `start`."""
     parameters = get_package_share_path("nav2_bringup") / "params" / "nav2_params.yaml"
-    declared = {**ARGUMENTS, "params_file": (str(parameters), "Parameters: path")}
+    declared = {**ARGUMENTS, "params_file": (str(parameters), "The path of the parameter file")}
     arguments = [
         DeclareLaunchArgument(name, default_value=default, description=description)
         for name, (default, description) in declared.items()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Launches the map saver server and its lifecycle manager, as in nav2_map_server's file of the same name."""
+"""Launch the map saver server and its lifecycle manager, as nav2_map_server does."""
 
 from launch_ros.actions import Node
 

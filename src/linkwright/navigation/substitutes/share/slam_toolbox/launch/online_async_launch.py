@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Launches mapping from the latest scans, with the arguments of slam_toolbox's file of the same name."""
+"""Launch mapping from the latest scans.
+
+The arguments are those of slam_toolbox's file of the same name.
+"""
 
 from ament_index_python.packages import get_package_share_path
 from launch.actions import DeclareLaunchArgument, IncludeLaunchDescription
@@ -13,7 +16,7 @@ def generate_launch_description():
     parameters = share / "config" / "mapper_params_online_async.yaml"
     return LaunchDescription(
         [
-            DeclareLaunchArgument("slam_params_file", default_value=str(parameters), description="Parameters: path"),
+            DeclareLaunchArgument("slam_params_file", default_value=str(parameters), description="The parameter file"),
             IncludeLaunchDescription(
                 str(share / "launch" / "toolbox.launch.py"),
                 launch_arguments={"executable": "async_slam_toolbox_node"}.items(),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Launches the slam_toolbox node that the including launch file names.
+"""Launch the slam_toolbox node that the including launch file names.
 
 The parameters come from the file in the argument ``slam_params_file``.
 """
@@ -12,8 +12,8 @@ from launch import LaunchDescription
 
 ARGUMENTS = {
     "use_sim_time": ("true", "Whether to use simulated time"),
-    "autostart": ("true", "Whether it is activated at once"),
-    "use_lifecycle_manager": ("false", "Whether a lifecycle manager activates it"),
+    "autostart": ("true", "Whether the node activates itself at the start"),
+    "use_lifecycle_manager": ("false", "Whether a lifecycle manager activates the node"),
 }
 
 

@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Launches the simulation and its window, with the arguments of the gazebo_ros file of this name."""
+"""Launch the simulation and its window.
+
+The arguments are those of the gazebo_ros file of this name.
+"""
 
 from ament_index_python.packages import get_package_share_path
 from launch.actions import DeclareLaunchArgument, IncludeLaunchDescription

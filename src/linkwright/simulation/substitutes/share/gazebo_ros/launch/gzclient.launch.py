@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Launches the substitute for Gazebo's window, with the arguments of the gazebo_ros file of this name."""
+"""Launch the substitute for Gazebo's window.
+
+The arguments are those of the gazebo_ros file of this name.
+"""
 
 from launch.actions import DeclareLaunchArgument, OpaqueFunction, Shutdown
 from launch.conditions import IfCondition
@@ -25,7 +28,7 @@ def generate_launch_description():
         [
             *(DeclareLaunchArgument(name, default_value="", description="Not used") for name in IGNORED),
             DeclareLaunchArgument(
-                "gui_required", default_value="false", description="Whether to shut down when it ends"
+                "gui_required", default_value="false", description="Whether to shut down when the window ends"
             ),
             OpaqueFunction(function=start),
         ]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Launches the simulation, with the arguments of the gazebo_ros file of this name."""
+"""Launch the simulation, with the arguments of the gazebo_ros file of this name."""
 
 import shlex
 
@@ -64,12 +64,12 @@ def generate_launch_description():
     """Return a launch description that declares the arguments and starts the server."""
     empty = get_package_share_path("gazebo_ros") / "worlds" / "empty.world"
     declared = {
-        "world": (str(empty), "The world: path of a file"),
+        "world": (str(empty), "The path of the world file"),
         "pause": ("false", "Whether the simulation begins paused"),
         "seed": ("", "The seed of the random numbers"),
-        "params_file": ("", "Parameters of the server: path of a YAML file"),
-        "extra_gazebo_args": ("", "Further arguments of the command line"),
-        "server_required": ("false", "Whether to shut down when it ends"),
+        "params_file": ("", "The path of a YAML file with the server's parameters"),
+        "extra_gazebo_args": ("", "Additional command-line arguments"),
+        "server_required": ("false", "Whether to shut down when the server ends"),
         **{name: (default, "Not used") for name, default in IGNORED.items()},
     }
     arguments = [

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Launches a bridge, with the arguments of the ros_gz_bridge file of this name."""
+"""Launch a bridge, with the arguments of the ros_gz_bridge file of this name."""
 
 from launch.actions import DeclareLaunchArgument
 from launch.substitutions import LaunchConfiguration
@@ -9,7 +9,7 @@ from launch import LaunchDescription
 
 ARGUMENTS = {
     "bridge_name": ("ros_gz_bridge", "The node's name"),
-    "config_file": ("", "The topics to bridge: path of a YAML file"),
+    "config_file": ("", "The path of a YAML file with the topics to bridge"),
     "namespace": ("", "The namespace of the node"),
     "log_level": ("info", "The log level"),
     "container_name": ("ros_gz_container", "Not used"),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Removes a model from the world, with the arguments of the ros_gz_sim file of this name."""
+"""Remove a model from the world, with the arguments of the ros_gz_sim file of this name."""
 
 from launch.actions import DeclareLaunchArgument
 from launch.substitutions import LaunchConfiguration

@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Launches the simulation without a window, with the arguments of the ros_gz_sim file of this name."""
+"""Launch the simulation without a window.
+
+The arguments are those of the ros_gz_sim file of this name.
+"""
 
 from launch.actions import DeclareLaunchArgument, OpaqueFunction
 from launch.substitutions import LaunchConfiguration
@@ -8,8 +11,8 @@ from launch_ros.actions import Node
 from launch import LaunchDescription
 
 ARGUMENTS = {
-    "world_sdf_file": ("", "The world: path of a file"),
-    "world_sdf_string": ("", "The world: its text in SDF"),
+    "world_sdf_file": ("", "The path of the world file"),
+    "world_sdf_string": ("", "The text of the world in SDF"),
     "container_name": ("ros_gz_container", "Not used"),
     "create_own_container": ("False", "Not used"),
     "use_composition": ("False", "Not used"),

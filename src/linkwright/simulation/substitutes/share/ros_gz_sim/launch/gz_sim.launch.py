@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Launches the simulation as ``gz sim`` does, with the arguments of the ros_gz_sim file of this name."""
+"""Launch the simulation as ``gz sim`` does.
+
+The arguments are those of the ros_gz_sim file of this name.
+"""
 
 import shlex
 
@@ -22,7 +25,7 @@ ARGUMENTS = {
 
 
 def start(context):
-    """Return the node of the server, or of the substitute for the window if only that is requested."""
+    """Return the node of the server, or of the window's substitute if only that is requested."""
     arguments = LaunchConfiguration("gz_args").perform(context) or LaunchConfiguration("ign_args").perform(context)
     command = gz_server(shlex.split(arguments))
     required = IfCondition(LaunchConfiguration("on_exit_shutdown")).evaluate(context)

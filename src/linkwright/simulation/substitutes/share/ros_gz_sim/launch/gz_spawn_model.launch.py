@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Spawns a model in the world, with the arguments of the ros_gz_sim file of this name."""
+"""Spawn a model in the world, with the arguments of the ros_gz_sim file of this name."""
 
 from launch.actions import DeclareLaunchArgument
 from launch.substitutions import LaunchConfiguration
@@ -9,17 +9,17 @@ from launch import LaunchDescription
 
 ARGUMENTS = {
     "world": ("", "The world's name"),
-    "file": ("", "The model: path of a file, or an address"),
-    "model_string": ("", "The model as text"),
-    "topic": ("", "The topic that the model is published on"),
+    "file": ("", "The path or address of the model file"),
+    "model_string": ("", "The text of the model"),
+    "topic": ("", "The topic on which the model is published"),
     "entity_name": ("", "The model's name"),
     "allow_renaming": ("False", "Whether to choose another name if it is taken"),
-    "x": ("0.0", "m"),
-    "y": ("0.0", "m"),
-    "z": ("0.0", "m"),
-    "roll": ("0.0", "rad"),
-    "pitch": ("0.0", "rad"),
-    "yaw": ("0.0", "rad"),
+    "x": ("0.0", "The x coordinate of the model, in m"),
+    "y": ("0.0", "The y coordinate of the model, in m"),
+    "z": ("0.0", "The z coordinate of the model, in m"),
+    "roll": ("0.0", "The roll angle of the model, in rad"),
+    "pitch": ("0.0", "The pitch angle of the model, in rad"),
+    "yaw": ("0.0", "The yaw angle of the model, in rad"),
 }
 PARAMETERS = {"model_string": "string", "entity_name": "name", "roll": "R", "pitch": "P", "yaw": "Y"}
 """The launch arguments whose node parameters have other names."""

@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Launches the simulation and a bridge, with the arguments of the ros_gz_sim file of this name."""
+"""Launch the simulation and a bridge.
+
+The arguments are those of the ros_gz_sim file of this name.
+"""
 
 from ament_index_python.packages import get_package_share_path
 from launch.actions import IncludeLaunchDescription

@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Launches a bridge and spawns a model, with the arguments of the ros_gz_sim file of this name."""
+"""Launch a bridge, and spawn a model.
+
+The arguments are those of the ros_gz_sim file of this name.
+"""
 
 from ament_index_python.packages import get_package_share_path
 from launch.actions import IncludeLaunchDescription

@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Launches the simulation as ``ign gazebo`` does, with the arguments of the ros_ign_gazebo file of this name."""
+"""Launch the simulation as ``ign gazebo`` does.
+
+The arguments are those of the ros_ign_gazebo file of this name.
+"""
 
 from ament_index_python.packages import get_package_share_path
 from launch.actions import DeclareLaunchArgument, IncludeLaunchDescription
@@ -9,7 +12,7 @@ from launch import LaunchDescription
 
 
 def generate_launch_description():
-    """Return a launch description that includes gz_sim.launch.py, which reads the same arguments."""
+    """Return a launch description that includes gz_sim.launch.py with the same arguments."""
     return LaunchDescription(
         [
             DeclareLaunchArgument("ign_args", default_value="", description="The command line of ign gazebo"),

@@ -1,0 +1,171 @@
+"""Completions in ``${...}`` and ``$(...)`` of a description: names in scope with their values, functions, packages."""
+
+from __future__ import annotations
+
+import builtins
+import math
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from linkwright.language.completion import Completion, ItemKind, of_kind
+from linkwright.language.cursor import Cursor
+from linkwright.language.definitions import NameDefinition, NameKind
+from linkwright.language.format import Document
+from linkwright.language.written_yaml import yaml_value
+from linkwright.xacro.expressions.symbols import BARE, MATHEMATICS
+from linkwright.xacro.faults import Fault
+from linkwright.xacro.macros import Parameter, parse_parameters
+
+FUNCTIONS = tuple(sorted({*MATHEMATICS, *BARE}))
+"""Names of functions and constants that expressions have (ros/xacro 2.1)."""
+XACRO_FUNCTIONS = {
+    "xacro.load_yaml": "the content of a YAML file",
+    "xacro.arg": "the value of an argument",
+    "xacro.abs_filename": "a path relative to this file as an absolute path",
+    "xacro.dotify": "a mapping whose items are also found with a dot",
+    "xacro.tokenize": "the parts of a text between separators",
+    "xacro.message": "prints a message",
+    "xacro.warning": "prints a warning",
+    "xacro.error": "prints an error",
+    "xacro.fatal": "ends the expansion with an error",
+    "xacro.print_location": "prints where the expression is",
+}
+"""The functions of the group ``xacro``, with their purposes."""
+_COMMANDS = {
+    "arg": "the value of an argument",
+    "find": "the folder of a package",
+    "env": "an environment variable, which must be set",
+    "optenv": "an environment variable, or a default",
+    "cwd": "the current folder",
+    "dirname": "the folder of this file",
+    "eval": "the value of an expression",
+}
+_USUAL = ("pi", "radians", "sin", "cos", "sqrt", "abs", "max", "min")
+_WORDS = re.compile(r"[A-Za-z_]\w*")
+_EXPRESSION = re.compile(r"\$\{([^{}]*)\}")
+_ITEM = re.compile(r"""([A-Za-z_]\w*)((?:\[\s*["'][^"'\]]*["']\s*\]|\.[A-Za-z_]\w*)*)(?:\[\s*["']|\.)([\w-]*)$""")
+_KEY = re.compile(r"""\[\s*["']([^"'\]]*)["']\s*\]|\.([A-Za-z_]\w*)""")
+_LONGEST_VALUE = 60
+
+
+def complete_expression(document: Document, cursor: Cursor, names: Sequence[NameDefinition]) -> Iterator[Completion]:
+    """Yield the names that an expression may contain: parameters and properties first, those that are used more first.
+
+    Args:
+        document: the text.
+        cursor: a place in ``${...}``.
+        names: the names that the files of the description define.
+    """
+    item = _ITEM.search(cursor.typed)
+    if item is not None and item[1] not in ("xacro", "math", "python"):
+        yield from _items(document, item, cursor, names)
+        return
+    begin = cursor.offset - len(cursor.word)
+    uses = _uses(document.text)
+    for parameter in parameters_in_scope(cursor):
+        detail = "" if parameter.default is None else f"= {parameter.default}"
+        yield Completion(parameter.name, ItemKind.PROPERTY, begin, detail, f"**parameter {parameter.name}**")
+    macro = cursor.macro
+    own = "" if macro is None else next((each.value or "" for each in macro.attributes() if each.name == "name"), "")
+    properties = of_kind([name for name in names if not name.owner or name.owner == own], NameKind.PROPERTY)
+
+    def rank(name: NameDefinition) -> tuple[bool, int, bool]:
+        is_near = name.file == document.file
+        return not (is_near and name.owner == own and bool(own)), -uses.get(name.name, 0), not is_near
+
+    for name in sorted(properties, key=rank):
+        described = f"**property {name.name}** = `{name.detail}`, {name.file.name}"
+        yield Completion(name.name, ItemKind.PROPERTY, begin, _short(name.detail), described)
+    for function, purpose in XACRO_FUNCTIONS.items():
+        yield Completion(function, ItemKind.FUNCTION, begin, purpose)
+    for function in sorted(FUNCTIONS, key=lambda name: (name not in _USUAL, -uses.get(name, 0))):
+        yield Completion(function, ItemKind.FUNCTION, begin, _purpose(function))
+
+
+def parameters_in_scope(cursor: Cursor) -> list[Parameter]:
+    """Return the parameters of the macro around a place, without its blocks."""
+    return [parameter for parameter in _parameters(cursor) if not parameter.is_block]
+
+
+def blocks_in_scope(cursor: Cursor) -> list[Parameter]:
+    """Return the block parameters of the macro around a place."""
+    return [parameter for parameter in _parameters(cursor) if parameter.is_block]
+
+
+def _parameters(cursor: Cursor) -> tuple[Parameter, ...]:
+    macro = cursor.macro
+    written = () if macro is None else (each.value or "" for each in macro.attributes() if each.name == "params")
+    try:
+        return tuple(parse_parameters(next(iter(written), "")))
+    except Fault:  # it is being typed
+        return ()
+
+
+def _uses(text: str) -> Mapping[str, int]:
+    """Return how often the expressions of a text contain each word."""
+    found: dict[str, int] = {}
+    for expression in _EXPRESSION.finditer(text):
+        for word in _WORDS.findall(expression[1]):
+            found[word] = found.get(word, 0) + 1
+    return found
+
+
+def _items(
+    document: Document, item: re.Match[str], cursor: Cursor, names: Sequence[NameDefinition]
+) -> Iterator[Completion]:
+    """Yield the keys of a mapping that a property has from a YAML file."""
+    value: Any = yaml_value(document, item[1], names)
+    for key in _KEY.finditer(item[2]):
+        value = value.get(key[1] or key[2]) if isinstance(value, Mapping) else None
+    for key_name, inner in value.items() if isinstance(value, Mapping) else ():
+        detail = ", ".join(map(str, inner)) if isinstance(inner, Mapping) else str(inner)
+        yield Completion(str(key_name), ItemKind.PROPERTY, cursor.offset - len(item[3]), _short(detail))
+
+
+def complete_substitution(document: Document, cursor: Cursor, names: Sequence[NameDefinition]) -> Iterator[Completion]:
+    """Yield the commands of ``$(...)``, or their arguments.
+
+    Args:
+        document: the text.
+        cursor: a place in ``$(...)``.
+        names: the names that the files of the description define.
+    """
+    substitution = cursor.substitution
+    if substitution is None:
+        return
+    command, argument = substitution
+    typed = cursor.typed
+    if " " not in typed[typed.rfind("$(") :].lstrip("$( "):
+        for name, purpose in _COMMANDS.items():
+            yield Completion(name, ItemKind.FUNCTION, cursor.offset - len(command), purpose)
+        return
+    begin = cursor.offset - len(argument)
+    if command == "arg":
+        for definition in of_kind(names, NameKind.ARGUMENT):
+            described = f"**argument {definition.name}** = `{definition.detail}`, {definition.file.name}"
+            yield Completion(definition.name, ItemKind.NAME, begin, _short(definition.detail), described)
+    elif command == "find":
+        yield from packages(document, begin)
+
+
+def packages(document: Document, start: int) -> Iterator[Completion]:
+    """Yield the packages that are found: that of the file first, then those that its text names most often."""
+    found = document.finder.packages()
+    folder = document.file.parent
+
+    def rank(name: str) -> tuple[bool, int, str]:
+        return not folder.is_relative_to(found[name]), -document.text.count(name), name
+
+    for name in sorted(found, key=rank):
+        yield Completion(name, ItemKind.PACKAGE, start, str(found[name]))
+
+
+def _short(text: str) -> str:
+    line = " ".join(text.split())
+    return line if len(line) <= _LONGEST_VALUE else f"{line[: _LONGEST_VALUE - 3]}..."
+
+
+def _purpose(function: str) -> str:
+    found = getattr(math, function, None) or getattr(builtins, function, None)
+    return (getattr(found, "__doc__", None) or "").partition("\n")[0] if callable(found) else str(found)

@@ -1,0 +1,119 @@
+"""The hardware plugins of ros2_control that a description can name, with their parameters."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from linkwright.language.format import Document, Target
+from linkwright.language.plugin_classes import PluginClass, plugin_classes
+from linkwright.lint.targets import walk
+from linkwright.loading.extensions import extensions
+from linkwright.xmltree.tokens import Kind, tokens
+
+BASE = "hardware_interface"
+"""The package of the base classes of hardware plugins."""
+_MOCK = {
+    "calculate_dynamics": "whether velocity and acceleration commands move the position",
+    "disable_commands": "whether commands are ignored",
+    "mock_sensor_commands": "whether the states of sensors have command interfaces, too",
+    "mock_gpio_commands": "whether the states of GPIOs have command interfaces, too",
+    "position_state_following_offset": "a difference between the position and its command",
+    "custom_interface_with_following_offset": "the interface with the position and its offset, instead of position",
+}
+_SIMULATED = {"robot_namespace": "the namespace of the controller manager"}
+_KNOWN: Mapping[str, tuple[str, Mapping[str, str]]] = {
+    "mock_components/GenericSystem": ("follows all commands at once, without hardware", _MOCK),
+    "gz_ros2_control/GazeboSimSystem": ("the joints and sensors of a model in gz", _SIMULATED),
+    "gazebo_ros2_control/GazeboSystem": ("the joints and sensors of a model in Gazebo classic", _SIMULATED),
+    "ign_ros2_control/IgnitionSystem": ("the joints and sensors of a model in Ignition Gazebo", _SIMULATED),
+    "topic_based_ros2_control/TopicBasedSystem": (
+        "commands and states in topics with joint states",
+        {
+            "joint_commands_topic": "the topic of the commands",
+            "joint_states_topic": "the topic of the states",
+            "trigger_joint_command_threshold": "the difference from which a command is published",
+            "sum_wrapped_joint_states": "whether positions count full turns",
+        },
+    ),
+    "fake_components/GenericSystem": ("the name of mock_components/GenericSystem in ROS 2 Foxy", _MOCK),
+}
+_READ = re.compile(
+    r"""\bhardware_parameters\s{0,9}(?:\.\s{0,9}(?:at|find|count)\s{0,9}\(|\[)\s{0,99}["']([\w.]{1,80})["']"""
+)
+_SOURCES = (".cpp", ".hpp", ".cc", ".cxx", ".h")
+_MAX_TEXT = 300_000
+_MAX_FILES = 300
+
+
+@dataclass(frozen=True, slots=True)
+class HardwareParameter:
+    """A parameter of a hardware plugin.
+
+    Attributes:
+        name: the name.
+        meaning: the purpose; may be empty.
+        target: the place in the sources that reads it; None if it is not known.
+    """
+
+    name: str
+    meaning: str = ""
+    target: Target | None = None
+
+
+def hardware_plugins(document: Document) -> dict[str, str]:
+    """Return the hardware plugins by type, each with its purpose: those of the workspace, then the usual ones."""
+    found = {plugin.name: plugin.description for plugin in plugin_classes(document.project, document.finder, BASE)}
+    found |= {name: about for name, (about, _) in _KNOWN.items() if name not in found}
+    return found | {name: "" for name in sorted(extensions("linkwright.hardware")) if name not in found}
+
+
+def hardware_class(document: Document, name: str) -> PluginClass | None:
+    """Return the class of a hardware plugin that a package of the workspace exports, or None."""
+    plugins = plugin_classes(document.project, document.finder, BASE)
+    return next((plugin for plugin in plugins if name in (plugin.name, plugin.type)), None)
+
+
+def hardware_parameters(document: Document, name: str, apart: int = -1) -> dict[str, HardwareParameter]:
+    """Return the parameters of a hardware plugin, by name.
+
+    They are known, or the sources of the plugin's package read them, or the text gives them to the same plugin.
+
+    Args:
+        document: a description.
+        name: the type of the plugin, as ``package/Class``.
+        apart: the offset of a parameter in the text that does not count.
+    """
+    known = _KNOWN.get(name, ("", {}))[1]
+    found = {parameter: HardwareParameter(parameter, meaning) for parameter, meaning in known.items()}
+    plugin = hardware_class(document, name)
+    for parameter in () if plugin is None else _read_in(plugin.package, document):
+        found.setdefault(parameter.name, parameter)
+    for written in _given(document.text, name, apart):
+        found.setdefault(written, HardwareParameter(written))
+    return found
+
+
+def _read_in(folder: Path, document: Document) -> Iterator[HardwareParameter]:
+    for file in walk(folder, _SOURCES)[0][:_MAX_FILES]:
+        text = document.other(file)
+        for use in _READ.finditer(text) if len(text) <= _MAX_TEXT else ():
+            yield HardwareParameter(use[1], f"`{file.name}`", Target(file, *use.span(1)))
+
+
+def _given(text: str, plugin: str, apart: int) -> Iterator[str]:
+    """Yield the parameters that a text gives to a plugin."""
+    inside, is_plugin, tag = False, False, ""
+    for token in tokens(text):
+        if token.kind is Kind.START:
+            inside, tag = inside or token.name == "hardware", token.name
+            if inside and is_plugin and tag == "param":
+                named = next((each for each in token.attributes() if each.name == "name"), None)
+                if named is not None and named.value and named.value_start != apart:
+                    yield named.value
+        elif token.kind is Kind.TEXT and inside and tag == "plugin":
+            is_plugin = token.text.strip() == plugin
+        elif token.kind is Kind.END:
+            inside, tag = inside and token.name != "hardware", ""

@@ -1,0 +1,274 @@
+"""Where launch files declare, use and pass launch arguments, in XML, YAML and Python, and which files they include."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from linkwright.language.format import Document
+from linkwright.language.includes import real
+from linkwright.language.launch_arguments import arguments_in
+from linkwright.language.launch_python import CONFIGURATIONS, PythonLaunchText, is_python_launch_file
+from linkwright.language.launch_values import LaunchText
+from linkwright.language.launch_yaml import is_yaml_launch_file
+from linkwright.language.python_text import Group, Item, Name, Text
+from linkwright.language.yaml_outline import YamlEntry, YamlOutline
+from linkwright.packages.share_layout import source_of
+from linkwright.xmltree.tokens import Kind, tokens
+
+_USE = re.compile(r"\$\(\s*(?:var|arg)\s+(['\"]?)([\w./-]+)\1(?=[\s)])|\barg\(\s*(['\"])([\w./-]+)\3\s*\)")
+_DECLARING = ("DeclareLaunchArgument", "DeclareBooleanLaunchArgument")
+_SETTING = ("SetLaunchConfiguration", "UnsetLaunchConfiguration")
+_CONTEXT = "launch_configurations"
+_MAX_TEXT = 300_000
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class LaunchName:
+    """A place with the name of a launch argument or configuration.
+
+    Attributes:
+        file: the file.
+        start: the offset of the name.
+        name: the name.
+        is_declared: whether the place declares or sets it.
+    """
+
+    file: Path
+    start: int
+    name: str
+    is_declared: bool = False
+
+    @property
+    def end(self) -> int:
+        """The offset behind the name."""
+        return self.start + len(self.name)
+
+
+@dataclass(slots=True)
+class LaunchInclude:
+    """An included launch file.
+
+    Attributes:
+        target: the file; None if it is not known.
+        written: the last words of the path as written.
+        passed: the names of the arguments that it gets.
+        is_known: whether these are all of them.
+    """
+
+    target: Path | None
+    written: str
+    passed: list[LaunchName] = field(default_factory=list)
+    is_known: bool = True
+
+
+@dataclass(slots=True)
+class LaunchNames:
+    """The launch arguments in a launch file.
+
+    Attributes:
+        names: the places that declare, set or use a launch argument of the file.
+        includes: the included files.
+        texts: other whole strings, each with its offset, which may be the name of an argument.
+    """
+
+    names: list[LaunchName] = field(default_factory=list)
+    includes: list[LaunchInclude] = field(default_factory=list)
+    texts: list[LaunchName] = field(default_factory=list)
+
+
+def is_launch_file(file: Path) -> bool:
+    """Return whether a file is a launch file, by its name."""
+    is_markup = file.name.endswith((".launch", ".launch.xml", "_launch.xml")) or is_yaml_launch_file(file)
+    return is_markup or is_python_launch_file(file)
+
+
+def launch_names(document: Document) -> LaunchNames:
+    """Return the launch arguments in a launch file, whose text may be incomplete."""
+    if len(document.text) > _MAX_TEXT:
+        return LaunchNames()
+    if document.file.name.endswith(".py"):
+        return _in_python(document)
+    if document.file.name.endswith((".yaml", ".yml")):
+        return _in_yaml(document)
+    return _in_xml(document)
+
+
+def _target(path: Path | None) -> Path | None:
+    return None if path is None or not path.is_file() else real(source_of(str(path)))
+
+
+def _uses(text: str, start: int, file: Path) -> Iterator[LaunchName]:
+    for found in _USE.finditer(text):
+        group = 2 if found[2] else 4
+        yield LaunchName(file, start + found.start(group), found[group])
+
+
+# --- XML --------------------------------------------------------------------------------------------------------------
+
+
+def _in_xml(document: Document) -> LaunchNames:
+    found, launch, file = LaunchNames(), LaunchText(document), document.file
+    includes: list[LaunchInclude | None] = []
+    for token in tokens(document.text):
+        if token.kind is Kind.END and includes:
+            includes.pop()
+        if token.kind is not Kind.START or not token.name:
+            continue
+        given = {attribute.name: attribute for attribute in token.attributes() if attribute.value}
+        for attribute in given.values():
+            found.names += _uses(attribute.value or "", attribute.value_start, file)
+        around = next((include for include in reversed(includes) if include is not None), None)
+        name = given.get("name")
+        if token.name in ("arg", "bool_arg", "let") and name is not None and name.value:
+            place = LaunchName(file, name.value_start, name.value, is_declared=True)
+            if "$" not in name.value:
+                (found.names if around is None else around.passed).append(place)
+        include = None
+        if token.name == "include" and "file" in given:
+            written = given["file"].value or ""
+            include = LaunchInclude(_target(launch.path_of(written)), written)
+            found.includes.append(include)
+        if not token.is_whole:
+            includes.append(include)
+    return found
+
+
+# --- YAML -------------------------------------------------------------------------------------------------------------
+
+
+def _in_yaml(document: Document) -> LaunchNames:
+    found, launch, file = LaunchNames(), LaunchText(document), document.file
+    for entry in YamlOutline(document.text).root.all():
+        if entry.value:
+            found.names += _uses(entry.value, entry.value_start, file)
+        if entry.key == "include" and entry.child("file") is not None:
+            written = entry.child("file")
+            path = "" if written is None else written.scalar
+            passed = [*_passed_in_yaml(entry, file)]
+            found.includes.append(LaunchInclude(_target(launch.path_of(path)), path, passed))
+        elif entry.key in ("arg", "let") and "include" not in entry.path[:-1]:
+            found.names += _named(entry, file)
+    return found
+
+
+def _named(entry: YamlEntry, file: Path) -> Iterator[LaunchName]:
+    name = entry.child("name")
+    if name is not None and name.scalar and "$" not in name.scalar:
+        start = name.value_start + (1 if name.value[:1] in ("'", '"') else 0)
+        yield LaunchName(file, start, name.scalar, is_declared=True)
+
+
+def _passed_in_yaml(include: YamlEntry, file: Path) -> Iterator[LaunchName]:
+    for entry in include.all():
+        if entry.is_item and entry.parent is not None and entry.parent.key in ("arg", "let"):
+            yield from _named(entry, file)
+
+
+# --- Python -----------------------------------------------------------------------------------------------------------
+
+
+def _in_python(document: Document) -> LaunchNames:
+    found, file = LaunchNames(), document.file
+    launch = PythonLaunchText(document)
+    python = launch.python
+    places: dict[int, LaunchName] = {}
+
+    def add(text: Text | None, *, is_declared: bool = False) -> None:
+        if text is not None and text.value and not text.is_format:
+            places.setdefault(text.start, LaunchName(file, text.start, text.value, is_declared))
+
+    for argument in arguments_in(document.text, file):
+        places[argument.start] = LaunchName(file, argument.start, argument.name, is_declared=True)
+    for call in python.calls:
+        if call.function in _DECLARING:
+            add(_first_text(call.argument("name", 0)), is_declared=True)
+        elif call.function in CONFIGURATIONS:
+            item = call.argument("variable_name", 0) or call.argument("launch_configuration_name", 0)
+            add(_first_text(item))
+        elif call.function in _SETTING:
+            add(_first_text(call.argument("name", 0)), is_declared=True)
+        elif call.function == "get" and call.callee.rpartition(".")[0].endswith(_CONTEXT):
+            add(_first_text(call.argument("key", 0)))
+    passed: set[int] = set()
+    for call in python.calls_of("IncludeLaunchDescription"):
+        include = _included(launch, call, file)
+        passed.update(name.start for name in include.passed)
+        found.includes.append(include)
+    for text, item in python.strings:
+        if text.start in places or text.start in passed or not text.value.isidentifier():
+            continue
+        if _is_subscript(item):
+            add(text)
+        else:
+            found.texts.append(LaunchName(file, text.start, text.value))
+    found.names = [*places.values()]
+    return found
+
+
+def _first_text(item: Item | None) -> Text | None:
+    only = item.parts[0] if item is not None and len(item.parts) == 1 else None
+    return only if isinstance(only, Text) else None
+
+
+def _is_subscript(item: Item) -> bool:
+    """Return whether an item is the key in ``context.launch_configurations[...]``."""
+    parent = item.group.parent
+    if item.group.opening != "[" or parent is None:
+        return False
+    index = next((number for number, part in enumerate(parent.parts) if part is item.group), 0)
+    before = parent.parts[index - 1] if index else None
+    return isinstance(before, Name) and before.value.endswith(_CONTEXT)
+
+
+def _included(launch: PythonLaunchText, call: Group, file: Path) -> LaunchInclude:
+    source = call.argument("launch_description_source", 0)
+    words = [] if source is None else [*_texts_in(source)]
+    include = LaunchInclude(_target(launch.included_file(call)), words[-1].value if words else "")
+    given = call.argument("launch_arguments")
+    if given is not None:
+        include.is_known = False
+        for part in given.parts:
+            bound = launch.python.bindings.get(part.value.partition(".")[0]) if isinstance(part, Name) else None
+            bound = launch.python.bindings.get(part.callee.partition(".")[0]) if _is_items(part) else bound
+            groups = [part] if bound is None else bound.parts
+            for group in groups:
+                if isinstance(group, Group) and (group.opening in ("{", "[") or group.callee == ""):
+                    include.is_known = True
+                    include.passed += _keys(group, file)
+                elif isinstance(group, Group) and group.function == "dict":
+                    include.is_known = not group.items[0].parts or bool(group.items[0].keyword)
+                    include.passed += _keywords(group, launch.document.text, file)
+    return include
+
+
+def _is_items(part: object) -> bool:
+    return isinstance(part, Group) and part.function == "items" and "." in part.callee.strip(".")
+
+
+def _keys(group: Group, file: Path) -> Iterator[LaunchName]:
+    """Yield the keys of a dictionary or of a list of pairs."""
+    for item in group.items:
+        first = item.parts[0] if item.parts else None
+        if isinstance(first, Group) and first.opening in ("(", "[") and not first.callee and first.items:
+            first = first.items[0].parts[0] if first.items[0].parts else None
+        if isinstance(first, Text) and not first.is_format:
+            yield LaunchName(file, first.start, first.value, is_declared=True)
+
+
+def _keywords(call: Group, text: str, file: Path) -> Iterator[LaunchName]:
+    """Yield the names of the arguments in ``dict(name=value)``."""
+    for item in call.items:
+        if item.keyword:
+            yield LaunchName(file, text.index(item.keyword, item.start), item.keyword, is_declared=True)
+
+
+def _texts_in(item: Item) -> Iterator[Text]:
+    for part in item.parts:
+        if isinstance(part, Text):
+            yield part
+        elif isinstance(part, Group):
+            for inner in part.items:
+                yield from _texts_in(inner)

@@ -1,0 +1,199 @@
+"""Renaming of launch arguments, in the launch files that share them through includes.
+
+A launch configuration is visible in included files, and what an included file sets is visible behind the include. So an
+argument means the same in two files if one includes the other without passing the argument. A passed argument is a name
+of the included file: its key changes with the file, and its value stays.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from itertools import islice
+from pathlib import Path
+
+from linkwright.diagnostics import Phrase, SourceText, Span, display_path, phrase
+from linkwright.language.format import Document
+from linkwright.language.launch_names import LaunchInclude, LaunchName, LaunchNames, is_launch_file, launch_names
+from linkwright.language.mentions import Mention
+from linkwright.language.proof import Edit, UnprovedError
+from linkwright.language.workspace import Workspace
+
+_ENDINGS = (".py", ".launch", ".launch.xml", "_launch.xml", ".yaml", ".yml")
+_MAX_FILES = 600
+
+
+@dataclass
+class LaunchRenaming:
+    """The edits for a new name of a launch argument.
+
+    Attributes:
+        edits: the edits.
+        unchanged: strings with the name that may mean the argument; the edits leave them unchanged.
+        notes: includes that cannot be followed.
+    """
+
+    edits: set[Edit] = field(default_factory=set)
+    unchanged: list[Mention] = field(default_factory=list)
+    notes: list[Phrase] = field(default_factory=list)
+
+
+def launch_name_at(document: Document, offset: int) -> tuple[LaunchName, Path] | None:
+    """Return the launch argument at an offset, and the file that it belongs to; None if there is none."""
+    found = launch_names(document)
+    for name in found.names:
+        if name.start <= offset <= name.end:
+            return name, document.file
+    for include in found.includes:
+        for name in include.passed:
+            if name.start <= offset <= name.end:
+                return (name, include.target) if include.target is not None else None
+    return None
+
+
+def rename_launch_argument(
+    project: Workspace, texts: Mapping[Path, str], owner: Path, old: str, new: str
+) -> LaunchRenaming:
+    """Return the edits with which a launch argument has a new name.
+
+    Args:
+        project: the workspace.
+        texts: the texts of the open files.
+        owner: the launch file that the argument belongs to.
+        old: the name.
+        new: the new name.
+
+    Raises:
+        UnprovedError: the new name exists, or a file that cannot be edited shares the argument.
+    """
+    return _Search(project, texts, old, new).run(owner)
+
+
+class _Search:
+    """The launch files that share an argument.
+
+    Args:
+        project: the workspace.
+        texts: the texts of the open files.
+        old: the name.
+        new: the new name.
+    """
+
+    def __init__(self, project: Workspace, texts: Mapping[Path, str], old: str, new: str) -> None:
+        self._project, self._texts, self._old, self._new = project, texts, old, new
+        self._known: dict[Path, LaunchNames] = {}
+        self._result = LaunchRenaming()
+
+    def run(self, owner: Path) -> LaunchRenaming:
+        """Return the edits, from the file that the argument belongs to."""
+        includers = self._includers()
+        shared: dict[Path, None] = {}
+        pending = [owner]
+        while pending:
+            file = pending.pop()
+            if file in shared:
+                continue
+            shared[file] = None
+            for include in self._names(file).includes:
+                pending += self._below(file, include)
+            for other, include in includers.get(file, ()):
+                key = self._passed(include)
+                if key is not None:
+                    self._edit(key)
+                elif not include.is_known:
+                    self._result.notes.append(
+                        phrase(
+                            "'{file}' passes arguments that are computed to '{other}'", file=other.name, other=file.name
+                        )
+                    )
+                elif self._mentions_above(other, includers, {file}):
+                    pending.append(other)
+        for file in shared:
+            names = self._names(file)
+            for name in names.names:
+                if name.name == self._new:
+                    raise UnprovedError(
+                        phrase("{file} uses '{name}' already", file=file.name, name=self._new), self._span(name)
+                    )
+                if name.name == self._old:
+                    self._edit(name)
+            self._result.unchanged += [
+                Mention(name.name, name.file, name.start) for name in names.texts if name.name == self._old
+            ]
+        return self._result
+
+    def _below(self, file: Path, include: LaunchInclude) -> Iterator[Path]:
+        """Yield the file of an include if it shares the argument."""
+        if self._passed(include) is not None:
+            return
+        if include.target is None:
+            if include.written:
+                self._result.notes.append(
+                    phrase("'{file}' includes '{other}', which cannot be found", file=file.name, other=include.written)
+                )
+        elif self._mentions_below(include.target, set()):
+            yield include.target
+
+    def _mentions(self, file: Path) -> bool:
+        return any(name.name == self._old for name in self._names(file).names)
+
+    def _mentions_below(self, file: Path, seen: set[Path]) -> bool:
+        """Return whether a file or one that it includes mentions the argument without having got it."""
+        if file in seen:
+            return False
+        seen.add(file)
+        return self._mentions(file) or any(
+            include.target is not None and self._passed(include) is None and self._mentions_below(include.target, seen)
+            for include in self._names(file).includes
+        )
+
+    def _mentions_above(
+        self, file: Path, includers: Mapping[Path, list[tuple[Path, LaunchInclude]]], seen: set[Path]
+    ) -> bool:
+        """Return whether a file, one beside the present one or one that includes it shares the argument."""
+        if file in seen:
+            return False
+        seen.add(file)
+        if self._mentions(file):
+            return True
+        beside = (
+            include.target
+            for include in self._names(file).includes
+            if include.target is not None and self._passed(include) is None
+        )
+        return any(self._mentions_below(target, {*seen}) for target in beside if target not in seen) or any(
+            self._passed(include) is None and include.is_known and self._mentions_above(other, includers, seen)
+            for other, include in includers.get(file, ())
+        )
+
+    def _passed(self, include: LaunchInclude) -> LaunchName | None:
+        return next((name for name in include.passed if name.name == self._old), None)
+
+    def _edit(self, name: LaunchName) -> None:
+        if not self._project.contains(name.file):
+            raise UnprovedError(
+                phrase("'{file}' is outside of the workspace", file=display_path(str(name.file))), self._span(name)
+            )
+        self._result.edits.add(Edit(name.file, name.start, name.end, self._new))
+
+    def _span(self, name: LaunchName) -> Span:
+        return SourceText(str(name.file), self._project.text(name.file, self._texts) or "").span(name.start, name.end)
+
+    def _includers(self) -> dict[Path, list[tuple[Path, LaunchInclude]]]:
+        """Return the launch files of the workspace that include a file, by the file."""
+        found: dict[Path, list[tuple[Path, LaunchInclude]]] = {}
+        files = (file for file in self._project.files(_ENDINGS) if is_launch_file(file))
+        for file in islice(files, _MAX_FILES):
+            for include in self._names(file).includes:
+                if include.target is not None:
+                    found.setdefault(include.target, []).append((file, include))
+        return found
+
+    def _names(self, file: Path) -> LaunchNames:
+        if file not in self._known:
+            text = self._project.text(file, self._texts) or ""
+            is_launch = is_launch_file(file)
+            self._known[file] = (
+                launch_names(Document(self._project, self._texts, file, text)) if is_launch else LaunchNames()
+            )
+        return self._known[file]

@@ -1,0 +1,259 @@
+"""Where the parts of a computed name are written, such as those of ``${prefix}wheel``, and edits that change it.
+
+A name consists of literal parts and of expressions. A new name is sought in this order: the literal parts change and
+the expressions keep their values; then the value of an expression changes where it is written: in the macro call, as
+the default of a parameter, as a property, or as the default of an argument. The edits are proposals, which are proved
+by expansions.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from linkwright.language.includes import real
+from linkwright.language.proof import Edit
+from linkwright.language.workspace import Workspace
+from linkwright.xacro.expressions.template import Token, TokenKind, tokenize
+from linkwright.xacro.faults import Fault, Frame
+from linkwright.xacro.macros import parse_parameters
+from linkwright.xmltree import Element, Text
+from linkwright.xmltree.positions import attribute_value_range
+from linkwright.xmltree.tokens import Kind, tokens
+
+_NAME = re.compile(r"\s*([A-Za-z_]\w*)\s*")
+_ARGUMENT = re.compile(r"arg\s+(\S+)\s*")
+_DEEPEST = 12
+_MAX_EXPRESSIONS = 8
+
+
+@dataclass(frozen=True, slots=True)
+class WrittenText:
+    """A text of a file, as written.
+
+    Attributes:
+        file: the file.
+        start: the offset of the text.
+        text: the text, which may contain expressions.
+        frame: the macro call or include in which it is evaluated, or None.
+    """
+
+    file: Path
+    start: int
+    text: str
+    frame: Frame | None
+
+    @property
+    def is_literal(self) -> bool:
+        """Whether it has no expressions."""
+        return "$" not in self.text
+
+
+def written_text(element: Element, key: str) -> WrittenText | None:
+    """Return what is written for an attribute of an element of an expansion; None if it is not written in a file.
+
+    Args:
+        element: the element.
+        key: the name of the attribute, or an empty text for the text in the element.
+    """
+    source = element.source
+    if source is None:
+        return None
+    place = attribute_value_range(source.text, element.offset, key) if key else _text_range(element)
+    if place is None:
+        return None
+    frame = element.origin if isinstance(element.origin, Frame) else None
+    return WrittenText(real(source.name), place[0], source.text[place[0] : place[1]], frame)
+
+
+def _text_range(element: Element) -> tuple[int, int] | None:
+    for child in element.children:
+        if isinstance(child, Text) and child.data.strip() and child.source is element.source:
+            source = element.source
+            if source is None:
+                return None
+            end = source.text.find("<", child.offset)
+            written = source.text[child.offset : end if end >= 0 else len(source.text)]
+            start = child.offset + len(written) - len(written.lstrip())
+            return start, start + len(written.strip())
+    return None
+
+
+def renamed_template(old: str, new: str, value: str) -> str | None:
+    """Return the new value of a name whose written text changes; None if the expressions differ.
+
+    Args:
+        old: the text, such as ``${prefix}wheel``.
+        new: the new text, such as ``${prefix}tire``.
+        value: the present value, such as ``left_wheel``.
+    """
+    before, after = _parts(old), _parts(new)
+    expressions = [part.text for part in before if part.kind is not TokenKind.TEXT]
+    if [part.text for part in after if part.kind is not TokenKind.TEXT] != expressions:
+        return None
+    pattern = "".join(re.escape(part.text) if part.kind is TokenKind.TEXT else "(.*?)" for part in before)
+    found = re.fullmatch(pattern, value, re.DOTALL)
+    if found is None:
+        return None
+    values = iter(found.groups())
+    return "".join(part.text if part.kind is TokenKind.TEXT else next(values) for part in after)
+
+
+class NameSources:
+    """Proposes edits for computed names.
+
+    Args:
+        project: the workspace.
+        texts: the texts of the open files.
+        files: the files in which properties, arguments and macros are searched.
+    """
+
+    def __init__(self, project: Workspace, texts: Mapping[Path, str], files: list[Path]) -> None:
+        self._project, self._texts = project, texts
+        self._tags = {file: [*_start_tags(project.text(file, texts) or "")] for file in files}
+
+    def edits(self, written: WrittenText, value: str, new: str) -> Iterator[tuple[Edit, ...]]:
+        """Yield proposals of edits with which a text has a new value, the likeliest first.
+
+        Args:
+            written: the text.
+            value: its present value.
+            new: its new value.
+        """
+        yield from self._edits(written, value, new, 0)
+
+    def _edits(self, written: WrittenText, value: str, new: str, depth: int) -> Iterator[tuple[Edit, ...]]:
+        if value == new or depth > _DEEPEST:
+            return
+        if written.is_literal:
+            if written.text == value:
+                yield (Edit(written.file, written.start, written.start + len(value), new),)
+            return
+        parts = _parts(written.text)
+        expressions = [part for part in parts if part.kind is not TokenKind.TEXT]
+        if not parts or len(expressions) > _MAX_EXPRESSIONS:
+            return
+        yield from self._of_literals(written, parts, value, new)
+        yield from self._of_expressions(written, parts, value, new, depth)
+
+    def _of_literals(
+        self, written: WrittenText, parts: Sequence[Token], value: str, new: str
+    ) -> Iterator[tuple[Edit, ...]]:
+        """Yield the edits of the literal parts with which the value changes and the expressions keep their values."""
+        pattern = "".join(re.escape(part.text) if part.kind is TokenKind.TEXT else "(.*?)" for part in parts)
+        found = re.fullmatch(pattern, value, re.DOTALL)
+        if found is None:
+            return
+        values = iter(found.groups())
+        kept = "".join("(.*?)" if part.kind is TokenKind.TEXT else re.escape(next(values)) for part in parts)
+        changed = re.fullmatch(kept, new, re.DOTALL)
+        if changed is None:
+            return
+        news = iter(changed.groups())
+        edits = []
+        for part in parts:
+            if part.kind is TokenKind.TEXT:
+                text = next(news)
+                if text != part.text:
+                    edits.append(Edit(written.file, written.start + part.start, written.start + part.end, text))
+        if edits and all(edit.text for edit in edits):
+            yield tuple(edits)
+
+    def _of_expressions(
+        self, written: WrittenText, parts: Sequence[Token], value: str, new: str, depth: int
+    ) -> Iterator[tuple[Edit, ...]]:
+        """Yield the edits with which one expression, or the same name several times, has another value."""
+        pattern = "".join(re.escape(part.text) if part.kind is TokenKind.TEXT else "(.*?)" for part in parts)
+        found = re.fullmatch(pattern, value, re.DOTALL)
+        if found is None:
+            return
+        expressions = [part for part in parts if part.kind is not TokenKind.TEXT]
+        values = dict(zip((part.start for part in expressions), found.groups(), strict=True))
+        for changed in dict.fromkeys(part.text for part in reversed(expressions)):
+            group = ""
+            pieces = []
+            for part in parts:
+                if part.kind is TokenKind.TEXT:
+                    pieces.append(re.escape(part.text))
+                elif part.text != changed:
+                    pieces.append(re.escape(values[part.start]))
+                else:
+                    pieces.append("(?P=new)" if group else "(?P<new>.+)")
+                    group = part.text
+            matched = re.fullmatch("".join(pieces), new, re.DOTALL)
+            part = next(part for part in expressions if part.text == changed)
+            if matched is not None:
+                for source in self._sources(part, written.frame, values[part.start], depth):
+                    yield from self._edits(source, values[part.start], matched["new"], depth + 1)
+
+    def _sources(self, part: Token, frame: Frame | None, value: str, depth: int) -> Iterator[WrittenText]:
+        """Yield the texts that may give an expression its value."""
+        if part.kind is TokenKind.SUBSTITUTION:
+            argument = _ARGUMENT.fullmatch(part.text)
+            if argument is not None:
+                yield from self._attributes("xacro:arg", argument[1], "default", None)
+            return
+        name = _NAME.fullmatch(part.text)
+        if name is not None and depth <= _DEEPEST:
+            yield from self._of_name(name[1], frame, value)
+
+    def _of_name(self, name: str, frame: Frame | None, value: str) -> Iterator[WrittenText]:
+        while frame is not None:
+            source = frame.site.source
+            place = None if source is None else attribute_value_range(source.text, frame.site.offset, name)
+            if frame.macro is not None and source is not None:
+                if place is not None:
+                    yield WrittenText(real(source.name), place[0], source.text[place[0] : place[1]], frame.around)
+                    return
+                default = self._default(frame.macro, name, frame)
+                if default is not None:
+                    yield default
+                    return
+            frame = frame.around
+        for written in self._attributes("xacro:property", name, "value", None):
+            if not written.is_literal or written.text == value:
+                yield written
+
+    def _default(self, macro: str, name: str, frame: Frame) -> WrittenText | None:
+        """Return the default of a parameter of a macro, or None."""
+        called = macro.rpartition(".")[2].removeprefix("xacro:")
+        for file, tags in self._tags.items():
+            for tag, given in tags:
+                if tag == "xacro:macro" and given.get("name", ("", 0))[0].removeprefix("xacro:") == called:
+                    params, start = given.get("params", ("", 0))
+                    try:
+                        parameters = parse_parameters(params)
+                    except Fault:
+                        continue
+                    for parameter in parameters:
+                        if parameter.name == name and parameter.default:
+                            text = parameter.default
+                            begin = start + parameter.default_start
+                            if text[:1] in ("'", '"') and text[-1:] == text[:1] and len(text) > 1:
+                                text, begin = text[1:-1], begin + 1
+                            return WrittenText(file, begin, text, frame)
+        return None
+
+    def _attributes(self, tag: str, name: str, key: str, frame: Frame | None) -> Iterator[WrittenText]:
+        """Yield the values of an attribute of the elements with a tag and a name."""
+        for file, tags in self._tags.items():
+            for other, given in tags:
+                if other == tag and given.get("name", ("", 0))[0] == name and key in given:
+                    yield WrittenText(file, given[key][1], given[key][0], frame)
+
+
+def _start_tags(text: str) -> Iterator[tuple[str, dict[str, tuple[str, int]]]]:
+    """Yield the start tags of macros, properties and arguments, with the values and offsets of their attributes."""
+    for token in tokens(text):
+        if token.kind is Kind.START and token.name in ("xacro:macro", "xacro:property", "xacro:arg"):
+            yield token.name, {one.name: (one.value or "", one.value_start) for one in token.attributes()}
+
+
+def _parts(text: str) -> Sequence[Token]:
+    """Return the literal parts and the expressions of a text; none if it is not well-formed."""
+    try:
+        return tokenize(text)
+    except Fault:
+        return []

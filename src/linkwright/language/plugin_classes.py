@@ -1,0 +1,109 @@
+"""The classes that packages export through pluginlib: hardware, controllers, and plugins of nodes."""
+
+from __future__ import annotations
+
+import re
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from weakref import WeakKeyDictionary
+
+from linkwright.language.workspace import Workspace
+from linkwright.packages import PackageFinder, enclosing_package, install_prefix, is_installed
+from linkwright.packages.readers.entry_points import text_of
+from linkwright.xmltree.tokens import Kind, Token, tokens
+
+_EXPORT = re.compile(r"(?i)\bpluginlib_export_plugin_description_file\s{0,9}\(\s{0,99}([\w-]+)\s{1,99}\"?([^\s\")]+)")
+_SECONDS = 10.0
+"""How long the exported classes are used before the packages are read again."""
+
+
+@dataclass(frozen=True, slots=True)
+class PluginClass:
+    """A class that a package exports.
+
+    Attributes:
+        name: the name by which it is loaded, such as ``diff_drive_controller/DiffDriveController``.
+        type: the class in C++.
+        base: the package of the base class, such as ``hardware_interface``.
+        description: its description; may be empty.
+        package: the folder of the package.
+        file: the file that exports it.
+        start: the offset of the name in the file.
+    """
+
+    name: str
+    type: str
+    base: str
+    description: str
+    package: Path
+    file: Path
+    start: int
+
+
+_classes: WeakKeyDictionary[Workspace, tuple[float, list[PluginClass]]] = WeakKeyDictionary()
+
+
+def plugin_classes(project: Workspace, finder: PackageFinder, base: str) -> list[PluginClass]:
+    """Return the classes for a package of base classes that the packages of a workspace export.
+
+    Args:
+        project: the workspace.
+        finder: finds the packages outside of it.
+        base: the package of the base classes.
+    """
+    known = _classes.get(project)
+    if known is None or time.monotonic() - known[0] > _SECONDS:
+        folders = dict.fromkeys((*project.index.packages, *finder.packages().values()))
+        found = {plugin.name: plugin for folder in folders for plugin in _exported(folder)}
+        known = _classes[project] = time.monotonic(), list(found.values())
+    return [plugin for plugin in known[1] if plugin.base == base]
+
+
+def _exported(folder: Path) -> Iterator[PluginClass]:
+    """Yield the classes that a package exports."""
+    for base, file in _files(folder):
+        yield from _classes_in(text_of(file), base, folder, file)
+
+
+def _files(folder: Path) -> Iterator[tuple[str, Path]]:
+    """Yield the files in which a package describes its classes, each with the package of their base classes."""
+    if is_installed(folder):
+        prefix, end = install_prefix(folder), "__pluginlib__plugin"
+        for index in (prefix / "share/ament_index/resource_index").glob(f"*{end}/{folder.name}"):
+            yield from ((index.parent.name.removesuffix(end), prefix / line) for line in text_of(index).split())
+        return
+    text = text_of(folder / "CMakeLists.txt")
+    package = enclosing_package(folder)
+    name = folder.name if package is None else package[0]
+    for found in _EXPORT.finditer(text):
+        yield found[1], folder / found[2].replace("${PROJECT_NAME}", name)
+
+
+def _classes_in(text: str, base: str, folder: Path, file: Path) -> Iterator[PluginClass]:
+    current: Token | None = None
+    tag = description = ""
+    for token in tokens(text):
+        if token.kind is Kind.START:
+            tag = token.name
+            if tag == "class":
+                current, description = token, ""
+                if token.is_whole:
+                    yield from _class_of(token, "", base, folder, file)
+                    current = None
+        elif token.kind is Kind.TEXT and tag == "description":
+            description += token.text
+        elif token.kind is Kind.END:
+            tag = ""
+            if token.name == "class" and current is not None:
+                yield from _class_of(current, " ".join(description.split()), base, folder, file)
+                current = None
+
+
+def _class_of(token: Token, description: str, base: str, folder: Path, file: Path) -> Iterator[PluginClass]:
+    given = {attribute.name: attribute for attribute in token.attributes()}
+    named = given.get("name") or given.get("type")
+    if named is not None and named.value:
+        kind = given["type"].value if "type" in given else None
+        yield PluginClass(named.value, kind or "", base, description, folder, file, named.value_start)

@@ -1,0 +1,92 @@
+"""Calls of macros that no description calls, made to see what an edit in such a macro changes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from xml.sax.saxutils import quoteattr
+
+from linkwright.language.includes import real
+from linkwright.language.occurrences import Occurrence
+from linkwright.language.proof import ExpansionProof
+from linkwright.language.workspace import Workspace
+from linkwright.language.written import WrittenElement, innermost, written_elements
+from linkwright.xacro.faults import Fault
+from linkwright.xacro.macros import Parameter, parse_parameters
+
+_XACRO = "http://www.ros.org/wiki/xacro"
+_VALUES = ("probe", "1", "0")
+"""The values that the calls give to the parameters: a name, a number that is true, and one that is false."""
+
+
+def is_reached(proof: ExpansionProof, text: str, name: Occurrence) -> bool:
+    """Return whether an expansion contains the element of a name or, for what defines nothing, its macro.
+
+    Args:
+        proof: the expansions.
+        text: the text of the file that contains the name.
+        name: the name.
+    """
+    place = innermost(written_elements(text), name.start)
+    if place is None:
+        return True
+    macro = place.macro if not place.name.startswith("xacro:macro") else place
+    if place.name.startswith("xacro:"):
+        if macro is None:
+            return True
+        place = macro
+    files = proof.names_of(name.file)
+    return any(
+        element.source is not None and element.source.name in files and place.start <= element.offset < place.end
+        for trial in proof.trials
+        for element in trial.expansion.document.root.walk()
+    )
+
+
+def probes_of(project: Workspace, texts: Mapping[Path, str], name: Occurrence) -> dict[Path, str]:
+    """Return texts that call the macro around a name, by the path that they would have; empty outside of macros.
+
+    Args:
+        project: the workspace.
+        texts: the texts of the open files.
+        name: the name.
+    """
+    text = project.text(name.file, texts) or ""
+    place = innermost(written_elements(text), name.start)
+    macro = None if place is None else place if place.name == "xacro:macro" else place.macro
+    if macro is None or macro.macro is not None or not project.contains(real(name.file)):
+        return {}
+    calls = [*dict.fromkeys(_calls(macro))]
+    return {
+        name.file.parent / f".linkwright-probe-{number}.urdf.xacro": (
+            f'<robot name="probe" xmlns:xacro="{_XACRO}">\n'
+            f"  <xacro:include filename={quoteattr(name.file.name)}/>\n{call}\n</robot>\n"
+        )
+        for number, call in enumerate(calls)
+    }
+
+
+def _calls(macro: WrittenElement) -> Iterator[str]:
+    called = macro.value("name").removeprefix("xacro:")
+    try:
+        parameters = parse_parameters(macro.value("params"))
+    except Fault:
+        return
+    if not called or "$" in called:
+        return
+    blocks = "".join(map(_block, parameters))
+    for value in _VALUES:
+        given = "".join(
+            f" {one.name}={quoteattr(value)}"
+            for one in parameters
+            if not one.is_block and (one.default is None or value != _VALUES[0])
+        )
+        yield f"  <xacro:{called}{given}>{blocks}</xacro:{called}>"
+
+
+def _block(parameter: Parameter) -> str:
+    if not parameter.is_block or parameter.default is not None:
+        return ""
+    if parameter.name.startswith("**"):
+        return f"<{parameter.name.lstrip('*')}/>"
+    return '<origin xyz="0 0 0" rpy="0 0 0"/>'

@@ -1,0 +1,202 @@
+"""What a place in a file of any format names, and its renaming: the entry to renaming for an editor."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, Span, phrase, term
+from linkwright.language.definitions import NameKind
+from linkwright.language.format import Document
+from linkwright.language.grammar import root_of
+from linkwright.language.launch_names import LaunchName, is_launch_file
+from linkwright.language.launch_renaming import launch_name_at, rename_launch_argument
+from linkwright.language.mentions import FILES, Mention, mentions_in
+from linkwright.language.name_sources import renamed_template
+from linkwright.language.occurrences import Occurrence
+from linkwright.language.other_files import robots_of_package
+from linkwright.language.proof import UnprovedError
+from linkwright.language.renaming import Renaming, occurrence_at, rename
+from linkwright.language.robot_renaming import OF_ROBOT
+from linkwright.language.sdf_names import SdfName, rename_in_sdf, sdf_name_at
+from linkwright.language.srdf import is_srdf
+from linkwright.language.workspace import Workspace
+from linkwright.packages import enclosing_package
+from linkwright.sdf.worlds import SDF
+
+_WORD = re.compile(r"[^\s\"'\[\]{},<>=|#]+")
+_LAUNCH_NAME = re.compile(r"[\w.-]+")
+_MAX_ROBOTS = 40
+
+
+@dataclass(frozen=True, slots=True)
+class RenamePlace:
+    """A name that can be renamed.
+
+    Attributes:
+        file: the file.
+        start: the offset of the name.
+        name: the name as written.
+        meaning: what it is: a name of a description or an SRDF, a mention of a link or joint in another file, a launch
+            argument with the file that it belongs to, or a name of an SDF model.
+    """
+
+    file: Path
+    start: int
+    name: str
+    meaning: Occurrence | Mention | tuple[LaunchName, Path] | SdfName
+
+    @property
+    def end(self) -> int:
+        """The offset behind the name."""
+        return self.start + len(self.name)
+
+
+def place_at(project: Workspace, texts: Mapping[Path, str], file: Path, offset: int) -> RenamePlace | None:
+    """Return the name at an offset of a file that can be renamed; None if there is none.
+
+    Args:
+        project: the workspace.
+        texts: the texts of the open files.
+        file: the file.
+        offset: the character offset.
+    """
+    text = project.text(file, texts)
+    if text is None:
+        return None
+    if is_launch_file(file):
+        launch = launch_name_at(Document(project, texts, file, text), offset)
+        if launch is not None:
+            return RenamePlace(file, launch[0].start, launch[0].name, launch)
+    elif root_of(file) is SDF:
+        name = sdf_name_at(text, file, offset)
+        return None if name is None else RenamePlace(file, name.start, name.name, name)
+    elif not file.name.endswith(FILES):
+        occurrence = occurrence_at(text, file, offset)
+        return None if occurrence is None else RenamePlace(file, occurrence.start, occurrence.name, occurrence)
+    mention = _mention_at(text, file, offset)
+    if mention is None or next(_robots_with(project, texts, mention), None) is None:
+        return None
+    return RenamePlace(file, mention.start, mention.name, mention)
+
+
+def _mention_at(text: str, file: Path, offset: int) -> Mention | None:
+    """Return the mention of a link or joint at an offset of YAML, an RViz configuration or a launch file."""
+    begin = text.rfind("\n", 0, offset) + 1
+    end = text.find("\n", offset)
+    line = text[begin : end if end >= 0 else len(text)]
+    for word in _WORD.finditer(line):
+        if word.start() <= offset - begin <= word.end():
+            names = frozenset({word[0], word[0].rstrip(":")})
+            for mention in mentions_in(text, file, names):
+                if mention.start <= offset <= mention.end and mention.kinds:
+                    return mention
+    return None
+
+
+def _robots_with(project: Workspace, texts: Mapping[Path, str], mention: Mention) -> Iterator[tuple[Path, NameKind]]:
+    """Yield the descriptions that a file may mean and that have a link or joint of its name, each with the kind."""
+    package = enclosing_package(mention.file.parent)
+    folder = mention.file.parent if package is None else package[1]
+    for robot in robots_of_package(project, texts, folder)[:_MAX_ROBOTS]:
+        model = project.robot(robot, texts)
+        for kind in mention.kinds:
+            if model is None:
+                if _may_define(project, texts, robot, kind, mention.name):
+                    yield robot, kind
+            elif mention.name in (model.links if kind is NameKind.LINK else model.joints):
+                yield robot, kind
+
+
+def _may_define(project: Workspace, texts: Mapping[Path, str], robot: Path, kind: NameKind, name: str) -> bool:
+    """Return whether a description that cannot be expanded may define a name."""
+    return any(
+        one.kind is kind and (one.name == name or ("$" in one.name and _fits(one.name, name)))
+        for one in project.names(robot, texts)
+    )
+
+
+def _fits(written: str, name: str) -> bool:
+    parts = re.split(r"\$\{[^{}]*\}|\$\([^()]*\)", written)
+    return any(parts) and re.fullmatch(".*".join(map(re.escape, parts)), name) is not None
+
+
+def rename_place(project: Workspace, texts: Mapping[Path, str], place: RenamePlace, new: str) -> Renaming:
+    """Return the edits that rename what a place names.
+
+    Args:
+        project: the workspace.
+        texts: the texts of the open files.
+        place: the place, as `place_at` returns it.
+        new: the new name.
+
+    Raises:
+        LinkwrightError: LANG102, the new name is not valid; LANG103, it exists; LANG104, the edits cannot be proved.
+    """
+    meaning = place.meaning
+    if isinstance(meaning, Occurrence):
+        if is_srdf(place.file) and meaning.kind in OF_ROBOT[:2]:
+            return _rename_in_srdf(project, texts, meaning, new)
+        return rename(project, texts, meaning, new)
+    if isinstance(meaning, Mention):
+        return _rename_mention(project, texts, meaning, new)
+    try:
+        if isinstance(meaning, SdfName):
+            return Renaming(tuple(sorted(rename_in_sdf(project, texts, meaning, new))))
+        if not _LAUNCH_NAME.fullmatch(new):
+            raise _invalid(new, phrase("launch argument"))
+        found = rename_launch_argument(project, texts, meaning[1], meaning[0].name, new)
+    except UnprovedError as error:
+        raise _refused(place.name, error.reason, error.span) from None
+    return Renaming(tuple(sorted(found.edits)), {}, tuple(found.unchanged), tuple(dict.fromkeys(found.notes)))
+
+
+def _rename_mention(project: Workspace, texts: Mapping[Path, str], mention: Mention, new: str) -> Renaming:
+    """Rename the link or joint of the first description with which the place of the mention gets the new name."""
+    error: LinkwrightError | None = None
+    for robot, kind in _robots_with(project, texts, mention):
+        try:
+            renaming = rename(project, texts, Occurrence(kind, mention.name, robot, 0), new)
+        except LinkwrightError as reason:
+            error = error or reason
+            continue
+        if any((edit.file, edit.start) == (mention.file, mention.start) for edit in renaming.edits):
+            return renaming
+        error = error or _refused(mention.name, phrase("several robots have this name, and the file may mean each"))
+    raise error or _refused(mention.name, phrase("no description of the workspace has this {kind}", kind=term("link")))
+
+
+def _rename_in_srdf(project: Workspace, texts: Mapping[Path, str], name: Occurrence, new: str) -> Renaming:
+    """Rename a link or joint from its use in an SRDF."""
+    if "$" not in name.name:
+        return _rename_mention(project, texts, Mention(name.name, name.file, name.start, (name.kind,)), new)
+    error: LinkwrightError | None = None
+    package = enclosing_package(name.file.parent)
+    folder = name.file.parent if package is None else package[1]
+    for robot in robots_of_package(project, texts, folder)[:_MAX_ROBOTS]:
+        model = project.robot(robot, texts)
+        known = () if model is None else model.links if name.kind is NameKind.LINK else model.joints
+        for value in (value for value in known if _fits(name.name, value)):
+            changed = renamed_template(name.name, new, value)
+            if changed is None or changed == value:
+                continue
+            try:
+                renaming = rename(project, texts, Occurrence(name.kind, value, robot, 0), changed)
+            except LinkwrightError as reason:
+                error = error or reason
+                continue
+            if any((edit.file, edit.start) == (name.file, name.start) for edit in renaming.edits):
+                return renaming
+    raise error or _refused(name.name, phrase("no description of the workspace has this {kind}", kind=term("link")))
+
+
+def _refused(name: str, reason: Phrase, span: Span | None = None) -> LinkwrightError:
+    return LinkwrightError(Diagnostic("LANG104", phrase("'{name}' is not renamed: {why}", name=name, why=reason), span))
+
+
+def _invalid(new: str, kind: Phrase) -> LinkwrightError:
+    message = phrase("'{new}' is not a valid name of a {kind}", new=new, kind=kind)
+    hint = phrase("use letters, digits and underscores, and begin with a letter")
+    return LinkwrightError(Diagnostic("LANG102", message, hint=hint))

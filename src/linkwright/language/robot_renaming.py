@@ -1,0 +1,297 @@
+"""Renaming of links, joints and materials: the edits that follow from a new name, proved by expansions.
+
+The edits are extended until all definitions and references have their new names; then the expansions may differ in
+these names alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from itertools import islice
+from pathlib import Path
+
+from linkwright.diagnostics import Span, phrase, quoted_names, term
+from linkwright.language.definitions import NameKind
+from linkwright.language.mentions import Mention
+from linkwright.language.name_sources import NameSources, WrittenText, renamed_template, written_text
+from linkwright.language.occurrences import Occurrence, kinds_of_reference, kinds_of_text
+from linkwright.language.other_files import OtherFiles
+from linkwright.language.proof import Edit, ExpansionPair, ExpansionProof, UnprovedError
+from linkwright.language.workspace import Workspace
+from linkwright.xmltree import Element
+from linkwright.xmltree.positions import attribute_value_range, start_tag_end
+
+OF_ROBOT = (NameKind.LINK, NameKind.JOINT, NameKind.MATERIAL)
+Names = Mapping[tuple[NameKind, str], str]
+
+_MAX_ROUNDS = 8
+"""How often references that still have an old name are searched."""
+_MAX_PROPOSALS = 6
+"""How many edits of a computed name are tried."""
+
+
+class RobotRenaming:
+    """The edits for a new name of a link, joint or material.
+
+    Args:
+        project: the workspace.
+        texts: the texts of the open files.
+        name: the name.
+        new: its new name.
+        proof: the expansions of the descriptions that contain the name.
+
+    Attributes:
+        edits: the edits.
+        names: the names that change.
+        unchanged: mentions of changed names that are not certain.
+    """
+
+    def __init__(
+        self, project: Workspace, texts: Mapping[Path, str], name: Occurrence, new: str, proof: ExpansionProof
+    ) -> None:
+        self.edits: set[Edit] = set()
+        self.names: dict[tuple[NameKind, str], str] = {}
+        self.unchanged: tuple[Mention, ...] = ()
+        self._project, self._texts, self._name, self._new = project, texts, name, new
+        self._proof = proof
+        self._files = project.index.related(name.file, texts, computed=True)
+        self._sources = NameSources(project, texts, self._files)
+        self._others = OtherFiles(project, texts, name.file, proof)
+
+    def run(self, seeds: Iterable[Occurrence]) -> None:
+        """Find the edits, from those at the places that are certain.
+
+        Args:
+            seeds: the places.
+
+        Raises:
+            UnprovedError: the expansions differ in more than names, or a reference cannot be edited.
+        """
+        self._others.add_srdfs()
+        required = self._required()
+        literal = {Edit(seed.file, seed.start, seed.end, self._new) for seed in seeds}
+        error: UnprovedError | None = None
+        for proposal in islice(self._proposals(required, literal), _MAX_PROPOSALS):
+            try:
+                self._follow(proposal, required)
+            except UnprovedError as reason:
+                error = error or reason
+            else:
+                return
+        raise error or UnprovedError(phrase("no link, joint or material takes its name from this place"))
+
+    def _required(self) -> Names:
+        """Return the names that must change, each with its new name: those that the place has in the expansions."""
+        name = self._name
+        if "$" not in name.name:
+            return {(self._kind(), name.name): self._new}
+        required: dict[tuple[NameKind, str], str] = {}
+        for element, value in self._elements_at_place():
+            new = renamed_template(name.name, self._new, value)
+            if new is not None and new != value:
+                kind = name.kind
+                if (element.tag, kind) != (kind.value, kind) and not self._defines(kind, value):
+                    continue
+                required[kind, value] = new
+        return required
+
+    def _kind(self) -> NameKind:
+        """Return the kind of a literal name; a place that may name a link or a joint names what is defined."""
+        name = self._name
+        for kind in (name.kind, *OF_ROBOT[:2]):
+            if self._defines(kind, name.name):
+                return kind
+        return name.kind
+
+    def _defines(self, kind: NameKind, value: str) -> bool:
+        return any(
+            value == element.attributes.get("name")
+            for trial in self._proof.trials
+            for element in _definitions(trial.expansion.document.root, kind)
+        )
+
+    def _elements_at_place(self) -> Iterator[tuple[Element, str]]:
+        """Yield the elements of the expansions that are written at the place, each with the value of the name."""
+        files = self._proof.names_of(self._name.file)
+        for trial in self._proof.trials:
+            for element in trial.expansion.document.root.walk():
+                source = element.source
+                if source is None or source.name not in files:
+                    continue
+                if element.offset > self._name.start or start_tag_end(source.text, element.offset) <= self._name.start:
+                    continue
+                for key, value in element.attributes.items():
+                    place = attribute_value_range(source.text, element.offset, key)
+                    if place is not None and place[0] == self._name.start:
+                        yield element, value
+
+    def _proposals(self, required: Names, literal: set[Edit]) -> Iterator[set[Edit]]:
+        """Yield the edits to begin with: those at the places, and those of the computed definitions."""
+        computed: list[tuple[WrittenText, str, str]] = []
+        for kind, value in required:
+            for trial in self._proof.trials:
+                for element in _definitions(trial.expansion.document.root, kind):
+                    if element.attributes.get("name") != value:
+                        continue
+                    written = written_text(element, "name")
+                    if written is not None and not any(
+                        (edit.file, edit.start) == (written.file, written.start) for edit in literal
+                    ):
+                        computed.append((written, value, required[kind, value]))
+        if not computed:
+            if literal:
+                yield literal
+            return
+        first = [*islice(self._sources.edits(*computed[0]), _MAX_PROPOSALS)]
+        if not first:
+            raise _computed(computed[0][0], computed[0][1])
+        for edits in first:
+            yield literal | {*edits}
+
+    def _follow(self, edits: set[Edit], required: Names) -> None:
+        """Extend edits until all names have changed."""
+        for _ in range(_MAX_ROUNDS):
+            pairs = [*self._proof.pairs(edits)]
+            names = dict(_changed_names(pairs))
+            if not names and not required:
+                raise UnprovedError(phrase("no link, joint or material takes its name from this place"))
+            wanted = {**names, **required}
+            more: set[Edit] = set()
+            for pair in pairs:
+                more |= {*self._stale(pair, wanted, edits)}
+            found, unchanged = self._others.edits(wanted)
+            more |= found
+            if more <= edits:
+                self._check(pairs, names, required)
+                self.edits, self.names, self.unchanged = edits, names, unchanged
+                return
+            edits = edits | more
+            _check_overlap(edits)
+        raise UnprovedError(phrase("some references keep the old name"))
+
+    def _stale(self, pair: ExpansionPair, names: Names, edits: Collection[Edit]) -> Iterator[Edit]:
+        """Yield edits of the definitions and references in an expansion that still have an old name."""
+        for old, new in zip(pair.before.walk(), pair.after.walk(), strict=False):
+            if old.tag != new.tag:
+                raise UnprovedError(phrase("the robot would have other elements"))
+            for kinds, key in _names_in(old, is_top=_is_definition(pair.before, old)):
+                before = old.attributes.get(key, "") if key else old.text().strip()
+                after = new.attributes.get(key, "") if key else new.text().strip()
+                wanted = next((names[kind, before] for kind in kinds if (kind, before) in names), None)
+                if wanted is None or after != before or wanted == before:
+                    continue
+                written = written_text(old, key)
+                if written is None:
+                    continue
+                proposal = next(self._sources.edits(written, before, wanted), None)
+                if proposal is None:
+                    raise _computed(written, before, old.attribute_span(key) if key else old.span())
+                if {*proposal} <= {*edits}:  # it is edited already, and yet the value is the same
+                    raise _computed(written, before, old.attribute_span(key) if key else old.span())
+                yield from proposal
+
+    def _check(self, pairs: Sequence[ExpansionPair], names: Names, required: Names) -> None:
+        """Check that the expansions differ in the names alone."""
+        missing = next((old for (kind, old), new in required.items() if names.get((kind, old)) != new), None)
+        if missing is not None:
+            raise UnprovedError(phrase("'{name}' is not defined in the expansion of a description", name=missing))
+        allowed = {*((old, new) for (_, old), new in names.items())}
+        for pair in pairs:
+            olds, news = _defined(pair.before), _defined(pair.after)
+            for key, old, new in _differences(pair.before, pair.after):
+                is_name = (old, new) in allowed and (old not in olds or new in news)
+                if not is_name and not (key == "name" and _is_derived(old, new, allowed)):
+                    raise UnprovedError(phrase("'{old}' would become '{new}'", old=old, new=new))
+            for kind in OF_ROBOT[:2]:
+                count = len({*_values(pair.after, kind)})
+                if count != len([*_values(pair.after, kind)]) and count != len({*_values(pair.before, kind)}):
+                    raise UnprovedError(phrase("two {kind}s would have the same name", kind=term(kind.value)))
+
+
+def _computed(written: WrittenText, value: str, span: Span | None = None) -> UnprovedError:
+    return UnprovedError(phrase("'{value}' is computed from '{written}'", value=value, written=written.text), span)
+
+
+def _check_overlap(edits: Iterable[Edit]) -> None:
+    """Raise an error for two edits of the same text."""
+    ordered = sorted(edits)
+    for first, second in zip(ordered, ordered[1:], strict=False):
+        if first.file == second.file and first.end > second.start:
+            raise UnprovedError(
+                phrase("one text would have to be {names}", names=quoted_names((first.text, second.text), " and "))
+            )
+
+
+def _definitions(root: Element, kind: NameKind) -> Iterator[Element]:
+    """Yield the elements that define names of a kind: links and joints of the robot, materials anywhere."""
+    if kind is NameKind.MATERIAL:
+        yield from (element for element in root.walk() if element.tag == "material")
+    elif root.tag == "robot":
+        yield from root.elements(kind.value)
+
+
+def _is_definition(root: Element, element: Element) -> bool:
+    return element.tag in ("link", "joint") and any(child is element for child in root.children)
+
+
+def _values(root: Element, kind: NameKind) -> Iterator[str]:
+    return (element.attributes.get("name", "") for element in _definitions(root, kind))
+
+
+def _changed_names(pairs: Iterable[ExpansionPair]) -> Iterator[tuple[tuple[NameKind, str], str]]:
+    """Yield the names that differ, each once; a name must have the same new name everywhere."""
+    names: dict[tuple[NameKind, str], str] = {}
+    for pair in pairs:
+        for kind in OF_ROBOT:
+            olds, news = [*_values(pair.before, kind)], [*_values(pair.after, kind)]
+            if len(olds) != len(news):
+                raise UnprovedError(phrase("the robot would have another number of {kind}s", kind=term(kind.value)))
+            for old, new in zip(olds, news, strict=True):
+                if old == new:
+                    continue
+                first = names.setdefault((kind, old), new)
+                if first != new:
+                    message = phrase(
+                        "'{old}' would have two new names, '{first}' and '{second}'", old=old, first=first, second=new
+                    )
+                    raise UnprovedError(message)
+    yield from names.items()
+
+
+def _names_in(element: Element, *, is_top: bool) -> Iterator[tuple[tuple[NameKind, ...], str]]:
+    """Yield the attributes of an element (an empty name for its text) that name something, with the kinds."""
+    for key in element.attributes:
+        if key == "name" and element.tag in ("link", "joint"):
+            yield (NameKind.LINK if element.tag == "link" else NameKind.JOINT,), key
+        else:
+            kinds = kinds_of_reference(element.tag, key)
+            if kinds:
+                yield kinds, key
+    kinds = kinds_of_text(element.tag)
+    if kinds and not is_top and element.text().strip():
+        yield kinds, ""
+
+
+def _defined(root: Element) -> set[str]:
+    """Return the names of the links and joints of a robot."""
+    return {value for kind in OF_ROBOT[:2] for value in _values(root, kind)}
+
+
+def _is_derived(old: str, new: str, allowed: Collection[tuple[str, str]]) -> bool:
+    """Return whether a name, such as that of a transmission, changed because it contains the name of a joint or link."""
+    return any(name in old and old.replace(name, changed) == new for name, changed in allowed)
+
+
+def _differences(before: Element, after: Element) -> Iterator[tuple[str, str, str]]:
+    """Yield the attribute values and texts that differ: the attribute or an empty text, the value before and after."""
+    olds, news = [*before.walk()], [*after.walk()]
+    if [old.tag for old in olds] != [new.tag for new in news]:
+        raise UnprovedError(phrase("the robot would have other elements"))
+    for old, new in zip(olds, news, strict=True):
+        if old.attributes.keys() != new.attributes.keys():
+            raise UnprovedError(phrase("<{tag}> would have other attributes", tag=old.tag))
+        for key, value in old.attributes.items():
+            if new.attributes[key] != value:
+                yield key, value, new.attributes[key]
+        if old.text() != new.text():
+            yield "", old.text().strip(), new.text().strip()

@@ -1,0 +1,204 @@
+"""Names of links, joints, frames and models in SDF, which have the scope of the model or world around them.
+
+A value such as ``arm::hand::palm`` leads from the scope of its place through nested models. Each part of it is a use of
+the name of one element.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from linkwright.diagnostics import SourceText, phrase
+from linkwright.language.includes import real
+from linkwright.language.occurrences import kinds_of_text
+from linkwright.language.proof import Edit, UnprovedError
+from linkwright.language.workspace import Workspace
+from linkwright.language.written import WrittenElement, innermost, written_elements
+
+_DEFINING = frozenset({"link", "joint", "frame", "model"})
+_SCOPES = frozenset({"model", "world"})
+_ATTRIBUTES = frozenset(
+    {"relative_to", "attached_to", "expressed_in", "rotate_to", "canonical_link", "placement_frame"}
+)
+_OF_OWN_SCOPE = frozenset({"canonical_link", "placement_frame"})
+_MIMIC = ("mimic", "joint")
+_TEXTS = frozenset({"parent", "child", "link", "joint", "gripper_link", "palm_link", "placement_frame"})
+_NAME = re.compile(r"[^\s<>&\"':/]+(?: [^\s<>&\"':/]+)*")
+_SEPARATOR = "::"
+_ENDINGS = (".sdf", ".world")
+
+
+@dataclass(frozen=True, slots=True)
+class SdfName:
+    """A name in an SDF text.
+
+    Attributes:
+        name: the name.
+        file: the file.
+        start: the offset of the place.
+        definition: the offset of the start tag of the element that has the name.
+    """
+
+    name: str
+    file: Path
+    start: int
+    definition: int
+
+    @property
+    def end(self) -> int:
+        """The offset behind the name."""
+        return self.start + len(self.name)
+
+
+def sdf_names(text: str, file: Path) -> Iterator[SdfName]:
+    """Yield the names of links, joints, frames and models in a text, and their uses that lead to an element of it."""
+    for element in written_elements(text):
+        if element.name in _DEFINING and element.parent is not None:
+            for attribute in element.tag.attributes():
+                if attribute.name == "name" and attribute.value and _defines(element):
+                    yield SdfName(attribute.value, file, attribute.value_start, element.start)
+        for value, start, scope in _references(element, text):
+            for part, offset, found in _path(scope, value):
+                yield SdfName(part, file, start + offset, found.start)
+
+
+def sdf_name_at(text: str, file: Path, offset: int) -> SdfName | None:
+    """Return the name at an offset of an SDF text, or None."""
+    return next((name for name in sdf_names(text, file) if name.start <= offset <= name.end), None)
+
+
+def rename_in_sdf(project: Workspace, texts: Mapping[Path, str], name: SdfName, new: str) -> set[Edit]:
+    """Return the edits with which a link, joint, frame or model of an SDF text has a new name.
+
+    Args:
+        project: the workspace.
+        texts: the texts of the open files.
+        name: the name, as `sdf_name_at` returns it.
+        new: the new name.
+
+    Raises:
+        UnprovedError: the new name is not valid or exists, or the file is outside of the workspace.
+    """
+    text = project.text(name.file, texts) or ""
+    span = SourceText(str(name.file), text).span(name.start, name.end)
+    if not _NAME.fullmatch(new) or _SEPARATOR in new or (new.startswith("__") and new.endswith("__")):
+        raise UnprovedError(phrase("'{new}' is not a valid name", new=new), span)
+    if not project.contains(name.file):
+        raise UnprovedError(phrase("'{file}' is outside of the workspace", file=name.file.name), span)
+    definition = innermost(written_elements(text), name.definition)
+    scope = None if definition is None else _scope(definition.parent)
+    if definition is None or scope is None:
+        raise UnprovedError(phrase("it is not defined in this file"), span)
+    if any(other.value("name") == new for other in _named(scope)):
+        raise UnprovedError(phrase("'{name}' exists already", name=new), span)
+    edits = {
+        Edit(use.file, use.start, use.end, new)
+        for use in sdf_names(text, name.file)
+        if use.definition == name.definition
+    }
+    top = _path_from_top(definition)
+    if top is not None:
+        for file in project.files(_ENDINGS):
+            if file != name.file:
+                edits |= {*_edits_of_includer(project.text(file, texts) or "", file, name.file, top, new)}
+    return edits
+
+
+def _defines(element: WrittenElement) -> bool:
+    """Return whether a link or joint is one of a model, and not a parameter of a plugin."""
+    parent = element.parent
+    return parent is not None and (parent.name in _SCOPES or (element.name == "model" and parent.name == "sdf"))
+
+
+def _scope(element: WrittenElement | None) -> WrittenElement | None:
+    """Return the model or world that contains an element, or is it."""
+    while element is not None and element.name not in _SCOPES:
+        element = element.parent
+    return element
+
+
+def _named(scope: WrittenElement) -> Iterator[WrittenElement]:
+    return (child for child in scope.children if child.name in _DEFINING)
+
+
+def _references(element: WrittenElement, text: str) -> Iterator[tuple[str, int, WrittenElement]]:
+    """Yield the values of an element that may lead to names: the value, its offset and the scope that it begins in."""
+    for attribute in element.tag.attributes():
+        is_reference = attribute.name in _ATTRIBUTES or (element.name, attribute.name) == _MIMIC
+        if is_reference and attribute.value:
+            own = element if attribute.name in _OF_OWN_SCOPE and element.name == "model" else None
+            scope = own or _scope_of_place(element)
+            if scope is not None:
+                yield attribute.value, attribute.value_start, scope
+    is_named = element.name in _TEXTS or bool(kinds_of_text(element.name))
+    if is_named and not element.children and not _defines(element) and element.end > 0:
+        begin = element.tag.end
+        written = text[begin : text.find("<", begin)]
+        value = written.strip()
+        scope = _scope(element.parent)
+        if value and scope is not None:
+            yield value, begin + written.index(value), scope
+
+
+def _scope_of_place(element: WrittenElement) -> WrittenElement | None:
+    """Return the scope of an attribute; the pose of a model itself is in the scope around the model."""
+    parent = element.parent
+    if element.name == "pose" and parent is not None and parent.name == "model":
+        return _scope(parent.parent)
+    return _scope(parent)
+
+
+def _path(scope: WrittenElement, value: str) -> Iterator[tuple[str, int, WrittenElement]]:
+    """Yield the parts of a value that lead to elements, each with its offset in the value."""
+    offset = 0
+    current: WrittenElement | None = scope
+    for part in value.split(_SEPARATOR):
+        found = None if current is None else next((one for one in _named(current) if one.value("name") == part), None)
+        if found is None:
+            return
+        yield part, offset, found
+        offset += len(part) + len(_SEPARATOR)
+        current = found if found.name == "model" else None
+
+
+def _path_from_top(element: WrittenElement) -> tuple[str, ...] | None:
+    """Return the names from the outermost model to an element, without that model; None for names in a world."""
+    names: list[str] = []
+    current: WrittenElement | None = element
+    while current is not None and current.name != "sdf":
+        if current.name == "world":
+            return None
+        names.append(current.value("name"))
+        current = current.parent
+    return tuple(reversed(names[:-1])) or None
+
+
+def _edits_of_includer(text: str, file: Path, model: Path, path: tuple[str, ...], new: str) -> Iterator[Edit]:
+    """Yield the edits of a file that includes a model: values that lead through the include to the name."""
+    if model.parent.name not in text and model.name not in text:
+        return
+    for include in written_elements(text):
+        if include.name != "include" or not _includes(include, text, model):
+            continue
+        name = _child_text(include, "name", text)
+        scope = _scope(include.parent)
+        for element in written_elements(text) if name and scope is not None else ():
+            for value, start, own in _references(element, text):
+                beginning = _SEPARATOR.join((name, *path[:-1])) + _SEPARATOR
+                parts = value.split(_SEPARATOR)
+                if own is scope and parts[: len(path) + 1] == [name, *path]:
+                    begin = start + len(beginning)
+                    yield Edit(file, begin, begin + len(path[-1]), new)
+
+
+def _includes(include: WrittenElement, text: str, model: Path) -> bool:
+    uri = _child_text(include, "uri", text).rstrip("/")
+    return uri.rpartition("/")[2] in (model.parent.name, model.name) and real(model).is_file()
+
+
+def _child_text(element: WrittenElement, tag: str, text: str) -> str:
+    child = next((one for one in element.children if one.name == tag), None)
+    return "" if child is None else text[child.tag.end : text.find("<", child.tag.end)].strip()

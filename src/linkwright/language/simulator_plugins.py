@@ -1,0 +1,116 @@
+"""The plugins of Gazebo classic and gz, with their parameters as elements.
+
+They come from ``simulator_plugins.json``, which ``tools/simulator_plugins.py`` records.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
+from importlib import resources
+
+from linkwright.schema import AttributeRule, ElementRule
+from linkwright.sdf.plugins import PLUGIN, library_name
+from linkwright.sdf.values import INTEGER, NUMBER, TEXT, TRUTH, VECTOR3
+
+_FILE = "simulator_plugins.json"
+_TYPES = {"str": TEXT, "float": NUMBER, "int": INTEGER, "bool": TRUTH, "vector": VECTOR3}
+_ROS = ElementRule(
+    "ros",
+    "the node of the plugin",
+    children=tuple(
+        ElementRule(tag, meaning, attributes, many=True, text=AttributeRule("text", TEXT, meaning))
+        for tag, meaning, attributes in (
+            ("namespace", "the namespace of the node", ()),
+            ("remapping", "another name for a topic, as in old:=new", ()),
+            ("argument", "an argument of the node, as behind --ros-args", ()),
+            (
+                "parameter",
+                "a parameter of the node",
+                (
+                    AttributeRule("name", TEXT, "its name", required=True),
+                    AttributeRule("type", TEXT, "its type: string, int, float or bool", usual=True),
+                ),
+            ),
+        )
+    ),
+)
+"""The element ``<ros>`` of the plugins of gazebo_ros_pkgs."""
+
+
+@dataclass(frozen=True, slots=True)
+class SimulatorPlugin:
+    """A plugin of a simulator.
+
+    Attributes:
+        library: the name of the library without ``lib`` and ``.so``.
+        class_name: the class, which gz needs as the name of the plugin; empty for Gazebo classic.
+        about: what it does.
+        rule: its element, with the parameters as children.
+    """
+
+    library: str
+    class_name: str
+    about: str
+    rule: ElementRule
+
+    @property
+    def is_classic(self) -> bool:
+        """Whether Gazebo classic loads it."""
+        return not self.class_name
+
+    @property
+    def filename(self) -> str:
+        """The file name as descriptions have it."""
+        return f"lib{self.library}.so" if self.is_classic else self.library
+
+
+@cache
+def simulator_plugins() -> Mapping[str, SimulatorPlugin]:
+    """Return the known plugins by library."""
+    table = json.loads(resources.files(__package__).joinpath(_FILE).read_text(encoding="utf-8"))
+    return {library: _plugin(library, entry) for library, entry in table.items()}
+
+
+def _plugin(library: str, entry: Mapping[str, object]) -> SimulatorPlugin:
+    name, about, parameters = str(entry["class"]), str(entry["about"]), entry["parameters"]
+    assert isinstance(parameters, list)
+    children = tuple(map(_parameter, parameters))
+    if not name:
+        children = (_ROS, *children)
+    return SimulatorPlugin(library, name, about, ElementRule("plugin", about, PLUGIN.attributes, children, many=True))
+
+
+def _parameter(entry: Mapping[str, str]) -> ElementRule:
+    name, meaning, many = entry["name"], entry["meaning"], bool(entry.get("many"))
+    text = AttributeRule(
+        "text",
+        _TYPES[entry["type"]],
+        meaning,
+        entry["unit"],
+        required=bool(entry.get("required")),
+        default=entry.get("default"),
+    )
+    return ElementRule(name, meaning, many=many, text=text, required=text.required)
+
+
+def plugin_of(filename: str, name: str = "") -> SimulatorPlugin | None:
+    """Return the plugin that an element ``<plugin>`` loads, or None if it is not known.
+
+    Args:
+        filename: the file name, in any spelling.
+        name: the name, which is the class in gz.
+    """
+    found = simulator_plugins().get(library_name(filename)) if filename else None
+    return found or (_by_class().get(_modern(name)) if "::" in name else None)
+
+
+def _modern(name: str) -> str:
+    return name.replace("ignition::gazebo::", "gz::sim::")
+
+
+@cache
+def _by_class() -> Mapping[str, SimulatorPlugin]:
+    return {plugin.class_name: plugin for plugin in simulator_plugins().values() if plugin.class_name}

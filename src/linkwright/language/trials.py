@@ -1,0 +1,205 @@
+"""The expansions of a description with which edits are compared: argument sets, switched branches, known gaps.
+
+The callers of a description rarely reach all of its branches. So arguments that a condition asks for are switched, too,
+each alone. A description that cannot be expanded, because a package is missing or a caller decides a value, is
+expanded without the elements that fail. They are replaced by blanks, so all offsets stay the same.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from linkwright.descriptions.argument_sets import compared_values
+from linkwright.diagnostics import LinkwrightError, Phrase, SourceText, Span
+from linkwright.language.includes import real
+from linkwright.language.workspace import Workspace
+from linkwright.language.written import innermost, written_elements
+from linkwright.xacro import Expansion, expand
+from linkwright.xacro.faults import Fault
+from linkwright.xmltree import Overlay, parse
+from linkwright.xmltree.tokens import Kind, tokens
+
+Range = tuple[int, int]
+Gaps = Mapping[Path, tuple[Range, ...]]
+
+_UNDECLARED = "XAC211"
+_PLACEHOLDERS = ("value", "1")
+"""Values for an argument that only a caller knows."""
+_MAX_GAPS = 60
+_MAX_WITH_GAPS = 3
+_MAX_SWITCHED = 16
+_MAX_SECONDS = 2.0
+"""The time after which no further arguments are switched."""
+_OPPOSITES = {"true": "false", "false": "true", "True": "False", "False": "True", "0": "1", "1": "0"}
+
+
+@dataclass(frozen=True, slots=True)
+class Trial:
+    """An expansion of a description.
+
+    Attributes:
+        entry: the description.
+        arguments: the values of its arguments.
+        expansion: the expansion.
+        gaps: the ranges of elements that were left out because they cannot be expanded, by file.
+        reason: why the first of them was left out, or None.
+    """
+
+    entry: Path
+    arguments: Mapping[str, str]
+    expansion: Expansion
+    gaps: Gaps = field(default_factory=dict)
+    reason: Phrase | None = None
+
+
+def expanded(
+    project: Workspace, texts: Mapping[Path, str], entry: Path, arguments: Mapping[str, str], gaps: Gaps | None = None
+) -> Expansion:
+    """Return the expansion of a description without some elements.
+
+    Args:
+        project: the workspace.
+        texts: the texts of the open files.
+        entry: the description.
+        arguments: the values of its arguments.
+        gaps: the ranges of the elements to leave out, by file.
+
+    Raises:
+        LinkwrightError: the description cannot be expanded.
+    """
+    blanked = {str(path): text for path, text in texts.items()}
+    for file, ranges in (gaps or {}).items():
+        blanked[str(file)] = without(project.text(file, texts) or "", ranges)
+    return expand(entry, arguments, packages=project.finder(entry), overlay=Overlay(blanked))
+
+
+def without(text: str, ranges: tuple[Range, ...]) -> str:
+    """Return a text of the same length with blanks in some ranges."""
+    for start, end in ranges:
+        blank = "".join(letter if letter == "\n" else " " for letter in text[start:end])
+        text = text[:start] + blank + text[end:]
+    return text
+
+
+def trials(
+    project: Workspace, texts: Mapping[Path, str], entry: Path, *, is_partial: bool
+) -> tuple[list[Trial], LinkwrightError | None]:
+    """Return the expansions of a description, and an error of one that fails.
+
+    Args:
+        project: the workspace.
+        texts: the texts of the open files.
+        entry: the description.
+        is_partial: whether arguments are switched, and elements that fail are left out if nothing can be expanded.
+    """
+    found: list[Trial] = []
+    error: LinkwrightError | None = None
+    for arguments, _ in project.calls(entry):
+        try:
+            found.append(Trial(entry, arguments, expanded(project, texts, entry, arguments)))
+        except LinkwrightError as reason:  # noqa: PERF203 - each may fail for itself
+            error = reason
+    if is_partial and not found:
+        found += _with_gaps(project, texts, entry)
+    if is_partial and found:
+        found += _switched(project, texts, found[0], {str(trial.expansion) for trial in found})
+    return found, error
+
+
+def _with_gaps(project: Workspace, texts: Mapping[Path, str], entry: Path) -> Iterator[Trial]:
+    """Yield expansions without the elements that fail, at most a few."""
+    count = 0
+    for arguments in project.possible_arguments(entry):
+        trial = _repaired(project, texts, entry, arguments)
+        if trial is not None:
+            yield trial
+            count += 1
+        if count == _MAX_WITH_GAPS:
+            return
+
+
+def _repaired(project: Workspace, texts: Mapping[Path, str], entry: Path, arguments: Mapping[str, str]) -> Trial | None:
+    """Return an expansion without the elements that fail; None if the root fails or there are too many."""
+    gaps: dict[Path, tuple[Range, ...]] = {}
+    reason: Phrase | None = None
+    given = dict(arguments)
+    for _ in range(_MAX_GAPS):
+        try:
+            return Trial(entry, given, expanded(project, texts, entry, given, gaps), gaps, reason)
+        except LinkwrightError as error:
+            undeclared = [one for one in error.diagnostics if one.code == _UNDECLARED]
+            names = [name for one in undeclared if (name := one.message.arguments.get("name"))]
+            added = {str(name): _PLACEHOLDERS[0] for name in names if str(name) not in given}
+            if added:
+                given |= added
+                continue
+            first = error.diagnostics[0]
+            place = None if first.span is None else _element_around(project, texts, first.span, gaps)
+            numbers = {name: _PLACEHOLDERS[1] for name, value in given.items() if value == _PLACEHOLDERS[0]}
+            if place is None:
+                return None
+            if not gaps and numbers and not first.code.startswith(("PKG", "XML")):
+                given |= numbers
+                continue
+            reason = reason or first.message
+            gaps[place[0]] = (*gaps.get(place[0], ()), place[1])
+        except (Fault, RecursionError):
+            return None
+    return None
+
+
+def _element_around(project: Workspace, texts: Mapping[Path, str], span: Span, gaps: Gaps) -> tuple[Path, Range] | None:
+    """Return the file and the range of the element that contains a location; None for a root or outside of files."""
+    file = real(span.file)
+    text = project.text(file, texts)
+    if text is None:
+        return None
+    offset = SourceText(span.file, text).offset(span.line, span.column)
+    element = innermost(written_elements(text), offset)
+    if element is None or element.parent is None or element.end < 0:
+        return None
+    place = element.start, element.end
+    return None if place in gaps.get(file, ()) else (file, place)
+
+
+def _switched(project: Workspace, texts: Mapping[Path, str], base: Trial, known: set[str]) -> Iterator[Trial]:
+    """Yield the expansions that differ if one argument has another value that a condition asks for."""
+    begin = time.monotonic()
+    for name, value in _values(project, texts, base.entry):
+        if base.arguments.get(name) == value:
+            continue
+        if time.monotonic() - begin > _MAX_SECONDS:
+            return
+        arguments = {**base.arguments, name: value}
+        try:
+            expansion = expanded(project, texts, base.entry, arguments, base.gaps)
+        except (LinkwrightError, Fault, RecursionError):
+            continue
+        text = str(expansion)
+        if text not in known:
+            known.add(text)
+            yield Trial(base.entry, arguments, expansion, base.gaps, base.reason)
+
+
+def _values(project: Workspace, texts: Mapping[Path, str], entry: Path) -> list[tuple[str, str]]:
+    """Return other values of arguments: the opposites of their defaults, and those that conditions compare."""
+    values: dict[tuple[str, str], None] = {}
+    documents = []
+    for file in project.index.related(entry, texts, computed=True):
+        text = project.text(file, texts) or ""
+        for token in tokens(text):
+            if token.kind is Kind.START and token.name == "xacro:arg":
+                given = {attribute.name: attribute.value or "" for attribute in token.attributes()}
+                opposite = _OPPOSITES.get(given.get("default", "").strip())
+                if opposite is not None and given.get("name"):
+                    values[given["name"], opposite] = None
+        try:
+            documents.append(parse(text, str(file)))
+        except LinkwrightError:
+            continue
+    for compared in compared_values(documents):
+        values.update(dict.fromkeys(compared.values.items()))
+    return [*values][:_MAX_SWITCHED]

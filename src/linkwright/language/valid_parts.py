@@ -1,0 +1,32 @@
+"""The expansion of a description for an editor: the whole, or the valid parts of one with errors."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from contextlib import suppress
+from pathlib import Path
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.language.workspace import Workspace
+from linkwright.xacro import Expansion, expand
+from linkwright.xacro.parts import expand_parts
+from linkwright.xacro.session import Inputs
+from linkwright.xmltree import Overlay
+
+
+def valid_parts(project: Workspace, texts: Mapping[Path, str], entry: Path) -> Expansion | None:
+    """Return the parts of a description that can be expanded with its default arguments; None if there are none.
+
+    Args:
+        project: the workspace.
+        texts: the texts of the open files.
+        entry: the description, whose whole expansion has failed.
+    """
+    overlay = Overlay({str(path): text for path, text in texts.items()})
+    inputs = Inputs(str(entry), {}, project.finder(entry), overlay=overlay)
+    try:
+        return expand(entry, packages=project.finder(entry), overlay=overlay)
+    except (LinkwrightError, OSError, RecursionError) as error:
+        with suppress(LinkwrightError, OSError, RecursionError):
+            return expand_parts(inputs, error) if isinstance(error, LinkwrightError) else None
+    return None

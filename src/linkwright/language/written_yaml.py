@@ -1,0 +1,86 @@
+"""The content of the YAML files that properties load.
+
+It is found from the texts alone, because a half-typed file has no expansion.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.language.definitions import NameDefinition, NameKind
+from linkwright.language.format import Document
+from linkwright.xacro.expressions import yamldata
+from linkwright.xmltree.decoding import decode
+from linkwright.xmltree.reader import read_bytes
+
+_LOADED = re.compile(r"""\bload_yaml\(\s*(?:["'](?P<path>[^"']+)["']|(?P<name>\w+))\s*\)(?P<rest>[^{}]*)""")
+_KEY = re.compile(r"""\[\s*["']([^"'\]]*)["']\s*\]""")
+_PART = re.compile(r"\$\((find|arg|dirname)\s*([\w.-]*)\)|\$\{(\w+)\}")
+_DEEPEST = 8
+
+
+def yaml_value(document: Document, name: str, names: Sequence[NameDefinition]) -> Any:
+    """Return the value of a property that is the content of a YAML file or a part of it; None for other properties.
+
+    Args:
+        document: the text that uses the property.
+        name: the property.
+        names: the names that the files of the description define.
+    """
+    written, file = _written(name, NameKind.PROPERTY, names)
+    found = _LOADED.search(written)
+    if found is None or file is None:
+        return None
+    path = found["path"] or f"${{{found['name']}}}"
+    text = _replaced(path, file, document, names)
+    if "$" in text or not text or "\0" in text:
+        return None
+    target = file.parent / text
+    try:
+        value: Any = _content(target, target.stat().st_mtime_ns)
+    except OSError:
+        return None
+    for key in _KEY.finditer(found["rest"]):
+        value = value.get(key[1]) if isinstance(value, dict) else None
+    return value
+
+
+def _written(name: str, kind: NameKind, names: Sequence[NameDefinition]) -> tuple[str, Path | None]:
+    """Return the value of a property or argument as written, and the file that defines it."""
+    found = next((each for each in names if each.kind is kind and each.name == name), None)
+    return ("", None) if found is None else (found.detail, found.file)
+
+
+def _replaced(text: str, file: Path, document: Document, names: Sequence[NameDefinition]) -> str:
+    """Return a text with its properties, arguments and packages replaced as far as they are known."""
+
+    def value(part: re.Match[str]) -> str:
+        if part[1] == "find":
+            folder = document.finder.find(part[2])
+            return part[0] if folder is None else str(folder)
+        if part[1] == "dirname":
+            return str(file.parent)
+        kind = NameKind.ARGUMENT if part[1] == "arg" else NameKind.PROPERTY
+        written, _ = _written(part[2] or part[3], kind, names)
+        return written or part[0]
+
+    for _ in range(_DEEPEST):
+        replaced = _PART.sub(value, text)
+        if replaced == text or len(replaced) > len(text) + 10_000:
+            break
+        text = replaced
+    return text
+
+
+@lru_cache(maxsize=32)
+def _content(file: Path, _: int) -> Any:
+    """Return the content of a YAML file that was last changed at a time; None if it cannot be read."""
+    try:
+        return yamldata.load(decode(read_bytes(file), str(file)), lambda _: 0.0)
+    except (OSError, LinkwrightError, yamldata.YamlError, ValueError):
+        return None

@@ -1,0 +1,174 @@
+"""Completions at a place of an XML file: what its language, its package and its macros offer there."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+
+from linkwright.language.completion import Completion, ItemKind, Parts, most_used, of_kind
+from linkwright.language.cursor import Cursor, Spot, cursor_at
+from linkwright.language.definitions import NameDefinition, NameKind
+from linkwright.language.format import Document
+from linkwright.language.grammar import PREFIX, XACRO, has_xacro, root_of, rule_at
+from linkwright.language.outline import Outline, OutlineElement
+from linkwright.language.parameters import called_macro, macro_parameters
+from linkwright.language.xml_values import complete_text, complete_value
+from linkwright.schema import AttributeRule, ElementRule, describe_attribute, describe_element
+from linkwright.xacro.macros import Parameter
+
+
+def complete(
+    document: Document, offset: int, names: Sequence[NameDefinition] = (), parts: Parts = tuple
+) -> list[Completion]:
+    """Return the completions at an offset, the likeliest first, each label once.
+
+    Args:
+        document: the text; the name of its file tells the language.
+        offset: the character offset of the cursor.
+        names: the names that the files of the description define.
+        parts: returns the links and joints after the expansion.
+    """
+    found: dict[str, Completion] = {}
+    for item in _complete(document, offset, names, parts):
+        found.setdefault(item.label, item)
+    return list(found.values())
+
+
+def _complete(document: Document, offset: int, names: Sequence[NameDefinition], parts: Parts) -> Iterator[Completion]:
+    root = root_of(document.file)
+    if root is None:
+        return
+    cursor = cursor_at(document.text, offset)
+    if cursor.spot is Spot.TEXT and cursor.tags:
+        rule = rule_at(root, cursor.tags, cursor.elements)
+        yield from complete_text(document, cursor, rule, names, parts)
+        if cursor.typed.strip() or (rule is not None and rule.text is not None and not rule.child_rules):
+            return
+    if cursor.spot is Spot.TAG or (cursor.spot is Spot.TEXT and not cursor.typed.strip()):
+        yield from _elements(document, cursor, root, names)
+    elif cursor.spot is Spot.CLOSING_TAG and cursor.tags:
+        yield Completion(cursor.tags[-1], ItemKind.ELEMENT, offset - len(cursor.typed))
+    elif cursor.spot is Spot.ATTRIBUTE:
+        yield from _attributes(cursor, root, names)
+    elif cursor.spot is Spot.VALUE:
+        rule = None if cursor.tags[-1].startswith(PREFIX) else rule_at(root, cursor.tags, cursor.elements)
+        yield from complete_value(document, cursor, rule, names, parts)
+
+
+# --- elements ---------------------------------------------------------------------------------------------------------
+
+
+def _elements(
+    document: Document, cursor: Cursor, root: ElementRule, names: Sequence[NameDefinition]
+) -> Iterator[Completion]:
+    opens = cursor.spot is Spot.TEXT
+    start = cursor.offset if opens else cursor.offset - len(cursor.typed)
+    mark = "<" if opens else ""
+    rule = rule_at(root, cursor.tags, cursor.elements)
+    in_macro_alone = bool(cursor.tags) and rule is None and all(tag.startswith(PREFIX) for tag in cursor.tags[1:])
+    if not cursor.tags:
+        offered: Iterable[ElementRule] = [root]
+    else:
+        offered = (rule or (root if in_macro_alone else None) or ElementRule("", "")).child_rules.values()
+    given = _given_elements(document.text, cursor) if cursor.tags else frozenset()
+    free = [child for child in offered if child.many or child.tag not in given]
+    for child in sorted(free, key=lambda child: not child.required):
+        snippet = mark + _element_snippet(child)
+        yield Completion(child.tag, ItemKind.ELEMENT, start, _unit_of(child), describe_element(child), snippet)
+    if not cursor.tags or not has_xacro(root):
+        return
+    for macro in most_used(of_kind(names, NameKind.MACRO), document.text):
+        label = PREFIX + macro.name
+        described = f"`{macro.detail}`\n\n{macro.file.name}" if macro.detail else macro.file.name
+        yield Completion(label, ItemKind.MACRO, start, _one_line(macro.detail), described, mark + _call_snippet(macro))
+    for tag in XACRO.values():
+        yield Completion(tag.tag, ItemKind.ELEMENT, start, "xacro", describe_element(tag), mark + _element_snippet(tag))
+
+
+def _given_elements(text: str, cursor: Cursor) -> frozenset[str]:
+    """Return the elements that the element around a cursor already has, without the one that is typed."""
+    inside = Outline.of(text).elements
+    around: OutlineElement | None = None
+    for element in cursor.elements:
+        around = next((each for each in inside if each.tag.start == element.start), None)
+        inside = [] if around is None else around.children
+    own = cursor.token.start if cursor.token is not None else -1
+    return frozenset(child.tag.name for child in inside if child.tag.start != own)
+
+
+def _unit_of(rule: ElementRule) -> str:
+    if rule.text is None:
+        return ""
+    return f"{rule.text.type.name}, {rule.text.unit}" if rule.text.unit else rule.text.type.name
+
+
+def _one_line(text: str) -> str:
+    return " ".join(text.split())
+
+
+def _escaped(text: str) -> str:
+    return text.replace("\\", "\\\\").replace("$", "\\$").replace("}", "\\}")
+
+
+def _element_snippet(rule: ElementRule) -> str:
+    wanted = [attribute for attribute in rule.attributes if attribute.required or attribute.usual]
+    written = "".join(f' {attribute.name}="${{{number}}}"' for number, attribute in enumerate(wanted, 1))
+    if rule.text is not None and not rule.children:
+        default = f":{_escaped(rule.text.default)}" if rule.text.default and len(rule.text.default) < 40 else ""
+        return f"{rule.tag}{written}>${{{len(wanted) + 1}{default}}}</{rule.tag}>"
+    has_content = bool(rule.child_rules) or rule.tag in ("xacro:macro", "xacro:if", "xacro:unless")
+    return f"{rule.tag}{written}>$0</{rule.tag}>" if has_content else f"{rule.tag}{written}/>$0"
+
+
+def _call_snippet(macro: NameDefinition) -> str:
+    parameters = macro_parameters(macro)
+    written = "".join(
+        f' {parameter.name}="${{{number}}}"'
+        for number, parameter in enumerate((each for each in parameters if _is_required(each)), 1)
+    )
+    tag = PREFIX + macro.name
+    return f"{tag}{written}>$0</{tag}>" if any(each.is_block for each in parameters) else f"{tag}{written}/>$0"
+
+
+def _is_required(parameter: Parameter) -> bool:
+    return not parameter.is_block and parameter.default is None and not parameter.forward
+
+
+# --- attributes -------------------------------------------------------------------------------------------------------
+
+
+def _attributes(cursor: Cursor, root: ElementRule, names: Sequence[NameDefinition]) -> Iterator[Completion]:
+    tag = cursor.tags[-1]
+    start = cursor.offset - len(cursor.typed)
+    given = {attribute.name for attribute in cursor.token.attributes()} if cursor.token else set()
+    given.discard(cursor.attribute.name if cursor.attribute else "")
+    suffix = "" if cursor.attribute is not None and cursor.attribute.value is not None else '="$1"$0'
+    if tag.startswith(PREFIX) and tag not in XACRO:
+        macro = called_macro(tag, names)
+        parameters = () if macro is None else macro_parameters(macro)
+        for parameter in sorted(parameters, key=lambda parameter: not _is_required(parameter)):
+            if not parameter.is_block and parameter.name not in given and macro is not None:
+                yield Completion(
+                    parameter.name,
+                    ItemKind.ATTRIBUTE,
+                    start,
+                    "" if parameter.default is None else f"= {parameter.default}",
+                    describe_parameter(parameter, macro),
+                    parameter.name + suffix,
+                )
+        return
+    rule = XACRO.get(tag) or rule_at(root, cursor.tags, cursor.elements)
+    free = [] if rule is None else [attribute for attribute in rule.attributes if attribute.name not in given]
+    for attribute in sorted(free, key=lambda attribute: (not attribute.required, not attribute.usual)):
+        yield _attribute(attribute, start, suffix)
+
+
+def describe_parameter(parameter: Parameter, macro: NameDefinition) -> str:
+    """Return a description of a parameter of a macro, in Markdown."""
+    default = "" if parameter.default is None else f" = `{parameter.default}`"
+    return f"**{parameter.name}**{default}, {PREFIX}{macro.name}, {macro.file.name}"
+
+
+def _attribute(attribute: AttributeRule, start: int, suffix: str) -> Completion:
+    detail = f"{attribute.type.name}, {attribute.unit}" if attribute.unit else attribute.type.name
+    description = describe_attribute(attribute)
+    return Completion(attribute.name, ItemKind.ATTRIBUTE, start, detail, description, attribute.name + suffix)

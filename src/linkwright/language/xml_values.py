@@ -1,0 +1,356 @@
+"""Completions of the values of attributes and of the texts of elements in descriptions and worlds."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Generator, Iterable, Iterator, Sequence
+from pathlib import Path
+
+from linkwright.diagnostics import phrase
+from linkwright.diagnostics.translation import localized
+from linkwright.language.completion import Completion, ItemKind, Parts, most_used, of_kind
+from linkwright.language.cursor import Cursor
+from linkwright.language.definitions import NameDefinition, NameKind
+from linkwright.language.expression_completion import (
+    blocks_in_scope,
+    complete_expression,
+    complete_substitution,
+    packages,
+)
+from linkwright.language.extension_schema import (
+    HARDWARE_PLUGIN,
+    INTERFACE_NAME,
+    JOINT_NAME,
+    PARAMETER_NAME,
+    PART_NAME,
+)
+from linkwright.language.format import Document
+from linkwright.language.hardware_plugins import hardware_parameters, hardware_plugins
+from linkwright.language.occurrences import kinds_of_reference, kinds_of_text
+from linkwright.language.outline import Outline, OutlineElement
+from linkwright.language.simulator_plugins import plugin_of, simulator_plugins
+from linkwright.lint.extension_names import INTERFACES
+from linkwright.schema import AttributeRule, ElementRule
+from linkwright.sdf.values import TRUTH
+from linkwright.urdf.values import JOINT_TYPE, JOINT_TYPES
+from linkwright.xmltree.tokens import Token
+
+_SENSOR_TYPES = (
+    *("camera", "depth_camera", "rgbd_camera", "gpu_lidar", "lidar", "imu", "contact", "navsat", "force_torque"),
+    *("altimeter", "magnetometer", "air_pressure", "logical_camera", "segmentation_camera", "boundingbox_camera"),
+    *("ray", "gpu_ray", "gps", "sonar", "depth", "multicamera", "wireless_receiver", "wireless_transmitter"),
+)
+_CHOICES: dict[tuple[str, str], tuple[str, ...]] = {
+    ("xacro:property", "scope"): ("parent", "global"),
+    ("xacro:property", "lazy_eval"): ("false", "true"),
+    ("xacro:include", "optional"): ("true", "false"),
+    ("sensor", "type"): _SENSOR_TYPES,
+    ("physics", "type"): ("ode", "bullet", "dart", "simbody", "ignored"),
+    ("noise", "type"): ("gaussian", "gaussian_quantized", "none"),
+    ("shader", "type"): ("pixel", "vertex", "normal_map_object_space", "normal_map_tangent_space"),
+}
+_INTERFACE_PARAMETERS = {
+    "initial_value": "the value at the start",
+    "min": "the least command",
+    "max": "the greatest command",
+}
+_KINDS_OF_TYPES = {JOINT_NAME: (NameKind.JOINT,), PART_NAME: (NameKind.LINK, NameKind.JOINT)}
+_OUTPUT_TYPES = ("sensor_msgs/LaserScan", "sensor_msgs/PointCloud2", "sensor_msgs/PointCloud", "sensor_msgs/Range")
+_PATH_ATTRIBUTES = frozenset({"filename", "file", "uri", "url"})
+_PATH_TAGS = frozenset({"uri", "parameters", "albedo_map", "normal_map", "roughness_map", "metalness_map", "heightmap"})
+_PACKAGE = re.compile(r"^(package|model)://([^/]*)$")
+_PATH = re.compile(r"^(?:(?:package|model)://|\$\(find\s+)([^/)]+)\)?/(.*)$")
+_IN_EXPRESSION = re.compile(r"^\$\(find\s+\$\{(\w+)\}\)/")
+_ENDINGS = {
+    "xacro:include": (".xacro", ".urdf"),
+    "mesh": (".stl", ".dae", ".obj"),
+    "parameters": (".yaml", ".yml"),
+    "texture": (".png", ".jpg"),
+}
+_SHOWN_FILES = 200
+
+
+def complete_value(
+    document: Document,
+    cursor: Cursor,
+    rule: ElementRule | None,
+    names: Sequence[NameDefinition],
+    parts: Parts,
+) -> Iterator[Completion]:
+    """Yield the values of an attribute.
+
+    Args:
+        document: the text.
+        cursor: a place in the value.
+        rule: the rule of the element, or None.
+        names: the names that the files of the description define.
+        parts: returns the links and joints after the expansion.
+    """
+    if cursor.attribute is None or cursor.token is None or (yield from _computed(document, cursor, names)):
+        return
+    start, tag, name = cursor.offset - len(cursor.typed), cursor.tags[-1], cursor.attribute.name
+    if tag == "plugin" and rule is not None:
+        yield from _simulator_plugin(document, cursor, start)
+        return
+    if (tag, name) == ("xacro:insert_block", "name"):
+        for block in blocks_in_scope(cursor):
+            yield Completion(block.name.lstrip("*"), ItemKind.NAME, start, "block")
+        for name_of_block in of_kind([name for name in names if not name.detail], NameKind.PROPERTY):
+            yield Completion(name_of_block.name, ItemKind.NAME, start, "block", name_of_block.file.name)
+        return
+    attribute = None if rule is None else rule.attribute_rules.get(name)
+    yield from _offer(_CHOICES.get((tag, name), ()), start)
+    if attribute is not None:
+        yield from _of_type(document, cursor, attribute, start, names, parts)
+    kinds = kinds_of_reference(tag, name)
+    if (tag, name) == ("joint", "name") and "ros2_control" in cursor.tags:
+        kinds = (NameKind.JOINT,)
+    yield from _parts_of(document, cursor, kinds, start, names, parts)
+    if name in _PATH_ATTRIBUTES:
+        yield from complete_path(document, cursor.typed, cursor.offset, _ENDINGS.get(tag, ()), names)
+    yield from _given(cursor.attribute.value, attribute, start)
+
+
+def complete_text(
+    document: Document,
+    cursor: Cursor,
+    rule: ElementRule | None,
+    names: Sequence[NameDefinition],
+    parts: Parts,
+) -> Iterator[Completion]:
+    """Yield the texts that an element may contain.
+
+    Args:
+        document: the text.
+        cursor: a place in the content of the element.
+        rule: the rule of the element, or None.
+        names: the names that the files of the description define.
+        parts: returns the links and joints after the expansion.
+    """
+    tag, typed = cursor.tags[-1], cursor.typed.lstrip()
+    if "\n" in typed or (yield from _computed(document, cursor, names)):
+        return
+    if rule is not None and rule.text is None and tag not in _PATH_TAGS:
+        return
+    start = cursor.offset - len(typed)
+    text = None if rule is None else rule.text
+    if tag == "output_type":
+        yield from _offer(_OUTPUT_TYPES, start)
+    if text is not None:
+        yield from _of_type(document, cursor, text, start, names, parts)
+    yield from _parts_of(document, cursor, kinds_of_text(tag), start, names, parts)
+    if tag in _PATH_TAGS:
+        yield from complete_path(document, typed, cursor.offset, _ENDINGS.get(tag, ()), names)
+    yield from _given(None, text, start)
+
+
+def _computed(document: Document, cursor: Cursor, names: Sequence[NameDefinition]) -> Generator[Completion, None, bool]:
+    """Yield the completions in an expression or substitution, and return whether the place is in one."""
+    if cursor.in_expression:
+        yield from complete_expression(document, cursor, names)
+        return True
+    if cursor.substitution is not None:
+        yield from complete_substitution(document, cursor, names)
+        return True
+    return False
+
+
+def _offer(values: Iterable[str], start: int, detail: str = "") -> Iterator[Completion]:
+    for value in values:
+        yield Completion(value, ItemKind.VALUE, start, detail)
+
+
+def _given(written: str | None, rule: AttributeRule | None, start: int) -> Iterator[Completion]:
+    """Yield the default of a value, unless the value is it already."""
+    if rule is not None and rule.default and rule.default != written and rule.type is not TRUTH:
+        yield Completion(rule.default, ItemKind.VALUE, start, localized(phrase("default")))
+
+
+# --- values by their type ---------------------------------------------------------------------------------------------
+
+
+def _of_type(
+    document: Document,
+    cursor: Cursor,
+    rule: AttributeRule,
+    start: int,
+    names: Sequence[NameDefinition],
+    parts: Parts,
+) -> Iterator[Completion]:
+    kind = rule.type
+    if kind is JOINT_TYPE:
+        yield from _offer(JOINT_TYPES, start)
+    elif " | " in kind.name:
+        yield from _offer(kind.name.split(" | "), start)
+    elif kind is TRUTH:
+        for word in ("true", "false"):
+            yield from _offer((word,), start, localized(phrase("default")) if word == rule.default else "")
+    elif kind is HARDWARE_PLUGIN:
+        for name, about in hardware_plugins(document).items():
+            yield Completion(name, ItemKind.VALUE, start, "", about)
+    elif kind is INTERFACE_NAME:
+        yield from _interfaces(document, cursor, start)
+    elif kind is PARAMETER_NAME:
+        yield from _parameters(document, cursor, start)
+    elif kind in _KINDS_OF_TYPES:
+        yield from _parts_of(document, cursor, _KINDS_OF_TYPES[kind], start, names, parts)
+
+
+def _interfaces(document: Document, cursor: Cursor, start: int) -> Iterator[Completion]:
+    """Yield the names of interfaces that the component does not have yet."""
+    around = _around(document.text, cursor.elements[:-1])
+    tag = cursor.tags[-1]
+    others = [] if around is None else [each for each in around.children if each.tag.name == tag]
+    given = {_attribute(each.tag, "name") for each in others if each.tag.start != cursor.elements[-1].start}
+    is_joint = len(cursor.tags) < 2 or cursor.tags[-2] == "joint"
+    usual = INTERFACES if is_joint else (*_written(document.text, tag), *INTERFACES)
+    yield from _offer((name for name in dict.fromkeys(usual) if name not in given), start)
+
+
+def _written(text: str, tag: str) -> list[str]:
+    return re.findall(rf"""<{tag}\s[^<>]{{0,99}}?\bname\s*=\s*["']([\w./-]+)["']""", text)
+
+
+def _parameters(document: Document, cursor: Cursor, start: int) -> Iterator[Completion]:
+    """Yield the parameters of hardware or of an interface."""
+    around = _around(document.text, cursor.elements[:-1])
+    others = [] if around is None else [child for child in around.children if child.tag.name == "param"]
+    given = {_attribute(each.tag, "name") for each in others if each.tag.start != cursor.elements[-1].start}
+    if cursor.tags[-2:-1] == ("hardware",):
+        plugin = hardware_of(document.text, around)
+        for parameter in hardware_parameters(document, plugin, start).values():
+            if parameter.name not in given:
+                yield Completion(parameter.name, ItemKind.ATTRIBUTE, start, plugin, parameter.meaning)
+    elif cursor.tags[-2:-1] in (("command_interface",), ("state_interface",)):
+        for name, meaning in _INTERFACE_PARAMETERS.items():
+            if name not in given:
+                yield Completion(name, ItemKind.ATTRIBUTE, start, "", meaning)
+
+
+def hardware_of(text: str, hardware: OutlineElement | None) -> str:
+    """Return the plugin that an element ``<hardware>`` names; empty if it names none."""
+    plugin = next((child for child in hardware.children if child.tag.name == "plugin"), None) if hardware else None
+    return "" if plugin is None else text[plugin.tag.end : plugin.end].partition("<")[0].strip()
+
+
+def _around(text: str, elements: Sequence[Token]) -> OutlineElement | None:
+    """Return the innermost of some nested elements in the outline of a text."""
+    inside, found = Outline.of(text).elements, None
+    for element in elements:
+        found = next((each for each in inside if each.tag.start == element.start), None)
+        inside = [] if found is None else found.children
+    return found
+
+
+def _attribute(token: Token, name: str) -> str:
+    return next((each.value or "" for each in token.attributes() if each.name == name), "")
+
+
+# --- names ------------------------------------------------------------------------------------------------------------
+
+
+def _parts_of(
+    document: Document,
+    cursor: Cursor,
+    kinds: Sequence[NameKind],
+    start: int,
+    names: Sequence[NameDefinition],
+    parts: Parts,
+) -> Iterator[Completion]:
+    """Yield the names of some kinds: in a macro as they are written, elsewhere as they are after the expansion."""
+    if not kinds:
+        return
+    expanded = [name for name in parts() if name.kind in kinds]
+    written = [name for kind in kinds for name in most_used(of_kind(names, kind), document.text)]
+    near = [name for name in written if name.file == document.file]
+    in_macro = cursor.macro is not None
+    patterns = [name for name in near if "$" in name.name]
+    plain = [name for name in written if "$" not in name.name]
+    macro = "" if cursor.macro is None else _attribute(cursor.macro, "name")
+    own = [name for name in near if name.owner == macro] if in_macro else []
+    for name in (*own, *(patterns if in_macro else ()), *expanded, *plain):
+        if name.start != start or name.file != document.file:
+            yield Completion(name.name, ItemKind.NAME, start, name.detail or name.kind.value, name.file.name)
+
+
+def _simulator_plugin(document: Document, cursor: Cursor, start: int) -> Iterator[Completion]:
+    """Yield the libraries of plugins, or the names for a plugin, those of the simulator that the file is for first."""
+    assert cursor.attribute is not None
+    token, name = cursor.elements[-1], cursor.attribute.name
+    library, class_name = _attribute(token, "filename"), _attribute(token, "name")
+    is_classic = ".so" in document.text and "gz-sim" not in document.text and "ignition-gazebo" not in document.text
+    plugins = sorted(simulator_plugins().values(), key=lambda plugin: plugin.is_classic != is_classic)
+    if name == "filename":
+        named = plugin_of("", class_name)
+        for plugin in ([] if named is None else [named]) + plugins:
+            spelt = _spelt(plugin.filename, cursor.typed)
+            yield Completion(spelt, ItemKind.VALUE, start, plugin.class_name, plugin.about)
+    elif name == "name":
+        known = plugin_of(library)
+        if known is not None and known.class_name:
+            yield Completion(_spelt(known.class_name, cursor.typed), ItemKind.VALUE, start, library, known.about)
+        elif known is not None:
+            yield Completion(known.library.removeprefix("gazebo_ros_"), ItemKind.VALUE, start, library, known.about)
+        for plugin in plugins:
+            if plugin.class_name and (known is None or not known.is_classic):
+                yield Completion(
+                    _spelt(plugin.class_name, cursor.typed), ItemKind.VALUE, start, plugin.filename, plugin.about
+                )
+
+
+def _spelt(name: str, typed: str) -> str:
+    """Return the name of a plugin with the older names of gz where they are typed, as ``ignition-gazebo-``."""
+    if typed.startswith(("ign", "libign")):
+        prefix = "lib" if typed.startswith("lib") else ""
+        return prefix + name.replace("gz-sim-", "ignition-gazebo-").replace("gz::sim::", "ignition::gazebo::")
+    return f"lib{name}" if typed.startswith("libgz") and name.startswith("gz-sim-") else name
+
+
+# --- paths ------------------------------------------------------------------------------------------------------------
+
+
+def complete_path(
+    document: Document, typed: str, offset: int, endings: Sequence[str], names: Sequence[NameDefinition] = ()
+) -> Iterator[Completion]:
+    """Yield packages, folders and files that continue a path.
+
+    Args:
+        document: the text.
+        typed: the typed part of the path.
+        offset: the offset of the cursor.
+        endings: the endings of the files that the place is for; they come first.
+        names: the names that the files of the description define.
+    """
+    package = _PACKAGE.match(typed)
+    if package is not None:
+        yield from packages(document, offset - len(package[2]))
+        return
+    computed = _IN_EXPRESSION.match(typed)
+    if computed is not None:
+        value = next((each.detail for each in of_kind(names, NameKind.PROPERTY) if each.name == computed[1]), "")
+        typed = f"package://{value}/{typed[computed.end() :]}"
+    inside = _PATH.match(typed)
+    base, rest = (document.finder.find(inside[1]), inside[2]) if inside else (document.file.parent, typed)
+    if inside is None:
+        for beginning in ("package://", "$(find "):
+            if beginning.startswith(typed):
+                yield Completion(beginning, ItemKind.VALUE, offset - len(typed))
+    if base is not None and "$" not in rest:
+        yield from _files(base, rest, offset, endings, document.file)
+
+
+def _files(base: Path, typed: str, offset: int, endings: Sequence[str], own: Path) -> Iterator[Completion]:
+    below, _, name = typed.rpartition("/")
+    try:
+        entries = [(entry.is_file(), entry.name) for entry in (base / below).iterdir() if entry != own]
+    except (OSError, ValueError):
+        return
+
+    def rank(entry: tuple[bool, str]) -> tuple[int, bool, str]:
+        is_file, file_name = entry
+        fits = file_name.lower().endswith(tuple(endings))
+        return (0 if fits or not is_file else 1) if endings else 0, is_file, file_name
+
+    for is_file, file_name in sorted(entries, key=rank)[:_SHOWN_FILES]:
+        if not file_name.startswith("."):
+            yield Completion(file_name, ItemKind.FILE if is_file else ItemKind.FOLDER, offset - len(name))

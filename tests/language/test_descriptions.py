@@ -1,0 +1,206 @@
+"""Completions in descriptions: names after the expansion, values by type, plugins and their parameters."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from linkwright.language.expression_completion import FUNCTIONS, XACRO_FUNCTIONS
+from linkwright.language.extension_schema import DESCRIPTION
+from linkwright.language.format import Document
+from linkwright.language.includes import real
+from linkwright.language.robot_names import PartNames
+from linkwright.language.simulator_plugins import simulator_plugins
+from linkwright.language.workspace import Workspace
+from linkwright.language.xml_completion import complete
+from linkwright.lint.extension_names import CHILDREN
+from linkwright.loading.extensions import extensions
+from linkwright.simulation.plugins.registry import PLUGINS
+from linkwright.xacro.expressions.symbols import global_names
+from linkwright.xacro.session import Inputs
+
+MANIFEST = "<package format='3'><name>{name}</name><version>0.1.0</version><description>d</description></package>"
+ROBOT = """<robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:property name="radius" value="0.1"/>
+  <xacro:property name="sizes_file" value="$(find arm)/config/sizes.yaml"/>
+  <xacro:property name="sizes" value="${xacro.load_yaml(sizes_file)}"/>
+  <xacro:macro name="wheel" params="side width:=0.02 *place **more">
+    <xacro:property name="inner" value="${radius / 2}"/>
+    <link name="${side}_wheel"/>
+    <joint name="${side}_wheel_joint" type="continuous">
+      <xacro:insert_block name="place"/>
+      <parent link="base"/>
+      <child link="${side}_wheel"/>
+    </joint>
+    <!-- in macro -->
+  </xacro:macro>
+  <link name="base"/>
+  <xacro:wheel side="left"><origin/><a/></xacro:wheel>
+  <!-- here -->
+</robot>
+"""
+CMAKE = "pluginlib_export_plugin_description_file(hardware_interface plugins/arm.xml)\n"
+PLUGINS_XML = """<library path="arm"><class name="arm/Motors" type="arm::Motors"
+ base_class_type="hardware_interface::SystemInterface"><description> The motors. </description></class></library>
+"""
+SOURCE = 'auto port = info_.hardware_parameters["serial_port"]; if (info_.hardware_parameters.count("baud")) {}\n'
+
+
+@pytest.fixture
+def package(tmp_path: Path) -> Path:
+    files = {
+        "package.xml": MANIFEST.format(name="arm"),
+        "CMakeLists.txt": CMAKE,
+        "plugins/arm.xml": PLUGINS_XML,
+        "src/motors.cpp": SOURCE,
+        "config/sizes.yaml": "base:\n  mass: 2.5\n  mesh: base.stl\nwheel: {radius: 0.1}\n",
+        "urdf/arm.urdf.xacro": ROBOT,
+        "meshes/base.stl": "",
+        "meshes/about.txt": "",
+    }
+    for name, text in files.items():
+        path = tmp_path / "arm" / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+    return real(tmp_path / "arm")
+
+
+@pytest.fixture
+def offered(package: Path):
+    """Return the labels that match what is typed, where a text replaces another one; the bar is the cursor."""
+
+    def labels(old: str, new: str, name: str = "urdf/arm.urdf.xacro", text: str = ROBOT) -> list[str]:
+        text = text.replace(old, new, 1) if old else text
+        offset = text.index("|")
+        text, file = text.replace("|", "", 1), package / name
+        project = Workspace([package])
+        project.index.refresh()
+        texts = {file: text}
+        parts = PartNames(project, texts, file)
+        parts.read()
+        found = complete(Document(project, texts, file, text), offset, project.names(file, texts), parts)
+        assert len({item.label for item in found}) == len(found)
+        return [item.label for item in found if item.label.startswith(text[item.start : offset])]
+
+    return labels
+
+
+def test_links_and_joints_of_macros_are_offered_by_their_expanded_names(offered):
+    assert offered("<!-- here -->", '<joint name="a" type="fixed"><parent link="|"/></joint>') == ["base", "left_wheel"]
+    assert offered("<!-- here -->", '<gazebo reference="left|"/>') == ["left_wheel", "left_wheel_joint"]
+    motors = '<ros2_control name="a" type="system"><joint name="|"/></ros2_control>'
+    assert offered("<!-- here -->", motors) == ["left_wheel_joint"]
+
+
+def test_a_text_that_cannot_be_expanded_has_the_names_of_the_saved_file(offered):
+    assert "left_wheel" in offered("<!-- here -->", '<joint name="a" type="fixed"><child link="|')
+
+
+def test_in_a_macro_names_are_offered_as_they_are_written(offered):
+    joint = '<joint name="a" type="fixed"><parent link="|"/></joint>'
+    assert offered("<!-- in macro -->", joint)[0] == "${side}_wheel"
+
+
+def test_an_expression_offers_parameters_first_then_properties_in_scope(offered):
+    place = '<origin xyz="${|}"/>'
+    assert offered("<!-- in macro -->", place)[:4] == ["side", "width", "inner", "radius"]
+    outside = offered("<!-- here -->", place)
+    assert "inner" not in outside
+    assert "side" not in outside
+    assert outside[0] == "radius"
+
+
+def test_an_expression_offers_the_functions_that_xacro_has(offered):
+    assert offered("<!-- here -->", '<origin xyz="${xacro.lo|}"/>') == ["xacro.load_yaml"]
+    names = global_names(Inputs("a.xacro", {}).session())
+    assert {*FUNCTIONS} <= {*names}
+    assert {name.removeprefix("xacro.") for name in XACRO_FUNCTIONS} == {*names["xacro"].values}
+
+
+def test_the_keys_of_a_yaml_file_follow_its_property(offered):
+    assert offered("<!-- here -->", "<origin xyz=\"${sizes['|']}\"/>") == ["base", "wheel"]
+    assert offered("<!-- here -->", "<origin xyz=\"${sizes['base']['m|']}\"/>") == ["mass", "mesh"]
+    assert offered("<!-- here -->", '<origin xyz="${sizes.base.|}"/>') == ["mass", "mesh"]
+
+
+def test_a_block_is_inserted_by_the_name_of_its_parameter(offered):
+    assert offered('<xacro:insert_block name="place"/>', '<xacro:insert_block name="|"/>') == ["place", "more"]
+
+
+def test_parameters_without_a_default_come_first(offered):
+    assert offered('<xacro:wheel side="left">', "<xacro:wheel |>") == ["side", "width"]
+
+
+def test_an_element_that_may_occur_once_is_offered_once(offered):
+    joint = '<joint name="a" type="fixed"><parent link="base"/><|</joint>'
+    assert offered("<!-- here -->", joint)[0] == "child"
+    assert "parent" not in offered("<!-- here -->", joint)
+
+
+def test_required_attributes_come_first(offered):
+    place = '<joint name="a" type="revolute"><limit |/></joint>'
+    assert offered("<!-- here -->", place)[:2] == ["effort", "velocity"]
+
+
+def test_files_that_fit_the_element_come_first(offered):
+    place = '<link name="b"><visual><geometry><mesh filename="package://arm/meshes/|"/>'
+    assert offered("<!-- here -->", place) == ["base.stl", "about.txt"]
+
+
+def test_hardware_offers_the_plugins_of_the_workspace_and_the_parameters_that_their_sources_read(offered):
+    place = '<ros2_control name="a" type="system"><hardware><plugin>{}</plugin>{}</hardware></ros2_control>'
+    assert offered("<!-- here -->", place.format("|", ""))[:2] == ["arm/Motors", "mock_components/GenericSystem"]
+    assert offered("<!-- here -->", place.format("arm/Motors", '<param name="|">1</param>')) == ["serial_port", "baud"]
+    mock = place.format("mock_components/GenericSystem", '<param name="calc|">true</param>')
+    assert offered("<!-- here -->", mock) == ["calculate_dynamics"]
+
+
+def test_interfaces_that_a_joint_has_are_left_out(offered):
+    place = (
+        '<ros2_control name="a" type="|"><joint name="b"><state_interface name="position"/>'
+        '<state_interface name=""/></joint></ros2_control>'
+    )
+    assert offered("<!-- here -->", place) == ["system", "actuator", "sensor"]
+    place = place.replace("|", "").replace('name=""', 'name="|"')
+    assert offered("<!-- here -->", place)[:2] == ["velocity", "effort"]
+
+
+def test_plugins_of_simulators_have_their_parameters(offered):
+    place = "<gazebo><plugin filename='libgazebo_ros_diff_drive.so' name='drive'>{}</plugin></gazebo>"
+    assert offered("<!-- here -->", place.format("<wheel_|")) == ["wheel_separation", "wheel_diameter"]
+    assert offered("<!-- here -->", place.format("<left_joint>|</left_joint>")) == ["left_wheel_joint"]
+    assert offered("<!-- here -->", place.format("<publish_odom>|</publish_odom>")) == ["true", "false"]
+
+
+def test_a_plugin_of_gz_has_a_library_and_a_class(offered):
+    world = '<sdf version="1.9"><world name="w"><plugin {}></plugin></world></sdf>'
+
+    def in_world(attributes: str) -> list[str]:
+        return offered("", "", "worlds/a.sdf", world.format(attributes))
+
+    assert in_world('filename="gz-sim-diff|"') == ["gz-sim-diff-drive-system"]
+    assert in_world('filename="gz-sim-imu-system" name="|"')[0] == "gz::sim::systems::Imu"
+    assert in_world('name="gz::sim::systems::Imu" filename="|"')[0] == "gz-sim-imu-system"
+    assert in_world('filename="ignition-gazebo-im|"') == ["ignition-gazebo-imu-system"]
+
+
+def test_types_of_sensors_and_choices_are_offered_in_worlds(offered):
+    world = '<sdf version="1.9"><world name="w"><model name="m"><link name="l">{}</link></model></world></sdf>'
+    assert offered("", "", "a.sdf", world.format('<sensor name="s" type="gpu_l|">')) == ["gpu_lidar"]
+    assert "directional" in offered("", "", "a.sdf", world.format('<light name="s" type="|">'))
+
+
+def test_the_tables_have_what_the_rules_know():
+    for path, tags in CHILDREN.items():
+        rule = DESCRIPTION
+        for tag in path.split("/"):
+            rule = rule.child_rules.get(tag) or rule
+        if path.startswith("ros2_control") and rule.tag == path.rpartition("/")[2]:
+            assert {*rule.child_rules} <= {*tags}
+    assert {*extensions(PLUGINS)} <= {*simulator_plugins()}
+    assert all(
+        child.text is not None or child.children
+        for plugin in simulator_plugins().values()
+        for child in plugin.rule.children
+    )

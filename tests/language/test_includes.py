@@ -1,0 +1,84 @@
+"""Which description includes which file, where several files have the same name."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from linkwright.language.includes import IncludeIndex, real
+from linkwright.lint.inclusions import Inclusion, inclusions_in
+
+WHEEL = '<robot xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:macro name="wheel"/></robot>'
+
+
+def write(folder: Path, **files: str) -> None:
+    """Write a package with files in its folder ``urdf``."""
+    (folder / "urdf").mkdir(parents=True)
+    (folder / "package.xml").write_text(f"<package><name>{folder.name}</name></package>")
+    for name, text in files.items():
+        (folder / "urdf" / f"{name}.xacro").write_text(text)
+
+
+def including(filename: str) -> str:
+    return f'<robot name="r"><xacro:include filename="{filename}"/><link name="base"/></robot>'
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    write(tmp_path / "rover", robot=including("$(find rover)/urdf/wheel.xacro"), wheel=WHEEL)
+    write(tmp_path / "cart", robot=including("wheel.xacro"), wheel=WHEEL)
+    write(tmp_path / "tool", robot=including("$(find other)/urdf/wheel.xacro"))
+    return real(tmp_path)
+
+
+@pytest.fixture
+def index(folder: Path) -> IncludeIndex:
+    found = IncludeIndex([folder])
+    found.refresh()
+    return found
+
+
+def names(folder: Path, files: list[Path]) -> list[str]:
+    return sorted(str(file.relative_to(folder)) for file in files)
+
+
+@pytest.mark.parametrize("package", ["rover", "cart"])
+def test_a_file_is_included_by_its_own_robot_alone(folder, index, package):
+    file = folder / package / "urdf" / "wheel.xacro"
+    assert names(folder, index.entries(file, {})) == [f"{package}/urdf/robot.xacro"]
+    assert names(folder, index.related(file, {})) == [f"{package}/urdf/robot.xacro", f"{package}/urdf/wheel.xacro"]
+
+
+def test_a_package_that_is_not_known_is_none_of_the_known(folder, index):
+    file = folder / "tool" / "urdf" / "robot.xacro"
+    assert index.related(file, {}) == [file]
+    installed = Path("/opt/other/urdf/wheel.xacro")
+    assert index.entries(installed, {installed: WHEEL}) == [file]
+
+
+def test_a_file_that_is_installed_elsewhere_is_found_by_its_name(folder, index):
+    text = including("$(find rover)/description/wheel.xacro")  # CMakeLists.txt may install urdf/ there
+    main = folder / "rover" / "urdf" / "robot.xacro"
+    wheel = folder / "rover" / "urdf" / "wheel.xacro"
+    assert index.entries(wheel, {main: text}) == [main]
+
+
+def test_only_what_no_file_includes_is_a_root(folder, index):
+    assert [file.name for file in index.roots({})] == ["robot.xacro"] * 3
+
+
+@pytest.mark.parametrize(
+    ("filename", "inclusion"),
+    [
+        ("$(find a_b)/urdf/c.xacro", Inclusion("a_b", "urdf/c.xacro")),
+        ("../c.xacro", Inclusion("", "../c.xacro")),
+        ("$(arg kind)/c.xacro", Inclusion("", "big/c.xacro", r"[^/]*/c\.xacro")),
+        ("$(find $(arg kind))/c.xacro", Inclusion("big", "c.xacro", r"c\.xacro")),
+        ("${folder}/c.xacro", Inclusion("", "${folder}/c.xacro", r"[^/]*/c\.xacro")),
+    ],
+)
+def test_an_include_is_read_without_an_expansion(filename, inclusion):
+    text = f'<robot><xacro:arg name="kind" default="big"/><xacro:include filename="{filename}"/></robot>'
+    assert [*inclusions_in(text)] == [inclusion]
+    assert inclusion.name == "c.xacro"

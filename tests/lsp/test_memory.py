@@ -1,0 +1,31 @@
+"""The memory of a server that works for a long time; ``benchmarks/soak_editor.py`` does this for an hour."""
+
+from __future__ import annotations
+
+import psutil
+import pytest
+
+from tests.lsp.conftest import MAIN
+
+FILE = "urdf/arm.urdf.xacro"
+
+
+async def typed(editor, first: int, last: int) -> None:
+    """Call macros that do not exist, one name after the other."""
+    for number in range(first, last):
+        editor.change(FILE, MAIN.replace("xacro:bar", f"xacro:bar{number}") + f"<!-- {number} -->\n" * 200)
+        if number % 5 == 0:
+            await editor.until(FILE, "XAC401")
+    editor.change(FILE, MAIN)
+    await editor.until(FILE)
+
+
+@pytest.mark.slow
+async def test_the_memory_does_not_grow_with_the_number_of_edits(editor):
+    editor.open(FILE)
+    await editor.until(FILE)
+    (server,) = psutil.Process().children()
+    await typed(editor, 0, 300)
+    before = server.memory_info().rss
+    await typed(editor, 300, 1500)
+    assert (server.memory_info().rss - before) / 1e6 < 10

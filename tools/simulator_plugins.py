@@ -1,0 +1,114 @@
+"""Write the table of the plugins of simulators and their parameters, for the language server.
+
+Names, types and defaults are those of the classes that simulate the plugins. Importing these classes takes too long for
+an editor, so they are recorded. The words are in ``simulator_plugins.toml``.
+
+Usage: python tools/simulator_plugins.py [--check]
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+import sys
+from collections.abc import Iterator
+from dataclasses import MISSING, fields
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+from linkwright.geometry.single import Vector3
+from linkwright.loading.extensions import extensions
+from linkwright.simulation.plugins.parameters import _types
+from linkwright.simulation.plugins.registry import PLUGINS, plugin_class
+
+ROOT = Path(__file__).resolve().parent.parent
+TEXTS = ROOT / "tools" / "simulator_plugins.toml"
+TABLE = ROOT / "src" / "linkwright" / "language" / "simulator_plugins.json"
+
+tomllib: Any = import_module("tomllib" if sys.version_info >= (3, 11) else "tomli")
+
+_TYPES = {
+    str: "str",
+    float: "float",
+    float | None: "float",
+    int: "int",
+    bool: "bool",
+    bool | None: "bool",
+    Vector3: "vector",
+    Vector3 | None: "vector",
+    tuple[str, ...]: "str",
+    tuple[float, ...]: "float",
+}
+_LISTS = (tuple[str, ...], tuple[float, ...])
+_GZ_SYSTEM = re.compile(r"gz-sim-(.+)-system")
+
+
+def _default(value: Any) -> str | None:
+    if value is MISSING or value is None or value == () or value == "":
+        return None
+    if isinstance(value, tuple):
+        return " ".join(str(_default(item)) for item in value)
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, float):
+        return None if math.isnan(value) or math.isinf(value) else f"{value:g}"
+    return str(value)
+
+
+def _parameters(library: str, texts: Any) -> Iterator[dict[str, Any]]:
+    meanings, given = texts["parameters"], extensions(PLUGINS).get(library)
+    cls = None if given is None else plugin_class(library)
+    table: Any = getattr(cls, "PARAMETERS", None)
+    types = {} if table is None else _types(table)
+    for field in () if table is None else fields(table):
+        meaning, _, unit = meanings[field.name].partition(" | ")
+        known = {"name": field.name, "type": _TYPES[types[field.name]], "meaning": meaning, "unit": unit}
+        default = _default(field.default)
+        yield (
+            known
+            | ({} if default is None else {"default": default})
+            | ({"many": True} if types[field.name] in _LISTS else {})
+            | ({"required": True} if field.default is MISSING else {})
+        )
+    for name, kind in texts["more"].get(library, {}).items():
+        meaning, _, unit = meanings[name].partition(" | ")
+        yield {"name": name, "type": kind, "meaning": meaning, "unit": unit}
+
+
+def _class_of(library: str, texts: Any) -> str:
+    system = _GZ_SYSTEM.fullmatch(library)
+    derived = "" if system is None else "gz::sim::systems::" + system[1].title().replace("-", "")
+    return str(texts["classes"].get(library, derived))
+
+
+def table() -> str:
+    """Return the text of the table."""
+    texts = tomllib.loads(TEXTS.read_text(encoding="utf-8"))
+    missing = {*extensions(PLUGINS)} - {*texts["libraries"]}
+    if missing:
+        raise SystemExit(f"{TEXTS.name} has no words about {', '.join(sorted(missing))}")
+    lines = []
+    for library, about in sorted(texts["libraries"].items()):
+        entry: dict[str, Any] = {"about": about, "class": _class_of(library, texts)}
+        parameters = ",\n".join("   " + json.dumps(each, ensure_ascii=False) for each in _parameters(library, texts))
+        inside = f'{json.dumps(entry, ensure_ascii=False)[:-1]}, "parameters": [\n{parameters}\n  ]}}'
+        lines.append(f" {json.dumps(library)}: {inside}")
+    return "{\n" + ",\n".join(lines) + "\n}\n"
+
+
+def main(words: list[str]) -> int:
+    """Write the table, or check it, and return the exit status."""
+    text = table()
+    if words == ["--check"]:
+        if TABLE.read_text(encoding="utf-8") == text:
+            return 0
+        print(f"{TABLE.relative_to(ROOT)} is stale: run `python tools/simulator_plugins.py`", file=sys.stderr)
+        return 1
+    TABLE.write_text(text, encoding="utf-8")
+    return 0
+
+
+if __name__ == "__main__":
+    raise SystemExit(main(sys.argv[1:]))
