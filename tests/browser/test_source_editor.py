@@ -403,3 +403,30 @@ def test_a_rename_shows_what_changes_and_what_stays_before_it_is_applied(start, 
     name.press("Enter")
     page.get_by_text("'chassis' is not renamed: two links would have the same name").wait_for()
     assert preview.count() == 0
+
+
+def test_values_meanings_and_colours_are_shown_beside_the_text(start, open_page, file):
+    leg = file.parent / "leg.xacro"
+    text_of_leg = LEG.replace("0.1 0.1 0.6", "${2 * 0.05} 0.1 0.6").replace(
+        "</visual>", '<material name="m"><color rgba="0.2 0.6 1 0.5"/></material></visual>'
+    )
+    leg.write_text(text_of_leg)
+    page = open_page(start("view", str(file)))
+    text = open_editor(page)
+    go_to(text, 4, 9)
+    text.press("F12")
+    hint = page.locator(".cm-inlay-hint")
+    hint.first.wait_for()
+    assert hint.all_inner_texts() == ["= left", "= 0.1 0.1 0.6", "= left_joint", "= left"]
+    assert page.locator(".cm-token-macro.cm-token-definition").inner_text() == "leg"
+    assert page.locator(".cm-color > i").evaluate("each => each.style.background") == "rgba(51, 153, 255, 0.5)"
+
+    go_to(text, 3)
+    text.press("Control+.")
+    choose(page, "Choose the colour…")
+    field = page.locator("input[type=color]")
+    field.evaluate("each => { each.value = '#ff0000'; each.dispatchEvent(new Event('change')); }")
+    shows(page, 'rgba="1 0 0 0.5"')
+    until(page, f"{EDITOR}.scene === 'shown' && document.activeElement.matches('.cm-content')")
+    assert leg.read_text() == text_of_leg
+    assert violations(page, ".source-panel") == []

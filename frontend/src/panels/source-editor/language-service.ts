@@ -7,6 +7,7 @@ import { Signal } from "../../signal";
 import { ACTION_CAPABILITIES } from "./code-actions";
 import type { Documents, ServerFinding } from "./documents";
 import { languageId } from "./languages";
+import { MEANING_CAPABILITIES, meanings } from "./meanings";
 import { fitsMessage } from "./message-size";
 import { pathOf } from "./server-places";
 import { safeHtml } from "./safe-html";
@@ -152,6 +153,7 @@ export class LanguageService {
       extensions: [
         { clientCapabilities: { textDocument: { publishDiagnostics: { versionSupport: true, codeDescriptionSupport: true } } } },
         { clientCapabilities: ACTION_CAPABILITIES },
+        { clientCapabilities: MEANING_CAPABILITIES },
       ],
     };
     this.client = new PatientClient(this.config);
@@ -198,6 +200,7 @@ export class LanguageService {
       this.client.plugin(document.uri, languageId(document.path)),
       serverCompletion({ override: true }),
       hoverTooltips(),
+      meanings(this.client, document.uri),
       ViewPlugin.define(() => new Synchronizer(this.client)),
       keymap.of([{ key: "Shift-Alt-f", run: formatDocument, preventDefault: true }]),
     ];

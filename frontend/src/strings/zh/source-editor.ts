@@ -15,6 +15,7 @@ export const sourceEditor = {
   actions: "操作",
   actionsHint: "光标处的修复和重构（Ctrl+.）",
   fix: "修复…",
+  chooseColor: "选择颜色…",
   noActions: "这里没有修复或重构。",
   acted: (title: string, count: number): string => (count === 0 ? `没有需要修改的内容：${title}` : `${title}：已修改 ${count} 个文件，尚未保存`),
   noDefinition: "找不到定义。",
