@@ -430,3 +430,24 @@ def test_values_meanings_and_colours_are_shown_beside_the_text(start, open_page,
     until(page, f"{EDITOR}.scene === 'shown' && document.activeElement.matches('.cm-content')")
     assert leg.read_text() == text_of_leg
     assert violations(page, ".source-panel") == []
+
+
+def test_names_are_searched_in_the_file_and_in_the_workspace(start, open_page, file):
+    page = open_page(start("view", str(file)))
+    text = open_editor(page)
+    text.press("Control+Shift+O")
+    search = page.get_by_role("combobox", name="Name")
+    names = page.locator(".symbol-search [role=option]")
+    names.filter(has_text="base").first.wait_for()
+    assert names.all_inner_texts() == ["robot r", "xacro:include leg.xacro", "link base", "xacro:leg left"]
+    search.fill("bas")
+    becomes(names.count, 1)
+    assert violations(page, ".symbol-search") == []
+    page.keyboard.press("Control+Shift+O")
+    search.fill("name")
+    names.filter(has_text="${name}_joint").first.wait_for()
+    search.fill("leg")
+    names.filter(has_text="leg.xacro:2").first.wait_for()
+    page.keyboard.press("Enter")
+    until(page, f"{EDITOR}.file.endsWith('leg.xacro') && {EDITOR}.cursor === 2")
+    until(page, "document.activeElement.matches('.cm-content')")

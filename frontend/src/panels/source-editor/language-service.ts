@@ -7,8 +7,8 @@ import { Signal } from "../../signal";
 import { ACTION_CAPABILITIES } from "./code-actions";
 import type { Documents, ServerFinding } from "./documents";
 import { languageId } from "./languages";
-import { MEANING_CAPABILITIES, meanings } from "./meanings";
 import { fitsMessage } from "./message-size";
+import { MEANING_CAPABILITIES, meanings } from "./meanings";
 import { pathOf } from "./server-places";
 import { safeHtml } from "./safe-html";
 import type { SourceDocument } from "./source-document";
@@ -152,6 +152,7 @@ export class LanguageService {
       },
       extensions: [
         { clientCapabilities: { textDocument: { publishDiagnostics: { versionSupport: true, codeDescriptionSupport: true } } } },
+        { clientCapabilities: { textDocument: { documentSymbol: { hierarchicalDocumentSymbolSupport: true } } } },
         { clientCapabilities: ACTION_CAPABILITIES },
         { clientCapabilities: MEANING_CAPABILITIES },
       ],
