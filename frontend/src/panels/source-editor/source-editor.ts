@@ -23,6 +23,7 @@ import { PlaceList } from "./place-list";
 import { renameAtCursor } from "./rename";
 import type { SourceDocument } from "./source-document";
 import { SourceFiles } from "./source-files";
+import { SymbolSearch } from "./symbol-search";
 import { messageOf } from "./workspace-edit";
 import "../../styles/source-editor.css";
 
@@ -65,16 +66,18 @@ export class SourceEditor implements Documents {
     const { connection } = session;
     const tell = (message: string): void => this.tell(message);
     this.service = new LanguageService(connection, this);
+    this.service.message.on(tell);
     this.actions = new CodeActions(this.service.client, this, (uri) => this.found.get(uri) ?? [], tell);
     this.navigation = new Navigation(this.service.client, this, this.places, tell);
     this.live = new LiveTexts(connection, this, () => this.changed.emit());
-    this.save = button(words.saveHint, () => this.files.saveAll(), "tool framed", icon("save"), words.save);
+    this.save = button(words.saveHint, () => this.files.saveAll(), "tool framed editor-save", icon("save"), words.save);
     this.list = button(words.findingsHint, () => openLintPanel(this.view), "tool framed", words.findings(0));
     this.tree = new FileTree(connection, (path) => void this.show(path), (path) => void this.createAndShow(path));
     const files = button(words.filesHint, () => this.tree.toggle(), "tool framed", icon("tree"), words.files);
     const format = button(words.formatHint, () => formatDocument(this.view), "tool framed", words.format);
     const actions = button(words.actionsHint, () => this.actions.open(this.view), "tool framed", icon("bulb"), words.actions);
-    const buttons = [files, this.save, actions, format, this.list];
+    const symbols = button(words.symbolsHint, () => this.searchSymbols(), "tool framed", words.symbols);
+    const buttons = [files, symbols, this.save, actions, format, this.list];
     const bar = h("div", { class: "editor-bar", role: "toolbar", aria: { label: words.label } }, ...buttons, this.scene, this.status);
     this.tree.shownChanged.on((isShown) => files.setAttribute("aria-expanded", String(isShown)));
     this.view = new EditorView({ dispatchTransactions: (transactions, view) => this.dispatch(transactions, view) });
@@ -202,6 +205,12 @@ export class SourceEditor implements Documents {
     this.live.changed();
   }
 
+  private searchSymbols(): boolean {
+    const search = new SymbolSearch(this.service.client, this, (location) => void this.navigation.open(location));
+    void search.open().catch((error: unknown) => this.tell(messageOf(error)));
+    return true;
+  }
+
   private async createAndShow(path: string): Promise<void> {
     try {
       await this.create(path);
@@ -215,11 +224,12 @@ export class SourceEditor implements Documents {
     const { navigation, actions } = this;
     const keys = keymap.of([
       { key: "Mod-s", run: () => (this.files.saveAll(), true), preventDefault: true },
-      { key: "F2", run: (view) => renameAtCursor(view, this, (message) => this.tell(message)), preventDefault: true },
+      { key: "F2", run: (view) => renameAtCursor(view, this.service, this, (message) => this.tell(message)), preventDefault: true },
       { key: "F12", run: (view) => navigation.goToDefinition(view), preventDefault: true },
       { key: "Shift-F12", run: (view) => navigation.listReferences(view), preventDefault: true },
       { key: "Alt-ArrowLeft", mac: "Ctrl--", run: () => navigation.goBack(), preventDefault: true },
       { key: "Alt-ArrowRight", mac: "Ctrl-Shift--", run: () => navigation.goForward(), preventDefault: true },
+      { key: "Mod-Shift-o", run: () => this.searchSymbols(), preventDefault: true },
       { key: "Mod-.", run: (view) => actions.open(view), preventDefault: true },
       { key: "F8", run: nextDiagnostic, shift: previousDiagnostic, preventDefault: true },
       { key: "Mod-i", run: selectParentSyntax, preventDefault: true },
