@@ -20,8 +20,6 @@ import warnings
 from dataclasses import dataclass
 from typing import Any
 
-from linkwright.xmltree.nodes import seldom_collected
-
 LARGEST_REQUEST = 2**17
 """Bytes of a request at most, which is one datagram: words and environment."""
 NUMBER = struct.Struct("q")
@@ -140,7 +138,6 @@ def main() -> None:
             importlib.import_module(walk_package.name)
     gc.collect()
     gc.freeze()  # Looking for garbage would write to memory that is shared, and so copy it.
-    seldom_collected.ages_objects = False
     control = socket.socket(fileno=int(sys.argv[1]))
     if request := _serve(control):
         _become(request)

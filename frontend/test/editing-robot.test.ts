@@ -99,7 +99,7 @@ describe("editing", () => {
     editing.hold();
     told(part());
     editing.move({ xyz: [0, 0, 1.1], rpy: [0, 0, 0] });
-    connection.message.emit({ type: "edit_written", files: ["/r.urdf"], refusal: null });
+    connection.message.emit({ type: "edit_written", files: ["/r.urdf"], refusal: null, is_saved: true });
     expect(editing.draft).not.toBeNull();
     expect(editing.isOpen).toBe(false);
     connection.message.emit({ type: "robot_scene", display: "d", revision: 2, name: "r", links: [], joints: [] });
@@ -124,7 +124,7 @@ describe("editing", () => {
     told(part());
     editing.move({ xyz: [0, 0, 1.1], rpy: [0, 0, 0] });
     const refusal = { code: "EDIT107", severity: "error" as const, message: "changed", file: null, line: null, column: null, end_line: null, end_column: null, excerpt: "", notes: [], hints: [] };
-    connection.message.emit({ type: "edit_written", files: [], refusal });
+    connection.message.emit({ type: "edit_written", files: [], refusal, is_saved: false });
     expect(editing.isOpen).toBe(true);
     expect(editing.refusal).toBe(refusal);
   });

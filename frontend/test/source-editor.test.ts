@@ -3,6 +3,7 @@ import { describe, expect, it } from "vitest";
 import { smallestChange, textOf } from "../src/panels/source-editor/document-changes";
 import { indentation, languageId } from "../src/panels/source-editor/languages";
 import { fitsMessage } from "../src/panels/source-editor/message-size";
+import { colorOf, hexOf, tokenRanges } from "../src/panels/source-editor/server-meanings";
 import { pathOf, positionIn } from "../src/panels/source-editor/server-places";
 import { SourceDocument } from "../src/panels/source-editor/source-document";
 
@@ -84,8 +85,31 @@ describe("a document", () => {
   it("finds places of the file in the edited text", () => {
     const document = documentOf();
     type(document, "<robot>\n", "<robot>\n\n\n");
-    const before = TEXT.indexOf("'b'");
-    expect(document.placeNow(before)).toBe(before + 2);
+    const before = TEXT.indexOf("  <link name='b'");
+    expect([document.lineNow(3), document.lineThen(before + 2)]).toEqual([before + 2, 3]);
+  });
+
+  it("finds places of the text that the scene shows, which may be older or newer than the file", () => {
+    const document = documentOf();
+    type(document, "<robot>\n", "<robot>\n\n\n");
+    document.beginShowing(1);
+    document.endShowing(1, true);
+    expect(document.lineThen(document.lineNow(5))).toBe(5);
+    type(document, "<robot>\n", "<robot>\n\n");
+    document.beginShowing(2);
+    document.endShowing(2, false); // it has errors
+    expect(document.state.doc.lineAt(document.lineNow(5)).number).toBe(6);
+  });
+
+  it("takes over an edit of the robot beside what was typed since, and not in the same place", () => {
+    const document = documentOf();
+    type(document, "'a'", "'c'");
+    document.beginShowing(1);
+    type(document, "'c'", "'d'");
+    apply(document, document.robotEdited(TEXT.replace("'a'", "'c'").replace("'b'", "'moved'"), 1));
+    expect(textIn(document)).toBe("<robot>\n  <link name='d'/>\n  <link name='moved'/>\n</robot>\n");
+    expect(document.isUnsaved).toBe(true);
+    expect(document.robotEdited(TEXT.replace("'a'", "'e'"), 1)).toBeNull();
   });
 });
 
@@ -116,4 +140,19 @@ it("positions beyond a line or text are its end", () => {
 
 it("a message with a text has at most a megabyte", () => {
   expect([fitsMessage("a".repeat(900_000)), fitsMessage("中".repeat(300_000)), fitsMessage("中".repeat(400_000)), fitsMessage('"'.repeat(600_000))]).toEqual([true, true, false, false]);
+});
+
+it("semantic tokens are relative to the token before", () => {
+  const legend = { tokenTypes: ["macro", "variable"], tokenModifiers: ["definition"] };
+  const ranges = tokenRanges(textOf("one two\n  three"), [0, 0, 3, 0, 1, 0, 4, 3, 1, 0, 1, 2, 5, 0, 0], legend);
+  expect(ranges).toEqual([
+    { from: 0, to: 3, names: ["macro", "definition"] },
+    { from: 4, to: 7, names: ["variable"] },
+    { from: 10, to: 15, names: ["macro"] },
+  ]);
+});
+
+it("colours are written as the browser's field has them, and read back", () => {
+  expect(hexOf({ red: 0.2, green: 0.6, blue: 1, alpha: 0.5 })).toBe("#3399ff");
+  expect(colorOf("#3399ff")).toEqual({ red: 0.2, green: 0.6, blue: 1, alpha: 1 });
 });

@@ -145,6 +145,7 @@ def test_findings_completion_hover_definition_and_rename(start, open_page, file)
     name = page.get_by_role("textbox", name="New name")
     name.fill("limb")
     name.press("Enter")
+    page.get_by_role("dialog", name="Rename leg to limb").get_by_role("button", name="Rename", exact=True).click()
     page.get_by_text("Renamed to limb in 2 files, not saved yet").wait_for()
     page.get_by_role("button", name="Save 2 files").click()
     becomes(file.read_text, ROBOT.replace("xacro:leg", "xacro:limb"))
@@ -162,7 +163,7 @@ def test_findings_completion_hover_definition_and_rename(start, open_page, file)
     page.locator(".cm-lintRange").first.wait_for()
     text.press("Control+Home")
     text.press("F8")
-    until(page, f"{EDITOR}.cursor === 4")
+    until(page, f"{EDITOR}.cursor === 4 && {EDITOR}.scene === 'errors'")
     page.locator(".cm-line").nth(1).get_by_text("macro", exact=False).first.hover()
     page.locator(".cm-lsp-hover-tooltip").wait_for()
 
@@ -301,3 +302,152 @@ def test_definitions_and_references_lead_through_files_and_back(start, open_page
     go_to(text, 1)
     text.press("F12")
     page.get_by_text("There is no definition of this.").wait_for()
+
+
+def test_the_scene_shows_what_is_typed_and_the_last_good_robot_while_it_has_errors(start, open_page, file):
+    program = start("view", str(file))
+    page = open_page(program)
+    text = open_editor(page)
+    go_to(text, 3, 10)
+    until(page, "lw.description.focus?.name === 'base'")  # the link at the cursor is selected in the scene
+    text.press("End")
+    page.keyboard.insert_text('\n  <xacro:leg name="right"/>')
+    until(page, f"lw.frames.right !== undefined && {EDITOR}.scene === 'shown'")
+    page.get_by_text("The scene shows the unsaved text").wait_for()
+    until(page, "lw.description.links === 3")
+    page.keyboard.insert_text("<link name=")
+    until(page, f"{EDITOR}.scene === 'errors'")
+    page.get_by_text("The scene shows the last robot without errors").wait_for()
+    assert page.evaluate("window.linkwright.frames.right !== undefined")
+    shows(page, '<xacro:leg name="right"/><link name=')  # the cursor has stayed
+    assert file.read_text() == ROBOT
+    assert "error[" not in "".join(program.output)
+
+    for _ in range(len("<link name=")):
+        text.press("Backspace")
+    until(page, f"{EDITOR}.scene === 'shown'")
+    text.press("Control+s")
+    becomes(lambda: "right" in file.read_text(), True)
+    until(page, f"{EDITOR}.scene === null && lw.frames.right !== undefined")
+    go_to(text, 4)
+    text.press("Shift+ArrowDown")
+    text.press("Delete")
+    until(page, "lw.frames.right === undefined")
+    assert "right" in file.read_text()
+
+
+def test_an_edit_in_the_scene_changes_the_unsaved_text_and_is_undone_with_it(start, open_page, file):
+    page = open_page(start("view", str(file)))
+    text = open_editor(page)
+    go_to(text, 3)
+    text.press("End")
+    page.keyboard.insert_text(
+        '<link name="tip"/><joint name="j" type="fixed"><parent link="base"/><child link="tip"/></joint>'
+    )
+    until(page, "lw.frames.tip !== undefined")
+    page.get_by_role("tab", name="Links").click()
+    page.get_by_text("tip", exact=True).locator("visible=true").first.click()
+    page.get_by_role("button", name="Move and rotate the joint").click()
+    becomes(lambda: number(page, "xyz2").input_value(), "0")
+    type_in(page, "xyz2", "0.4")
+    page.get_by_role("button", name="Write", exact=True).click()
+    page.get_by_text("Changed in the editor, not saved yet").wait_for()
+    until(page, "Math.abs(lw.frames.tip?.position[2] - 0.4) < 1e-6")
+    assert file.read_text() == ROBOT
+    undo = page.get_by_role("button", name="Undo the last written edit")
+    undo.click()
+    until(page, "Math.abs(lw.frames.tip?.position[2]) < 1e-6")
+    page.get_by_role("button", name="Redo the edit").click()
+    until(page, "Math.abs(lw.frames.tip?.position[2] - 0.4) < 1e-6")
+
+    page.locator(".panel-tab", has_text="Source").first.click()
+    shows(page, "0.4")
+    text.click(position={"x": 30, "y": 8})
+    text.press("Control+z")
+    until(page, f"Math.abs(lw.frames.tip?.position[2]) < 1e-6 && {EDITOR}.unsaved.length === 1")
+    text.press("Control+z")
+    until(page, f"lw.frames.tip === undefined && {EDITOR}.unsaved.length === 0")
+
+
+def test_a_rename_shows_what_changes_and_what_stays_before_it_is_applied(start, open_page, file):
+    launch = file.parent / "config" / "arm.yaml"
+    launch.parent.mkdir()
+    launch.write_text("arm:\n  ros__parameters:\n    base: base\n    base_frame: base\n")
+    page = open_page(start("view", str(file)))
+    text = open_editor(page)
+    go_to(text, 3, 15)  # in the name of the link
+    text.press("F2")
+    name = page.get_by_role("textbox", name="New name")
+    name.fill("chassis")
+    name.press("Enter")
+    preview = page.get_by_role("dialog", name="Rename base to chassis")
+    preview.wait_for()
+    preview.get_by_text("4 places in 3 files will change.").wait_for()
+    preview.get_by_text("not renamed, because the file does not tell what is meant: arm.yaml:3 (base)").wait_for()
+    lines = [" ".join(line.split()) for line in preview.locator("li").all_inner_texts()]
+    assert lines[0].startswith('3 <link name="basechassis">')
+    assert violations(page, ".rename-preview") == []
+    page.keyboard.press("Escape")
+    page.get_by_text("Nothing was renamed.").wait_for()
+    until(page, f"document.activeElement.matches('.cm-content') && {EDITOR}.unsaved.length === 0")
+
+    text.press("F2")
+    name.fill("chassis")
+    name.press("Enter")
+    preview.wait_for()
+    page.keyboard.press("Enter")
+    page.get_by_text("Renamed to chassis in 3 files, not saved yet").wait_for()
+    until(page, f"document.activeElement.matches('.cm-content') && {EDITOR}.unsaved.length === 3")
+    text.press("F2")
+    name.fill("left")
+    name.press("Enter")
+    page.get_by_text("'chassis' is not renamed: two links would have the same name").wait_for()
+    assert preview.count() == 0
+
+
+def test_values_meanings_and_colours_are_shown_beside_the_text(start, open_page, file):
+    leg = file.parent / "leg.xacro"
+    text_of_leg = LEG.replace("0.1 0.1 0.6", "${2 * 0.05} 0.1 0.6").replace(
+        "</visual>", '<material name="m"><color rgba="0.2 0.6 1 0.5"/></material></visual>'
+    )
+    leg.write_text(text_of_leg)
+    page = open_page(start("view", str(file)))
+    text = open_editor(page)
+    go_to(text, 4, 9)
+    text.press("F12")
+    hint = page.locator(".cm-inlay-hint")
+    hint.first.wait_for()
+    assert hint.all_inner_texts() == ["= left", "= 0.1 0.1 0.6", "= left_joint", "= left"]
+    assert page.locator(".cm-token-macro.cm-token-definition").inner_text() == "leg"
+    assert page.locator(".cm-color > i").evaluate("each => each.style.background") == "rgba(51, 153, 255, 0.5)"
+
+    go_to(text, 3)
+    text.press("Control+.")
+    choose(page, "Choose the colour…")
+    field = page.locator("input[type=color]")
+    field.evaluate("each => { each.value = '#ff0000'; each.dispatchEvent(new Event('change')); }")
+    shows(page, 'rgba="1 0 0 0.5"')
+    until(page, f"{EDITOR}.scene === 'shown' && document.activeElement.matches('.cm-content')")
+    assert leg.read_text() == text_of_leg
+    assert violations(page, ".source-panel") == []
+
+
+def test_names_are_searched_in_the_file_and_in_the_workspace(start, open_page, file):
+    page = open_page(start("view", str(file)))
+    text = open_editor(page)
+    text.press("Control+Shift+O")
+    search = page.get_by_role("combobox", name="Name")
+    names = page.locator(".symbol-search [role=option]")
+    names.filter(has_text="base").first.wait_for()
+    assert names.all_inner_texts() == ["robot r", "xacro:include leg.xacro", "link base", "xacro:leg left"]
+    search.fill("bas")
+    becomes(names.count, 1)
+    assert violations(page, ".symbol-search") == []
+    page.keyboard.press("Control+Shift+O")
+    search.fill("name")
+    names.filter(has_text="${name}_joint").first.wait_for()
+    search.fill("leg")
+    names.filter(has_text="leg.xacro:2").first.wait_for()
+    page.keyboard.press("Enter")
+    until(page, f"{EDITOR}.file.endsWith('leg.xacro') && {EDITOR}.cursor === 2")
+    until(page, "document.activeElement.matches('.cm-content')")

@@ -73,9 +73,9 @@ def test_only_what_no_file_includes_is_a_root(folder, index):
     [
         ("$(find a_b)/urdf/c.xacro", Inclusion("a_b", "urdf/c.xacro")),
         ("../c.xacro", Inclusion("", "../c.xacro")),
-        ("$(arg kind)/c.xacro", Inclusion("", "big/c.xacro")),
-        ("$(find $(arg kind))/c.xacro", Inclusion("big", "c.xacro")),
-        ("${folder}/c.xacro", Inclusion("", "${folder}/c.xacro")),
+        ("$(arg kind)/c.xacro", Inclusion("", "big/c.xacro", r"[^/]*/c\.xacro")),
+        ("$(find $(arg kind))/c.xacro", Inclusion("big", "c.xacro", r"c\.xacro")),
+        ("${folder}/c.xacro", Inclusion("", "${folder}/c.xacro", r"[^/]*/c\.xacro")),
     ],
 )
 def test_an_include_is_read_without_an_expansion(filename, inclusion):

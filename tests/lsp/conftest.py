@@ -126,10 +126,24 @@ def package(tmp_path: Path) -> Path:
 
 
 @asynccontextmanager
-async def connected(package: Path, capabilities: types.ClientCapabilities) -> AsyncIterator[Editor]:
-    """Start the language server for an editor with some capabilities that has opened a package."""
+async def connected(
+    package: Path,
+    capabilities: types.ClientCapabilities,
+    registrations: asyncio.Queue[types.Registration] | None = None,
+) -> AsyncIterator[Editor]:
+    """Start the language server for an editor with some capabilities that has opened a package.
+
+    Capabilities that the server registers go into the queue.
+    """
     client = LanguageClient("test", "1")
     editor = Editor(client, package)
+
+    @client.feature(types.CLIENT_REGISTER_CAPABILITY)
+    def _(asked: types.RegistrationParams) -> None:
+        for registration in asked.registrations:
+            if registrations is not None:
+                registrations.put_nowait(registration)
+
     await client.start_io(sys.executable, "-m", "linkwright", "lsp")
     await client.initialize_async(
         types.InitializeParams(capabilities, workspace_folders=[types.WorkspaceFolder(package.as_uri(), package.name)])

@@ -29,7 +29,6 @@ def asked(monkeypatch):
         unfreeze=lambda: calls.append("unfreeze"),
     )
     monkeypatch.setattr(collection, "gc", stand_in)
-    monkeypatch.setattr(seldom_collected, "ages_objects", True)
     return SimpleNamespace(calls=calls, settings=settings)
 
 
@@ -41,13 +40,6 @@ def test_what_is_new_counts_as_old_at_the_end_of_the_outermost(asked):
 
 def test_what_a_program_has_frozen_stays_so(asked):
     asked.settings.frozen = 3
-    with seldom_collected():
-        pass
-    assert asked.calls == [(50_000, 10, 10), (700, 10, 10)]
-
-
-def test_objects_do_not_age_in_a_process_that_runs_for_days(asked, monkeypatch):
-    monkeypatch.setattr(seldom_collected, "ages_objects", False)
     with seldom_collected():
         pass
     assert asked.calls == [(50_000, 10, 10), (700, 10, 10)]

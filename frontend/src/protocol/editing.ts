@@ -45,6 +45,7 @@ export interface EditPreview {
 export interface EditWritten {
   files: string[];
   refusal: DiagnosticItem | null;
+  is_saved: boolean;
   type: "edit_written";
 }
 

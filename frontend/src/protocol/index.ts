@@ -141,9 +141,12 @@ import type {
   LanguageServerEnded,
   LeaveSourceFile,
   OpenEditor,
+  ShowUnsavedText,
   SourceFile,
   SourceFileWritten,
   SourceFolder,
+  UnsavedTextEdited,
+  UnsavedTextShown,
   WriteSourceFile,
 } from "./source-editor";
 import type {
@@ -291,6 +294,8 @@ export type ServerMessage =
   | TopicList
   | TopicMessage
   | Tree
+  | UnsavedTextEdited
+  | UnsavedTextShown
   | ViewClasses
   | ViewState
   | VoiceNode
@@ -384,6 +389,7 @@ export type PageMessage =
   | SetTime
   | SetToolProperty
   | ShowPanels
+  | ShowUnsavedText
   | SpawnModel
   | StepTime
   | StopRecording

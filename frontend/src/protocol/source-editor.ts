@@ -47,6 +47,30 @@ export interface WriteSourceFile {
   type: "write_source_file";
 }
 
+/** A request to show the descriptions of the page with the unsaved text of a file that the page edits. */
+export interface ShowUnsavedText {
+  number: number;
+  path: string;
+  text: string | null;
+  type: "show_unsaved_text";
+}
+
+/** The result of `ShowUnsavedText` with this number. */
+export interface UnsavedTextShown {
+  number: number;
+  path: string;
+  outcome: "shown" | "errors" | "elsewhere";
+  type: "unsaved_text_shown";
+}
+
+/** An edit of the robot in a file with an unsaved text, which the page applies to that text. */
+export interface UnsavedTextEdited {
+  path: string;
+  base: number;
+  text: string;
+  type: "unsaved_text_edited";
+}
+
 /** A request to create an empty file, together with the folders above it. */
 export interface CreateSourceFile {
   number: number;

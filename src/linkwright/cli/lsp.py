@@ -36,7 +36,6 @@ def run(arguments: argparse.Namespace) -> int:
         raise missing_extra("CLI307", error) from None
     logging.basicConfig(stream=sys.stderr, level=logging.WARNING, format="linkwright lsp: %(message)s")
     server = make_server()
-    gc.freeze()  # the collector does not search the imported modules again
     gc.set_threshold(_GC_THRESHOLD)
     if arguments.tcp is not None:
         server.start_tcp(_LOOPBACK, arguments.tcp)

@@ -11,6 +11,7 @@ from contextlib import suppress
 from functools import cached_property
 from pathlib import Path
 
+from linkwright.descriptions.unsaved import UnsavedTexts
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Severity, display_path, has_errors, phrase
 from linkwright.diagnostics.diagnostic import TEXT_NAME, is_text
 from linkwright.loading.lean_dataclasses import dataclass
@@ -130,9 +131,13 @@ class DescriptionLibrary:
 
     The launcher stores each description that it expands. The nodes and the viewer, which only receive the text from a
     parameter or topic, can then find the location of each element in the source files.
+
+    Attributes:
+        unsaved: the unsaved texts of editors.
     """
 
     def __init__(self) -> None:
+        self.unsaved = UnsavedTexts()
         self._descriptions: OrderedDict[str, Description] = OrderedDict()
         self._finders: dict[str, PackageFinder] = {}
 

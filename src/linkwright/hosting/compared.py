@@ -127,7 +127,7 @@ class _OldDescriptions(Descriptions):
     """Descriptions whose texts differ from those of the new file, even if both files are equal."""
 
     def __init__(self, finder: PackageFinder, library: DescriptionLibrary) -> None:
-        super().__init__(finder)
+        super().__init__(finder, reads_unsaved=True)
         self._library = library
 
     def store(self, call: XacroCall, description: Description, text: str | None = None) -> str:

@@ -7,6 +7,7 @@ last valid one remains in use, and the errors are shown until the file is fixed.
 from __future__ import annotations
 
 import asyncio
+import os
 import stat
 import threading
 from collections.abc import Awaitable, Callable, Coroutine, Iterable, Sequence
@@ -18,6 +19,7 @@ from linkwright.hosting.launch_log import LaunchLog
 from linkwright.hosting.xacro_calls import Descriptions, XacroCall
 
 if TYPE_CHECKING:
+    from linkwright.descriptions.unsaved import Outcome
     from linkwright.graph import Node
     from linkwright.nodes.followed_files import ReadWorld
 
@@ -61,6 +63,7 @@ class LiveReload:
         self._running: dict[XacroCall, asyncio.Task[None]] = {}
         self._pending_reloads: set[XacroCall] = set()
         self._saved_calls: set[XacroCall] = set()
+        self._failed_calls: set[XacroCall] = set()
         self._is_started = False
         self._closed = False
 
@@ -103,6 +106,8 @@ class LiveReload:
         """Start to watch the files. An event loop must be running."""
         self._is_started = True
         self._watch_files()
+        if self.descriptions.reads_unsaved:
+            self.descriptions.library.unsaved.listen(self._reload_unsaved)
 
     def close(self) -> None:
         """Stop watching the files."""
@@ -157,6 +162,27 @@ class LiveReload:
             elif call in self._saved_calls:
                 self._start_reload(call)
 
+    async def _reload_unsaved(self, path: str) -> Outcome:
+        """Reload the descriptions that contain a file whose unsaved text has changed."""
+        concerned = [call for call in self._callbacks if self._contains(call, path)]
+        for call in concerned if not self._closed else ():
+            self._start_reload(call)
+        while tasks := [self._running[call] for call in concerned if call in self._running]:
+            await asyncio.wait(tasks)
+            await asyncio.sleep(0)  # a reload that waited begins now
+        if not concerned:
+            return "elsewhere"
+        return "errors" if any(call in self._failed_calls for call in concerned) else "shown"
+
+    def _contains(self, call: XacroCall, path: str) -> bool:
+        return any(os.path.realpath(file) == path for file in self._files_of_interest(call))
+
+    def _is_unsaved(self, call: XacroCall) -> bool:
+        """Return whether a description is read with unsaved texts, whose findings are shown and not printed."""
+        return self.descriptions.reads_unsaved and any(
+            self._contains(call, path) for path in self.descriptions.library.unsaved.texts
+        )
+
     def _is_broken(self, call: XacroCall) -> bool:
         return has_errors(self._findings.get(call, ()))
 
@@ -178,7 +204,13 @@ class LiveReload:
         for attempt in range(_MISSING_ATTEMPTS):
             text, findings = await self._read(call)
             if text is not None:
+                self._failed_calls.discard(call)
                 self._apply(call, text, findings)
+                return
+            if self._is_unsaved(call):
+                self._failed_calls.add(call)
+                self.show(call, findings)
+                self._watch_files()
                 return
             all_exist = all(path.is_file() for path in self._files_of_interest(call))
             if attempt > 0 and all_exist:
@@ -186,6 +218,7 @@ class LiveReload:
             await asyncio.sleep(_RETRY_SECONDS)
             if call in self._pending_reloads:
                 return  # A newer change has already started another reload.
+        self._failed_calls.add(call)
         known_keys = [_finding_key(finding) for finding in self._findings.get(call, ())]
         if call in self._saved_calls or known_keys != [_finding_key(finding) for finding in findings]:
             self.report(call, findings)
@@ -209,6 +242,10 @@ class LiveReload:
                 apply(text)
         except LinkwrightError as error:
             findings = (*findings, *error.diagnostics)
+        if self._is_unsaved(call):
+            self.show(call, findings)
+            self._watch_files()
+            return
         verb = "repaired" if was_broken and not has_errors(findings) else "reloaded"
         self._log.info_line("launch", f"{verb} {display_path(call.path)}")
         self.report(call, findings)

@@ -98,7 +98,7 @@ class ModelView:
         self.finder = finder
         self.options = options
         self.log = log
-        self.descriptions = descriptions or Descriptions(finder)
+        self.descriptions = descriptions or Descriptions(finder, reads_unsaved=True)
         self.loop: asyncio.AbstractEventLoop | None = None
         self.ending = False
         self.is_blocking = False

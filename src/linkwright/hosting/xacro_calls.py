@@ -66,10 +66,12 @@ class Descriptions:
 
     Args:
         finder: the finder of ROS packages.
+        reads_unsaved: whether descriptions are read with the unsaved texts of editors in pages.
     """
 
-    def __init__(self, finder: PackageFinder) -> None:
+    def __init__(self, finder: PackageFinder, *, reads_unsaved: bool = False) -> None:
         self.finder = finder
+        self.reads_unsaved = reads_unsaved
         self._warnings: dict[XacroCall, tuple[Diagnostic, ...]] = {}
         self._read_ns: dict[XacroCall, int] = {}
         self._calls: dict[str, XacroCall] = {}
@@ -134,7 +136,12 @@ class Descriptions:
         try:
             xacro = None if call.path.suffix == ".sdf" else True  # SDF models are accepted too.
             description = examine(
-                call.path, arguments=dict(call.arguments), packages=self.finder, xacro=xacro, partly=True
+                call.path,
+                arguments=dict(call.arguments),
+                packages=self.finder,
+                overlay=self.library.unsaved.overlay() if self.reads_unsaved else None,
+                xacro=xacro,
+                partly=True,
             )
         except LinkwrightError as error:
             raise DescriptionError(call, error.diagnostics) from error

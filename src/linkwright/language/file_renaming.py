@@ -3,21 +3,28 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path, PurePosixPath
 from typing import NamedTuple
 
 from linkwright.diagnostics import LinkwrightError
+from linkwright.language.format import Document
+from linkwright.language.formats import format_of
 from linkwright.language.includes import real
-from linkwright.language.links import file_references
+from linkwright.language.links import FileReference, file_references
 from linkwright.language.mentions import Mention
 from linkwright.language.proof import Edit
 from linkwright.language.values import values_in
 from linkwright.language.workspace import Workspace
-from linkwright.lint.targets import XML_FILES, walk
-from linkwright.packages import enclosing_package
+from linkwright.lint.targets import XML_FILES
+from linkwright.packages.share_layout import source_of
 
 _OTHER_FILES = (".py", ".yaml", ".yml", ".rviz", "CMakeLists.txt")
+_BUILD_FILES = ("CMakeLists.txt", "setup.py")
+_SHARED = re.compile(
+    r"(?:package://|model://|\$\((?:find|find-pkg-share)\s+)(?P<package>[\w-]+)(?:\s*\))?/(?P<path>[\w./-]+)"
+)
+_WORD = re.compile(r"(?<![\w./$-])[\w.-]+(?:/[\w.-]+)*")
 _MAX_TEXT = 1_000_000
 """Characters; longer files are data and not configuration."""
 
@@ -35,7 +42,7 @@ class FileRenaming(NamedTuple):
 
 
 def rename_file(project: Workspace, texts: Mapping[Path, str], old: Path, new: Path) -> FileRenaming:
-    """Return the edits of the descriptions, worlds and launch files in XML that refer to a file.
+    """Return the edits of the descriptions, worlds, launch files, configurations and build files that refer to a file.
 
     Args:
         project: the workspace.
@@ -45,14 +52,11 @@ def rename_file(project: Workspace, texts: Mapping[Path, str], old: Path, new: P
     """
     edits: list[Edit] = []
     unchanged: list[Mention] = []
-    package = enclosing_package(old.parent)
-    folders = [package[1]] if package is not None else []
-    configurations = [real(path) for folder in folders for path in walk(folder, (*XML_FILES, ".xml", *_OTHER_FILES))[0]]
-    for file in dict.fromkeys((*project.index.files, *configurations)):
+    for file in dict.fromkeys((*project.index.files, *project.files((*XML_FILES, ".xml", *_OTHER_FILES)))):
         text = project.text(file, texts)
         if text is None or len(text) > _MAX_TEXT or old.name not in text or not project.contains(file):
             continue
-        certain = _references(project, texts, file, text, old, new) if file.name.endswith((*XML_FILES, ".xml")) else []
+        certain = _references(project, texts, file, text, old, new)
         edits += certain
         mentions = re.finditer(rf"(?<![\w.-]){re.escape(old.name)}(?![\w-])", text)
         starts = (mention.start() for mention in mentions)
@@ -68,17 +72,39 @@ def _references(
     project: Workspace, texts: Mapping[Path, str], file: Path, text: str, old: Path, new: Path
 ) -> list[Edit]:
     """Return the edits of the references in a text that mean the old file."""
-    try:
-        values = values_in(project, texts, file)
-    except LinkwrightError:
-        values = []
-    edits = []
-    for link in file_references(text, file, project.finder(file), values):
+    edits: dict[int, Edit] = {}
+    for link in (*_links(project, texts, file, text), *_paths(project, file, text)):
         if real(link.file) == old:
             edit = _edit(file, text, link.start, link.end, old, new)
             if edit is not None:
-                edits.append(edit)
-    return edits
+                edits[edit.end] = edit
+    return [*edits.values()]
+
+
+def _links(project: Workspace, texts: Mapping[Path, str], file: Path, text: str) -> Iterator[FileReference]:
+    """Yield the references that the format of a file tells."""
+    known = format_of(file)
+    if known is not None:
+        yield from known.links(Document(project, texts, file, text))
+    if file.name.endswith((*XML_FILES, ".xml")):
+        try:
+            values = values_in(project, texts, file)
+        except LinkwrightError:
+            values = []
+        yield from file_references(text, file, project.finder(file), values)
+
+
+def _paths(project: Workspace, file: Path, text: str) -> Iterator[FileReference]:
+    """Yield the paths in a share folder, and those in build files, which begin in the folder of the build file."""
+    for found in _SHARED.finditer(text):
+        share = project.finder(file).find(found["package"])
+        if share is not None:
+            yield FileReference(found.start("path"), found.end("path"), Path(source_of(str(share / found["path"]))))
+    if file.name in _BUILD_FILES:
+        for found in _WORD.finditer(text):
+            path = file.parent / found[0]
+            if "/" in found[0] or path.is_file():
+                yield FileReference(*found.span(), path)
 
 
 def _edit(file: Path, text: str, start: int, end: int, old: Path, new: Path) -> Edit | None:

@@ -231,21 +231,21 @@ def _included(launch: PythonLaunchText, call: Group, file: Path) -> LaunchInclud
     if given is not None:
         include.is_known = False
         for part in given.parts:
-            bound = launch.python.bindings.get(part.value.partition(".")[0]) if isinstance(part, Name) else None
-            bound = launch.python.bindings.get(part.callee.partition(".")[0]) if _is_items(part) else bound
-            groups = [part] if bound is None else bound.parts
-            for group in groups:
-                if isinstance(group, Group) and (group.opening in ("{", "[") or group.callee == ""):
+            for group in _bound(launch, part):
+                is_dict = group.function == "dict" and bool(group.callee)
+                if is_dict or not group.callee:
                     include.is_known = True
-                    include.passed += _keys(group, file)
-                elif isinstance(group, Group) and group.function == "dict":
-                    include.is_known = not group.items[0].parts or bool(group.items[0].keyword)
-                    include.passed += _keywords(group, launch.document.text, file)
+                    text = launch.document.text
+                    include.passed += _keywords(group, text, file) if is_dict else _keys(group, file)
     return include
 
 
-def _is_items(part: object) -> bool:
-    return isinstance(part, Group) and part.function == "items" and "." in part.callee.strip(".")
+def _bound(launch: PythonLaunchText, part: object) -> list[Group]:
+    """Return the brackets with launch arguments: those in a call, or those of the variable whose items are passed."""
+    name = part.value if isinstance(part, Name) else part.callee if isinstance(part, Group) else ""
+    bound = launch.python.bindings.get(name.partition(".")[0].strip()) if name else None
+    parts = [part] if bound is None else bound.parts
+    return [group for group in parts if isinstance(group, Group) and not group.callee.startswith(".")]
 
 
 def _keys(group: Group, file: Path) -> Iterator[LaunchName]:

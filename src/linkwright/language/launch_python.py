@@ -81,6 +81,7 @@ class PythonLaunchText:
 
     @cached_property
     def arguments(self) -> tuple[LaunchArgument, ...]:
+        """The arguments that the file declares."""
         return tuple(arguments_in(self.document.text, self.document.file))
 
     def place_at(self, offset: int) -> _Place | None:

@@ -25,7 +25,9 @@ FILES = (".yaml", ".yml", ".rviz", ".launch.py", ".launch.xml", ".launch", ".py"
 _MOST_TEXT = 1_000_000
 """Characters; longer files are data and not configuration."""
 _FRAMES = lazy_pattern(r"(?i)(^|[ _/])(frame|frame_id|link|base|tip|root|ee_link|footprint|body)s?(_name)?s?$")
-_JOINTS = lazy_pattern(r"(?i)((^|[ _])(joint|wheel)(_?names?)?s?$)|(^|_)joint_names?$")
+_JOINTS = lazy_pattern(r"(?i)((^|[ _])(joint|wheel)(_?names?)?s?$)|(^|_)joint_names?$|^dof_names$")
+_INTERFACES = frozenset(("position", "velocity", "effort", "acceleration"))
+"""The interfaces of a joint, which stand behind its name and a slash."""
 _OF_JOINTS = frozenset(
     (
         "joint_limits",
@@ -42,6 +44,9 @@ _OF_JOINTS = frozenset(
 """Keys whose content is a mapping from joints."""
 _OF_LINKS = frozenset(("Links", "Frames", "Tree"))
 """Keys of displays of RViz whose content is a mapping from links or frames."""
+_TRANSFORM = "static_transform_publisher"
+_POSE = 6
+"""The numbers of a pose, in front of the frames in the arguments of a static transform."""
 _FRAME_OPTIONS = ("--frame-id", "--child-frame-id")
 
 
@@ -102,10 +107,24 @@ def _in_yaml(text: str, file: Path, names: frozenset[str]) -> Iterator[Mention]:
                 pending.append((key, keys, True))
         elif isinstance(node, yaml.SequenceNode):
             pending += [(item, keys, False) for item in reversed(node.value)]
-        elif isinstance(node, yaml.ScalarNode) and node.value in names:
-            start = node.start_mark.index + (1 if node.style in ("'", '"') else 0)
-            if text[start : start + len(node.value)] == node.value:
-                yield Mention(node.value, file, start, _kinds_of_keys(keys, is_key=is_key))
+        elif isinstance(node, yaml.ScalarNode) and node.value.removeprefix("/") in names:
+            name = node.value.removeprefix("/")  # frames of tf 1 began with a slash
+            start = node.start_mark.index + (1 if node.style in ("'", '"') else 0) + len(node.value) - len(name)
+            if text[start : start + len(name)] == name:
+                yield Mention(name, file, start, _kinds_of_keys(keys, is_key=is_key))
+        elif isinstance(node, yaml.ScalarNode) and "/" in node.value:
+            yield from _in_path(node.value, text, node.start_mark.index, file, names)
+
+
+def _in_path(value: str, text: str, begin: int, file: Path, names: frozenset[str]) -> Iterator[Mention]:
+    """Yield the parts of a value such as ``left_wheel_joint/velocity`` or ``controller/left_wheel_joint``."""
+    parts = value.split("/")
+    start = text.find(value, begin, begin + len(value) + 2)
+    for number, part in enumerate(parts):
+        if part in names and start >= 0:
+            is_joint = number == 0 and len(parts) == 2 and parts[1] in _INTERFACES
+            yield Mention(part, file, start, (NameKind.JOINT,) if is_joint else ())
+        start += len(part) + 1
 
 
 def _kinds_of_keys(keys: Sequence[str], *, is_key: bool) -> tuple[NameKind, ...]:
@@ -153,6 +172,12 @@ def _kinds_in_python(tree: ast.AST) -> Iterator[tuple[int, tuple[NameKind, ...]]
                         yield id(item), kinds_of_key(key.value)
         elif isinstance(node, ast.keyword) and node.arg:
             yield id(node.value), kinds_of_key(node.arg)
+        elif isinstance(node, ast.Call):
+            given = {keyword.arg: keyword.value for keyword in node.keywords}
+            program, words = given.get("executable"), given.get("arguments")
+            if isinstance(program, ast.Constant) and program.value == _TRANSFORM and isinstance(words, ast.List):
+                for item in words.elts[_POSE:] if len(words.elts) > _POSE else ():
+                    yield id(item), (NameKind.LINK,)
         elif isinstance(node, (ast.List, ast.Tuple)):
             for option, item in zip(node.elts, node.elts[1:], strict=False):
                 if isinstance(option, ast.Constant) and option.value in _FRAME_OPTIONS:
@@ -173,12 +198,14 @@ def _in_launch_xml(text: str, file: Path, names: frozenset[str]) -> Iterator[Men
             continue
         given = {attribute.name: attribute for attribute in token.attributes() if attribute.value}
         key = given["name"].value if "name" in given else ""
+        program = next((given[name].value for name in ("exec", "type") if name in given), "")
         for attribute in given.values():
             value = attribute.value or ""
             for found in words.finditer(value):
                 is_whole = found[0] == value and attribute.name in ("value", "default")
-                option = value[: found.start()].split()[-1:] if attribute.name == "args" else []
+                before = value[: found.start()].split() if attribute.name == "args" else []
                 kinds = kinds_of_key(key or "") if is_whole else ()
-                if option and option[0] in _FRAME_OPTIONS:
+                is_frame = before[-1:] and before[-1] in _FRAME_OPTIONS
+                if is_frame or (program == _TRANSFORM and len(before) >= _POSE and before[0][:1] != "-"):
                     kinds = (NameKind.LINK,)
                 yield Mention(found[0], file, attribute.value_start + found.start(), kinds)

@@ -25,6 +25,7 @@ from linkwright.xmltree.tokens import Kind, tokens
 
 _NAME = re.compile(r"\s*([A-Za-z_]\w*)\s*")
 _ARGUMENT = re.compile(r"arg\s+(\S+)\s*")
+_OPTIONAL = re.compile(r"\$\(optenv\s+\S+\s+([^()]*?)\s*\)")
 _DEEPEST = 12
 _MAX_EXPRESSIONS = 8
 
@@ -142,12 +143,13 @@ class NameSources:
         self, written: WrittenText, parts: Sequence[Token], value: str, new: str
     ) -> Iterator[tuple[Edit, ...]]:
         """Yield the edits of the literal parts with which the value changes and the expressions keep their values."""
-        pattern = "".join(re.escape(part.text) if part.kind is TokenKind.TEXT else "(.*?)" for part in parts)
-        found = re.fullmatch(pattern, value, re.DOTALL)
-        if found is None:
+        values = self._values(written, parts, value)
+        if values is None:
             return
-        values = iter(found.groups())
-        kept = "".join("(.*?)" if part.kind is TokenKind.TEXT else re.escape(next(values)) for part in parts)
+        kept = "".join(
+            "(.*?)" if part.kind is TokenKind.TEXT else re.escape(text)
+            for part, text in zip(parts, values, strict=True)
+        )
         changed = re.fullmatch(kept, new, re.DOTALL)
         if changed is None:
             return
@@ -165,41 +167,60 @@ class NameSources:
         self, written: WrittenText, parts: Sequence[Token], value: str, new: str, depth: int
     ) -> Iterator[tuple[Edit, ...]]:
         """Yield the edits with which one expression, or the same name several times, has another value."""
-        pattern = "".join(re.escape(part.text) if part.kind is TokenKind.TEXT else "(.*?)" for part in parts)
+        values = self._values(written, parts, value)
+        if values is None:
+            return
+        expressions = [
+            (part, text) for part, text in zip(parts, values, strict=True) if part.kind is not TokenKind.TEXT
+        ]
+        for changed in dict.fromkeys(part.text for part, _ in reversed(expressions)):
+            has_group = False
+            pieces = []
+            for part, text in zip(parts, values, strict=True):
+                if part.kind is TokenKind.TEXT or part.text != changed:
+                    pieces.append(re.escape(text))
+                else:
+                    pieces.append("(?P=new)" if has_group else "(?P<new>.+)")
+                    has_group = True
+            matched = re.fullmatch("".join(pieces), new, re.DOTALL)
+            part, text = next(each for each in expressions if each[0].text == changed)
+            if matched is not None:
+                for source in self._sources(part, written.frame):
+                    yield from self._edits(source, text, matched["new"], depth + 1)
+
+    def _values(self, written: WrittenText, parts: Sequence[Token], value: str) -> list[str] | None:
+        """Return the values of the parts of a text; None if they do not give the value of the whole."""
+        known = [part.text if part.kind is TokenKind.TEXT else self._value(part, written.frame, 0) for part in parts]
+        pattern = "".join("(.*?)" if text is None else f"({re.escape(text)})" for text in known)
         found = re.fullmatch(pattern, value, re.DOTALL)
         if found is None:
-            return
-        expressions = [part for part in parts if part.kind is not TokenKind.TEXT]
-        values = dict(zip((part.start for part in expressions), found.groups(), strict=True))
-        for changed in dict.fromkeys(part.text for part in reversed(expressions)):
-            group = ""
-            pieces = []
-            for part in parts:
-                if part.kind is TokenKind.TEXT:
-                    pieces.append(re.escape(part.text))
-                elif part.text != changed:
-                    pieces.append(re.escape(values[part.start]))
-                else:
-                    pieces.append("(?P=new)" if group else "(?P<new>.+)")
-                    group = part.text
-            matched = re.fullmatch("".join(pieces), new, re.DOTALL)
-            part = next(part for part in expressions if part.text == changed)
-            if matched is not None:
-                for source in self._sources(part, written.frame, values[part.start], depth):
-                    yield from self._edits(source, values[part.start], matched["new"], depth + 1)
+            loose = "".join(f"({re.escape(part.text)})" if part.kind is TokenKind.TEXT else "(.*?)" for part in parts)
+            found = re.fullmatch(loose, value, re.DOTALL)
+        return None if found is None else [*found.groups()]
 
-    def _sources(self, part: Token, frame: Frame | None, value: str, depth: int) -> Iterator[WrittenText]:
+    def _value(self, part: Token, frame: Frame | None, depth: int) -> str | None:
+        """Return the value of an expression that is a name, as far as literal texts give it; otherwise None."""
+        source = next(self._sources(part, frame), None) if depth <= _DEEPEST else None
+        if source is None:
+            return None
+        values = [
+            inner.text if inner.kind is TokenKind.TEXT else self._value(inner, source.frame, depth + 1)
+            for inner in _parts(source.text)
+        ]
+        return "".join(text for text in values if text is not None) if None not in values else None
+
+    def _sources(self, part: Token, frame: Frame | None) -> Iterator[WrittenText]:
         """Yield the texts that may give an expression its value."""
-        if part.kind is TokenKind.SUBSTITUTION:
-            argument = _ARGUMENT.fullmatch(part.text)
-            if argument is not None:
-                yield from self._attributes("xacro:arg", argument[1], "default", None)
+        if part.kind is TokenKind.EXPRESSION:
+            name = _NAME.fullmatch(part.text)
+            if name is not None:
+                yield from self._of_name(name[1], frame)
             return
-        name = _NAME.fullmatch(part.text)
-        if name is not None and depth <= _DEEPEST:
-            yield from self._of_name(name[1], frame, value)
+        argument = _ARGUMENT.fullmatch(part.text)
+        if argument is not None:
+            yield from self._attributes("xacro:arg", argument[1], "default")
 
-    def _of_name(self, name: str, frame: Frame | None, value: str) -> Iterator[WrittenText]:
+    def _of_name(self, name: str, frame: Frame | None) -> Iterator[WrittenText]:
         while frame is not None:
             source = frame.site.source
             place = None if source is None else attribute_value_range(source.text, frame.site.offset, name)
@@ -212,9 +233,7 @@ class NameSources:
                     yield default
                     return
             frame = frame.around
-        for written in self._attributes("xacro:property", name, "value", None):
-            if not written.is_literal or written.text == value:
-                yield written
+        yield from self._attributes("xacro:property", name, "value")
 
     def _default(self, macro: str, name: str, frame: Frame) -> WrittenText | None:
         """Return the default of a parameter of a macro, or None."""
@@ -236,12 +255,16 @@ class NameSources:
                             return WrittenText(file, begin, text, frame)
         return None
 
-    def _attributes(self, tag: str, name: str, key: str, frame: Frame | None) -> Iterator[WrittenText]:
+    def _attributes(self, tag: str, name: str, key: str) -> Iterator[WrittenText]:
         """Yield the values of an attribute of the elements with a tag and a name."""
         for file, tags in self._tags.items():
             for other, given in tags:
                 if other == tag and given.get("name", ("", 0))[0] == name and key in given:
-                    yield WrittenText(file, given[key][1], given[key][0], frame)
+                    text, start = given[key]
+                    default = _OPTIONAL.fullmatch(text)  # the environment seldom has a value
+                    if default is not None:
+                        text, start = default[1], start + default.start(1)
+                    yield WrittenText(file, start, text, None)
 
 
 def _start_tags(text: str) -> Iterator[tuple[str, dict[str, tuple[str, int]]]]:

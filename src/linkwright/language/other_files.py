@@ -1,13 +1,15 @@
 """The files beside the descriptions that name links and joints: SRDF, YAML, RViz configurations and launch files.
 
-A package means the robots that it contains and those of the packages that it depends on; a package without any means
-all robots of the workspace. A name is followed there if every such robot that has it gets the new name.
+A file means the robots of its package or, if it has none, of the packages that this one depends on. A name is followed
+there if every such robot that has it gets the new name.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
+from itertools import takewhile
 from pathlib import Path
 
 from linkwright.diagnostics import LinkwrightError
@@ -16,7 +18,8 @@ from linkwright.language.includes import real
 from linkwright.language.mentions import Mention, mentions_in
 from linkwright.language.occurrences import Occurrence, occurrences_in
 from linkwright.language.proof import Edit, ExpansionProof
-from linkwright.language.workspace import Workspace
+from linkwright.language.trials import trials
+from linkwright.language.workspace import Workspace, versions_of
 from linkwright.packages import enclosing_package
 from linkwright.packages.manifest import MANIFEST
 from linkwright.packages.readers.package_xml import Manifest
@@ -24,7 +27,10 @@ from linkwright.xmltree import parse
 
 Names = Mapping[tuple[NameKind, str], str]
 _OF_ROBOT = (NameKind.LINK, NameKind.JOINT)
+_FOLLOWED = (*_OF_ROBOT, NameKind.MATERIAL)
 _ENDINGS = (".urdf", ".xacro")
+_ROBOT = re.compile(r"<robot\b[^>]*?\bname\s*=\s*[\"']([^\"']+)[\"']")
+_LAUNCH = ("launch.py", ".launch", "launch.xml", "launch.yaml", "launch.yml")
 
 
 class OtherFiles:
@@ -40,8 +46,8 @@ class OtherFiles:
     def __init__(self, project: Workspace, texts: Mapping[Path, str], file: Path, proof: ExpansionProof) -> None:
         self._project, self._texts, self._file, self._proof = project, texts, file, proof
         self._srdfs_added = False
+        self._robots: dict[Path, list[Path]] = {}
         self._own = {*project.index.related(file, texts, computed=True)}
-        self._names: dict[Path, frozenset[tuple[NameKind, str]]] = {}
 
     def edits(self, names: Names) -> tuple[set[Edit], tuple[Mention, ...]]:
         """Return the edits of the files that certainly mean some names, and the mentions that are not certain.
@@ -55,25 +61,23 @@ class OtherFiles:
             if not use.is_definition:
                 found.add(Edit(use.file, use.start, use.end, names[use.kind, use.name]))
         olds = frozenset(old for _, old in names)
-        for folder, files in self._files.items():
-            foreign: frozenset[tuple[NameKind, str]] | None = None
+        for files in self._files.values():
             for file in files:
                 text = self._project.text(file, self._texts) or ""
                 mentions = [*_mentions(text, file, names, olds)]
-                if not mentions:
+                robots = self._robots_of(file) if mentions else []
+                if robots and not any(map(self._is_affected, robots)):  # the file is about other robots
+                    unchanged += [mention for mention in mentions if self._depends(file, names, mention)]
                     continue
-                if foreign is None:
-                    robots = robots_of_package(self._project, self._texts, folder)
-                    if robots and not any(self._is_affected(robot) for robot in robots):
-                        break  # the package is about other robots
-                    others = (robot for robot in robots if not self._is_affected(robot))
-                    foreign = frozenset(name for robot in others for name in self._names_of(robot))
+                others = [robot for robot in robots if not self._is_affected(robot)]
                 for mention in mentions:
                     kind = next((kind for kind in mention.kinds if (kind, mention.name) in names), None)
                     if kind is None:
                         if not mention.kinds:
                             unchanged.append(mention)
-                    elif (kind, mention.name) in foreign or file in self._proof.data:
+                    elif (file in self._proof.data and ".srdf" not in file.name) or any(
+                        (kind, mention.name) in names_of_robot(self._project, self._texts, robot) for robot in others
+                    ):
                         unchanged.append(mention)
                     else:
                         found.add(Edit(file, mention.start, mention.end, names[kind, mention.name]))
@@ -85,18 +89,22 @@ class OtherFiles:
             return
         self._srdfs_added = True
         roots = {*self._project.index.roots(self._texts)}
-        for folder, files in self._files.items():
+        for files in self._files.values():
             srdfs = [file for file in files if file.name.endswith(".srdf.xacro") and file in roots]
-            if srdfs and all(map(self._is_affected, robots_of_package(self._project, self._texts, folder))):
-                for file in srdfs:
+            for file in srdfs:
+                if all(map(self._is_affected, self._robots_of(file))):
                     self._proof.add(file)
 
     def _literal_uses(self, names: Names) -> Iterator[Occurrence]:
         """Yield the literal uses in the descriptions, also those that no expansion reaches."""
-        for file in self._own:
-            for use in occurrences_in(self._project.text(file, self._texts) or "", file):
-                if (use.kind, use.name) in names:
-                    yield use
+        for use in self._uses:
+            if (use.kind, use.name) in names:
+                yield use
+
+    @cached_property
+    def _uses(self) -> list[Occurrence]:
+        texts = ((file, self._project.text(file, self._texts) or "") for file in self._own)
+        return [use for file, text in texts for use in occurrences_in(text, file) if use.kind in _FOLLOWED]
 
     @cached_property
     def _files(self) -> dict[Path, list[Path]]:
@@ -110,22 +118,20 @@ class OtherFiles:
             seen.update(files[folder])
         return files
 
+    def _depends(self, file: Path, names: Names, mention: Mention) -> bool:
+        """Return whether a mention is in a package that depends on the own one, and so may mean its robots, too."""
+        package, own = enclosing_package(file.parent), enclosing_package(self._file.parent)
+        if package is None or own is None or not any((kind, mention.name) in names for kind in mention.kinds):
+            return False
+        return real(own[1]) in _dependencies(self._project, self._texts, real(package[1]))
+
+    def _robots_of(self, file: Path) -> list[Path]:
+        if file not in self._robots:
+            self._robots[file] = robots_of_file(self._project, self._texts, file)
+        return self._robots[file]
+
     def _is_affected(self, robot: Path) -> bool:
         return robot in self._proof.entries
-
-    def _names_of(self, robot: Path) -> frozenset[tuple[NameKind, str]]:
-        """Return the links and joints of a description; those in its texts if it cannot be expanded."""
-        if robot not in self._names:
-            model = self._project.robot(robot, self._texts)
-            if model is not None:
-                names = {(NameKind.LINK, name) for name in model.links} | {
-                    (NameKind.JOINT, name) for name in model.joints
-                }
-            else:
-                text = self._project.text(robot, self._texts) or ""
-                names = {(use.kind, use.name) for use in occurrences_in(text, robot) if use.is_definition}
-            self._names[robot] = frozenset(names)
-        return self._names[robot]
 
 
 def _mentions(text: str, file: Path, names: Names, olds: frozenset[str]) -> Iterable[Mention]:
@@ -135,19 +141,101 @@ def _mentions(text: str, file: Path, names: Names, olds: frozenset[str]) -> Iter
     return mentions_in(text, file, olds)
 
 
-def robots_of_package(project: Workspace, texts: Mapping[Path, str], folder: Path) -> list[Path]:
-    """Return the descriptions that a package may mean.
+def robots_of_file(project: Workspace, texts: Mapping[Path, str], file: Path) -> list[Path]:
+    """Return the descriptions that a configuration or launch file may mean, the likeliest first.
+
+    These are the robots of its package, else those with parts in it, else those of the packages that it depends on,
+    else all. Of several, those count that a file names together with this one, or else those whose folders are nearest.
 
     Args:
         project: the workspace.
         texts: the texts of the open files.
-        folder: the folder of the package.
+        file: the file.
     """
+    package = enclosing_package(file.parent)
+    folder = file.parent if package is None else real(package[1])
+    robots = _robots_of_package(project, texts, folder)
+    if len(robots) < 2:
+        return [*robots]
+    return _named_together(project, texts, file, [*robots]) or _nearest(file, folder, robots)
+
+
+def _robots_of_package(project: Workspace, texts: Mapping[Path, str], folder: Path) -> dict[Path, list[Path]]:
+    """Return the descriptions that a package may mean, each with its own files in the package."""
     entries = [entry for entry in project.index.roots(texts) if entry.name.endswith(_ENDINGS)]
-    entries = [entry for entry in entries if ".srdf" not in entry.name]
-    folders = [real(folder), *_dependencies(project, texts, real(folder))]
-    inside = [entry for each in folders for entry in entries if entry.is_relative_to(each)]
-    return [*dict.fromkeys(inside or entries)]
+    entries = [entry for entry in entries if ".srdf" not in entry.name and not entry.name.startswith(".")]
+    own = {entry: [entry] for entry in entries if entry.is_relative_to(folder)}
+    if own:
+        return own
+    for entry in entries:
+        parts = [file for file in project.index.related(entry, texts) if file.is_relative_to(folder)]
+        if parts:
+            own[entry] = parts
+    if own:
+        return own
+    others = _dependencies(project, texts, folder)
+    inside = [entry for other in others for entry in entries if entry.is_relative_to(other)]
+    return {entry: [] for entry in inside or entries}
+
+
+def _named_together(project: Workspace, texts: Mapping[Path, str], file: Path, robots: Sequence[Path]) -> list[Path]:
+    """Return the robots that name a file, or that a launch file names together with it."""
+    name = re.compile(rf"(?<![\w.-]){re.escape(file.name)}(?![\w-])")
+    text = project.text(file, texts) or ""
+    if ".srdf" in file.name:
+        title = _ROBOT.search(text)
+        titles = {robot: _ROBOT.search(project.text(robot, texts) or "") for robot in robots}
+        same = [robot for robot, other in titles.items() if title is not None and other and other[1] == title[1]]
+        if same:
+            return same
+    found = {robot for robot in robots if _named_in(robot, text)}
+    for robot in robots:
+        if any(name.search(project.text(one, texts) or "") for one in project.index.related(robot, texts)):
+            found.add(robot)
+    for launch in project.files(_LAUNCH):
+        written = project.text(launch, texts) or ""
+        if launch != file and name.search(written):
+            found |= {robot for robot in robots if _named_in(robot, written)}
+    return [robot for robot in robots if robot in found]
+
+
+def _named_in(robot: Path, text: str) -> bool:
+    return re.search(rf"(?<![\w.-]){re.escape(robot.name)}(?![\w-])", text) is not None
+
+
+def _nearest(file: Path, folder: Path, robots: Mapping[Path, Sequence[Path]]) -> list[Path]:
+    """Return the robots with files that share most folders of their package with a file."""
+
+    def shared(one: Path) -> int:
+        names, others = (path.relative_to(folder).parts[:-1] for path in (file, one))
+        return len([*takewhile(lambda pair: pair[0] == pair[1], zip(names, others, strict=False))])
+
+    depths = {robot: max(map(shared, parts), default=0) for robot, parts in robots.items()}
+    return [robot for robot, depth in depths.items() if depth == max(depths.values())]
+
+
+def names_of_robot(project: Workspace, texts: Mapping[Path, str], robot: Path) -> frozenset[tuple[NameKind, str]]:
+    """Return the links and joints of a description with all of its argument sets, as far as it can be expanded.
+
+    Args:
+        project: the workspace.
+        texts: the texts of the open files.
+        robot: the description.
+    """
+    versions = versions_of(texts)
+    known = project.kept.get(("names", robot))
+    if known is None or known[0] != versions:
+        found, _ = trials(project, texts, robot, is_partial=True, is_switched=False)
+        roots = [trial.expansion.document.root for trial in found]
+        names = frozenset(
+            (kind, element.attributes.get("name", ""))
+            for root in roots
+            for kind in _OF_ROBOT
+            for element in root.elements(kind.value)
+        )
+        known = project.kept["names", robot] = (versions, names)
+    assert isinstance(known[1], frozenset)
+    return known[1]
 
 
 def _dependencies(project: Workspace, texts: Mapping[Path, str], folder: Path) -> list[Path]:

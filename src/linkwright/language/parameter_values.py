@@ -44,7 +44,7 @@ def sources_of(document: Document, section: Section) -> list[DeclaredParameter]:
 def kinds_of_parameter(key: str) -> tuple[NameKind, ...]:
     """Return the kinds of names that the values of a parameter are; empty if its name does not tell."""
     last = key.rpartition(".")[2]
-    return (NameKind.JOINT,) if last == "dof_names" else kinds_of_key(last)
+    return kinds_of_key(last)
 
 
 def parameter_values(document: Document, section: Section, cursor: YamlCursor) -> Iterator[Completion]:

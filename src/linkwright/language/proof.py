@@ -187,9 +187,9 @@ class ExpansionProof:
         found, error = trials(self._project, self._texts, entry, is_partial=self._is_partial)
         self._error = error or self._error
         self.trials += found
-        for path in {path for trial in found for path in trial.expansion.dependencies}:
+        for path in (path for trial in found for path in trial.expansion.dependencies):
             self.data.add(real(path))
-            self._names.setdefault(real(path), set()).add(path)
+            self._names.setdefault(real(path), set()).add(str(path))
 
     def _edited(self, former: Trial, arguments: Mapping[str, str], edits: Collection[Edit]) -> Expansion:
         """Return the expansion of a trial with edits; those of elements that it leaves out are left out, too."""

@@ -1,34 +1,36 @@
-"""What a place in a file of any format names, and its renaming: the entry to renaming for an editor."""
+"""Renaming of the name at a place in a file of any format."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from itertools import islice
 from pathlib import Path
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, Span, phrase, term
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, Span, phrase
 from linkwright.language.definitions import NameKind
 from linkwright.language.format import Document
 from linkwright.language.grammar import root_of
 from linkwright.language.launch_names import LaunchName, is_launch_file
 from linkwright.language.launch_renaming import launch_name_at, rename_launch_argument
 from linkwright.language.mentions import FILES, Mention, mentions_in
-from linkwright.language.name_sources import renamed_template
+from linkwright.language.name_sources import renamed_template, written_text
 from linkwright.language.occurrences import Occurrence
-from linkwright.language.other_files import robots_of_package
+from linkwright.language.other_files import names_of_robot, robots_of_file
 from linkwright.language.proof import UnprovedError
-from linkwright.language.renaming import Renaming, occurrence_at, rename
+from linkwright.language.renaming import Renaming, occurrence_at, rename, xacro_name_at
 from linkwright.language.robot_renaming import OF_ROBOT
 from linkwright.language.sdf_names import SdfName, rename_in_sdf, sdf_name_at
 from linkwright.language.srdf import is_srdf
+from linkwright.language.trials import trials
 from linkwright.language.workspace import Workspace
-from linkwright.packages import enclosing_package
 from linkwright.sdf.worlds import SDF
 
 _WORD = re.compile(r"[^\s\"'\[\]{},<>=|#]+")
 _LAUNCH_NAME = re.compile(r"[\w.-]+")
-_MAX_ROBOTS = 40
+_UNPROVED = "LANG104"
+_MAX_ROBOTS = 4
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,7 +74,10 @@ def place_at(project: Workspace, texts: Mapping[Path, str], file: Path, offset: 
             return RenamePlace(file, launch[0].start, launch[0].name, launch)
     elif root_of(file) is SDF:
         name = sdf_name_at(text, file, offset)
-        return None if name is None else RenamePlace(file, name.start, name.name, name)
+        if name is not None:
+            return RenamePlace(file, name.start, name.name, name)
+        occurrence = xacro_name_at(text, file, offset)
+        return None if occurrence is None else RenamePlace(file, occurrence.start, occurrence.name, occurrence)
     elif not file.name.endswith(FILES):
         occurrence = occurrence_at(text, file, offset)
         return None if occurrence is None else RenamePlace(file, occurrence.start, occurrence.name, occurrence)
@@ -89,7 +94,8 @@ def _mention_at(text: str, file: Path, offset: int) -> Mention | None:
     line = text[begin : end if end >= 0 else len(text)]
     for word in _WORD.finditer(line):
         if word.start() <= offset - begin <= word.end():
-            names = frozenset({word[0], word[0].rstrip(":")})
+            written = word[0].removeprefix("/")
+            names = frozenset({written, written.rstrip(":")})
             for mention in mentions_in(text, file, names):
                 if mention.start <= offset <= mention.end and mention.kinds:
                     return mention
@@ -98,24 +104,11 @@ def _mention_at(text: str, file: Path, offset: int) -> Mention | None:
 
 def _robots_with(project: Workspace, texts: Mapping[Path, str], mention: Mention) -> Iterator[tuple[Path, NameKind]]:
     """Yield the descriptions that a file may mean and that have a link or joint of its name, each with the kind."""
-    package = enclosing_package(mention.file.parent)
-    folder = mention.file.parent if package is None else package[1]
-    for robot in robots_of_package(project, texts, folder)[:_MAX_ROBOTS]:
-        model = project.robot(robot, texts)
+    for robot in robots_of_file(project, texts, mention.file):
+        known = names_of_robot(project, texts, robot)
         for kind in mention.kinds:
-            if model is None:
-                if _may_define(project, texts, robot, kind, mention.name):
-                    yield robot, kind
-            elif mention.name in (model.links if kind is NameKind.LINK else model.joints):
+            if (kind, mention.name) in known:
                 yield robot, kind
-
-
-def _may_define(project: Workspace, texts: Mapping[Path, str], robot: Path, kind: NameKind, name: str) -> bool:
-    """Return whether a description that cannot be expanded may define a name."""
-    return any(
-        one.kind is kind and (one.name == name or ("$" in one.name and _fits(one.name, name)))
-        for one in project.names(robot, texts)
-    )
 
 
 def _fits(written: str, name: str) -> bool:
@@ -137,14 +130,13 @@ def rename_place(project: Workspace, texts: Mapping[Path, str], place: RenamePla
     """
     meaning = place.meaning
     if isinstance(meaning, Occurrence):
-        if is_srdf(place.file) and meaning.kind in OF_ROBOT[:2]:
-            return _rename_in_srdf(project, texts, meaning, new)
-        return rename(project, texts, meaning, new)
+        return _rename_occurrence(project, texts, meaning, new)
     if isinstance(meaning, Mention):
         return _rename_mention(project, texts, meaning, new)
     try:
         if isinstance(meaning, SdfName):
-            return Renaming(tuple(sorted(rename_in_sdf(project, texts, meaning, new))))
+            edits, unchanged = rename_in_sdf(project, texts, meaning, new)
+            return Renaming(tuple(sorted(edits)), {meaning.name: new}, tuple(unchanged))
         if not _LAUNCH_NAME.fullmatch(new):
             raise _invalid(new, phrase("launch argument"))
         found = rename_launch_argument(project, texts, meaning[1], meaning[0].name, new)
@@ -153,10 +145,26 @@ def rename_place(project: Workspace, texts: Mapping[Path, str], place: RenamePla
     return Renaming(tuple(sorted(found.edits)), {}, tuple(found.unchanged), tuple(dict.fromkeys(found.notes)))
 
 
+def _rename_occurrence(project: Workspace, texts: Mapping[Path, str], name: Occurrence, new: str) -> Renaming:
+    """Rename a name of a description or an SRDF; a use in an SRDF, or in a part of one, is that of another file."""
+    is_use = name.kind in OF_ROBOT[:2] and not name.is_definition
+    if is_use and is_srdf(name.file):
+        return _rename_in_srdf(project, texts, name, new)
+    try:
+        return rename(project, texts, name, new)
+    except LinkwrightError as error:
+        if not is_use or error.diagnostics[0].code != _UNPROVED:
+            raise
+        try:
+            return _rename_in_srdf(project, texts, name, new)
+        except LinkwrightError:
+            raise error from None
+
+
 def _rename_mention(project: Workspace, texts: Mapping[Path, str], mention: Mention, new: str) -> Renaming:
     """Rename the link or joint of the first description with which the place of the mention gets the new name."""
     error: LinkwrightError | None = None
-    for robot, kind in _robots_with(project, texts, mention):
+    for robot, kind in islice(_robots_with(project, texts, mention), _MAX_ROBOTS):
         try:
             renaming = rename(project, texts, Occurrence(kind, mention.name, robot, 0), new)
         except LinkwrightError as reason:
@@ -165,7 +173,7 @@ def _rename_mention(project: Workspace, texts: Mapping[Path, str], mention: Ment
         if any((edit.file, edit.start) == (mention.file, mention.start) for edit in renaming.edits):
             return renaming
         error = error or _refused(mention.name, phrase("several robots have this name, and the file may mean each"))
-    raise error or _refused(mention.name, phrase("no description of the workspace has this {kind}", kind=term("link")))
+    raise error or _refused(mention.name, phrase("no description of the workspace has it"))
 
 
 def _rename_in_srdf(project: Workspace, texts: Mapping[Path, str], name: Occurrence, new: str) -> Renaming:
@@ -173,27 +181,42 @@ def _rename_in_srdf(project: Workspace, texts: Mapping[Path, str], name: Occurre
     if "$" not in name.name:
         return _rename_mention(project, texts, Mention(name.name, name.file, name.start, (name.kind,)), new)
     error: LinkwrightError | None = None
-    package = enclosing_package(name.file.parent)
-    folder = name.file.parent if package is None else package[1]
-    for robot in robots_of_package(project, texts, folder)[:_MAX_ROBOTS]:
-        model = project.robot(robot, texts)
-        known = () if model is None else model.links if name.kind is NameKind.LINK else model.joints
+    for robot in robots_of_file(project, texts, name.file)[:_MAX_ROBOTS]:
+        known = sorted(value for kind, value in names_of_robot(project, texts, robot) if kind is name.kind)
         for value in (value for value in known if _fits(name.name, value)):
             changed = renamed_template(name.name, new, value)
             if changed is None or changed == value:
                 continue
+            definition = _definition(project, texts, robot, name, value)
             try:
-                renaming = rename(project, texts, Occurrence(name.kind, value, robot, 0), changed)
+                renaming = (
+                    rename(project, texts, Occurrence(name.kind, value, robot, 0), changed)
+                    if definition is None
+                    else rename(project, texts, definition, new)
+                )
             except LinkwrightError as reason:
                 error = error or reason
                 continue
             if any((edit.file, edit.start) == (name.file, name.start) for edit in renaming.edits):
                 return renaming
-    raise error or _refused(name.name, phrase("no description of the workspace has this {kind}", kind=term("link")))
+    raise error or _refused(name.name, phrase("no description of the workspace has it"))
+
+
+def _definition(
+    project: Workspace, texts: Mapping[Path, str], robot: Path, name: Occurrence, value: str
+) -> Occurrence | None:
+    """Return the definition of a link or joint that is written like a use, such as ``${prefix}wheel``; else None."""
+    found, _ = trials(project, texts, robot, is_partial=True, is_switched=False)
+    for trial in found:
+        for element in trial.expansion.document.root.elements(name.kind.value):
+            written = written_text(element, "name") if element.attributes.get("name") == value else None
+            if written is not None and written.text == name.name:
+                return occurrence_at(project.text(written.file, texts) or "", written.file, written.start)
+    return None
 
 
 def _refused(name: str, reason: Phrase, span: Span | None = None) -> LinkwrightError:
-    return LinkwrightError(Diagnostic("LANG104", phrase("'{name}' is not renamed: {why}", name=name, why=reason), span))
+    return LinkwrightError(Diagnostic(_UNPROVED, phrase("'{name}' is not renamed: {why}", name=name, why=reason), span))
 
 
 def _invalid(new: str, kind: Phrase) -> LinkwrightError:

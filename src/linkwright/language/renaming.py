@@ -10,7 +10,7 @@ from __future__ import annotations
 import ast
 import keyword
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -26,6 +26,7 @@ from linkwright.language.robot_renaming import OF_ROBOT, RobotRenaming
 from linkwright.language.workspace import Workspace
 from linkwright.sdf.worlds import SDF
 
+_FORWARD = re.compile(r"\s*:?=\s*\^")
 _NAME = re.compile(r"[^\s<>&\"']+")
 
 
@@ -50,7 +51,16 @@ def occurrence_at(text: str, file: Path, offset: int) -> Occurrence | None:
     """Return the name at an offset that can be renamed; None if there is none."""
     if root_of(file) is SDF:  # the names of a model have scopes of their own
         return None
-    found = [name for name in occurrences_in(text, file) if name.start <= offset <= name.end]
+    return _innermost(occurrences_in(text, file), offset)
+
+
+def xacro_name_at(text: str, file: Path, offset: int) -> Occurrence | None:
+    """Return the macro, parameter, property or argument at an offset of a model in xacro; None if there is none."""
+    return _innermost((name for name in occurrences_in(text, file) if name.kind not in OF_ROBOT), offset)
+
+
+def _innermost(names: Iterable[Occurrence], offset: int) -> Occurrence | None:
+    found = [name for name in names if name.start <= offset <= name.end]
     return min(found, key=lambda name: (name.end - name.start, not name.is_definition), default=None)
 
 
@@ -124,7 +134,7 @@ def _proved(project: Workspace, texts: Mapping[Path, str], name: Occurrence, new
         if name.kind is NameKind.ARGUMENT:
             edits |= _passed_arguments(project, texts, proof, name, new)
             renamed = {name.name: new}
-        proof.check_equal(edits, renamed)
+        edits = _equal(project, texts, proof, name, new, edits, renamed)
         names, unchanged = {}, ()
     if proof.gap_reason is not None:
         notes.append(
@@ -132,6 +142,56 @@ def _proved(project: Workspace, texts: Mapping[Path, str], name: Occurrence, new
         )
     kept = tuple(sorted(edit for edit in edits if edit.file not in probes))
     return Renaming(kept, {old: changed for (_, old), changed in names.items()}, unchanged, tuple(notes))
+
+
+def _equal(
+    project: Workspace,
+    texts: Mapping[Path, str],
+    proof: ExpansionProof,
+    name: Occurrence,
+    new: str,
+    edits: set[Edit],
+    renamed: Mapping[str, str],
+) -> set[Edit]:
+    """Return edits with which all expansions stay equal; a parameter may reach other macros by its name.
+
+    xacro's scopes are dynamic: a macro that is called in another one sees its parameters, and ``name:=^`` forwards
+    them.
+
+    Raises:
+        UnprovedError: the expansions differ.
+    """
+    try:
+        proof.check_equal(edits, renamed)
+    except UnprovedError:
+        more = edits | _visible_elsewhere(project, texts, name, new)
+        if more == edits:
+            raise
+        try:
+            proof.check_equal(more, renamed)
+        except UnprovedError:
+            pass
+        else:
+            return more
+        raise
+    return edits
+
+
+def _visible_elsewhere(project: Workspace, texts: Mapping[Path, str], name: Occurrence, new: str) -> set[Edit]:
+    """Return the edits of the properties with the name of a parameter, and of the parameters that forward it."""
+    if name.kind not in (NameKind.PARAMETER, NameKind.PROPERTY):
+        return set()
+    found: set[Edit] = set()
+    for file in project.index.related(name.file, texts, computed=True):
+        text = project.text(file, texts) or ""
+        uses = [use for use in occurrences_in(text, file) if use.name == name.name]
+        forwarding = {use.owner for use in uses if use.is_definition and _FORWARD.match(text, use.end)}
+        found |= {
+            Edit(file, use.start, use.end, new)
+            for use in uses
+            if use.kind is NameKind.PROPERTY or (use.kind is NameKind.PARAMETER and use.owner in forwarding)
+        }
+    return found
 
 
 def _passed_arguments(

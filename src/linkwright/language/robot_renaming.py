@@ -6,11 +6,12 @@ these names alone.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from itertools import islice
+from itertools import islice, pairwise
 from pathlib import Path
 
-from linkwright.diagnostics import Span, phrase, quoted_names, term
+from linkwright.diagnostics import Phrase, Span, phrase, quoted_names, term
 from linkwright.language.definitions import NameKind
 from linkwright.language.mentions import Mention
 from linkwright.language.name_sources import NameSources, WrittenText, renamed_template, written_text
@@ -20,6 +21,7 @@ from linkwright.language.proof import Edit, ExpansionPair, ExpansionProof, Unpro
 from linkwright.language.workspace import Workspace
 from linkwright.xmltree import Element
 from linkwright.xmltree.positions import attribute_value_range, start_tag_end
+from linkwright.xmltree.tokens import Kind, tokens
 
 OF_ROBOT = (NameKind.LINK, NameKind.JOINT, NameKind.MATERIAL)
 Names = Mapping[tuple[NameKind, str], str]
@@ -69,16 +71,38 @@ class RobotRenaming:
         """
         self._others.add_srdfs()
         required = self._required()
+        if not any(self._defines(*name) for name in required):
+            self._rename_unused(seeds, required)
+            return
         literal = {Edit(seed.file, seed.start, seed.end, self._new) for seed in seeds}
         error: UnprovedError | None = None
         for proposal in islice(self._proposals(required, literal), _MAX_PROPOSALS):
             try:
                 self._follow(proposal, required)
-            except UnprovedError as reason:
+            except UnprovedError as reason:  # noqa: PERF203 - each proposal may fail for itself
                 error = error or reason
             else:
                 return
-        raise error or UnprovedError(phrase("no link, joint or material takes its name from this place"))
+        raise error or UnprovedError(self._nothing())
+
+    def _rename_unused(self, seeds: Iterable[Occurrence], required: Names) -> None:
+        """Rename a name that no expansion has, such as a material that nothing uses: all expansions stay equal."""
+        name = self._name
+        edits = {Edit(seed.file, seed.start, seed.end, self._new) for seed in seeds}
+        if "$" in name.name or not any(seed.is_definition for seed in seeds):
+            raise UnprovedError(self._nothing())
+        self._proof.check_equal(edits)
+        found, self.unchanged = self._others.edits(required)
+        self.edits = edits | found
+
+    def _nothing(self) -> Phrase:
+        reason = self._proof.gap_reason
+        nothing = phrase("no link, joint or material takes its name from this place")
+        return (
+            nothing
+            if reason is None
+            else phrase("{nothing}, as far as it can be expanded: {reason}", nothing=nothing, reason=reason)
+        )
 
     def _required(self) -> Names:
         """Return the names that must change, each with its new name: those that the place has in the expansions."""
@@ -86,13 +110,10 @@ class RobotRenaming:
         if "$" not in name.name:
             return {(self._kind(), name.name): self._new}
         required: dict[tuple[NameKind, str], str] = {}
-        for element, value in self._elements_at_place():
+        for value in self._values_at_place():
             new = renamed_template(name.name, self._new, value)
-            if new is not None and new != value:
-                kind = name.kind
-                if (element.tag, kind) != (kind.value, kind) and not self._defines(kind, value):
-                    continue
-                required[kind, value] = new
+            if new is not None and new != value and self._defines(name.kind, value):
+                required[name.kind, value] = new
         return required
 
     def _kind(self) -> NameKind:
@@ -110,8 +131,8 @@ class RobotRenaming:
             for element in _definitions(trial.expansion.document.root, kind)
         )
 
-    def _elements_at_place(self) -> Iterator[tuple[Element, str]]:
-        """Yield the elements of the expansions that are written at the place, each with the value of the name."""
+    def _values_at_place(self) -> Iterator[str]:
+        """Yield the values that the name at the place has in the expansions."""
         files = self._proof.names_of(self._name.file)
         for trial in self._proof.trials:
             for element in trial.expansion.document.root.walk():
@@ -123,7 +144,7 @@ class RobotRenaming:
                 for key, value in element.attributes.items():
                     place = attribute_value_range(source.text, element.offset, key)
                     if place is not None and place[0] == self._name.start:
-                        yield element, value
+                        yield value
 
     def _proposals(self, required: Names, literal: set[Edit]) -> Iterator[set[Edit]]:
         """Yield the edits to begin with: those at the places, and those of the computed definitions."""
@@ -154,7 +175,7 @@ class RobotRenaming:
             pairs = [*self._proof.pairs(edits)]
             names = dict(_changed_names(pairs))
             if not names and not required:
-                raise UnprovedError(phrase("no link, joint or material takes its name from this place"))
+                raise UnprovedError(self._nothing())
             wanted = {**names, **required}
             more: set[Edit] = set()
             for pair in pairs:
@@ -163,11 +184,28 @@ class RobotRenaming:
             more |= found
             if more <= edits:
                 self._check(pairs, names, required)
-                self.edits, self.names, self.unchanged = edits, names, unchanged
+                self.edits, self.names = edits, names
+                self.unchanged = (*unchanged, *self._leftovers(edits, names))
                 return
             edits = edits | more
             _check_overlap(edits)
         raise UnprovedError(phrase("some references keep the old name"))
+
+    def _leftovers(self, edits: Collection[Edit], names: Names) -> Iterator[Mention]:
+        """Yield values in the descriptions that are old names and that no expansion uses, such as an unused default."""
+        edited = {(edit.file, edit.start) for edit in edits}
+        words = "|".join(re.escape(old) for old in dict.fromkeys(old for _, old in names))
+        pattern = re.compile(rf"(?<![^\s\"'=])({words})(?=[\"'\s])" if words else r"(?!)")
+        for file in self._files:
+            for token in tokens(self._project.text(file, self._texts) or ""):
+                if not token.name.startswith("xacro:") or token.kind is not Kind.START:
+                    continue
+                for attribute in token.attributes():
+                    written = f'{attribute.value or ""}"' if attribute.name != "name" else ""
+                    for found in pattern.finditer(written):
+                        start = attribute.value_start + found.start(1)
+                        if (file, start) not in edited:
+                            yield Mention(found[1], file, start)
 
     def _stale(self, pair: ExpansionPair, names: Names, edits: Collection[Edit]) -> Iterator[Edit]:
         """Yield edits of the definitions and references in an expansion that still have an old name."""
@@ -195,6 +233,8 @@ class RobotRenaming:
         missing = next((old for (kind, old), new in required.items() if names.get((kind, old)) != new), None)
         if missing is not None:
             raise UnprovedError(phrase("'{name}' is not defined in the expansion of a description", name=missing))
+        if "$" not in self._name.name:
+            self._check_sharing(pairs, required)
         allowed = {*((old, new) for (_, old), new in names.items())}
         for pair in pairs:
             olds, news = _defined(pair.before), _defined(pair.after)
@@ -207,6 +247,27 @@ class RobotRenaming:
                 if count != len([*_values(pair.after, kind)]) and count != len({*_values(pair.before, kind)}):
                     raise UnprovedError(phrase("two {kind}s would have the same name", kind=term(kind.value)))
 
+    def _check_sharing(self, pairs: Sequence[ExpansionPair], required: Names) -> None:
+        """Check that no description without the name changes, which would be another robot with the same macros."""
+        owners = {
+            pair.entry
+            for pair in pairs
+            for kind, old in required
+            for value in _values(pair.before, kind)
+            if value == old
+        }
+        for pair in pairs:
+            changed = next(_changed_names([pair]), None) if pair.entry not in owners else None
+            if changed is not None:
+                (_, old), new = changed
+                message = phrase(
+                    "'{old}' of '{file}', which uses the same macro, would become '{new}'",
+                    old=old,
+                    new=new,
+                    file=pair.entry.name,
+                )
+                raise UnprovedError(message)
+
 
 def _computed(written: WrittenText, value: str, span: Span | None = None) -> UnprovedError:
     return UnprovedError(phrase("'{value}' is computed from '{written}'", value=value, written=written.text), span)
@@ -215,7 +276,7 @@ def _computed(written: WrittenText, value: str, span: Span | None = None) -> Unp
 def _check_overlap(edits: Iterable[Edit]) -> None:
     """Raise an error for two edits of the same text."""
     ordered = sorted(edits)
-    for first, second in zip(ordered, ordered[1:], strict=False):
+    for first, second in pairwise(ordered):
         if first.file == second.file and first.end > second.start:
             raise UnprovedError(
                 phrase("one text would have to be {names}", names=quoted_names((first.text, second.text), " and "))
@@ -278,7 +339,7 @@ def _defined(root: Element) -> set[str]:
 
 
 def _is_derived(old: str, new: str, allowed: Collection[tuple[str, str]]) -> bool:
-    """Return whether a name, such as that of a transmission, changed because it contains the name of a joint or link."""
+    """Return whether a name, such as that of a transmission, changed because it contains that of a joint or link."""
     return any(name in old and old.replace(name, changed) == new for name, changed in allowed)
 
 

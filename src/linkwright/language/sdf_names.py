@@ -13,13 +13,14 @@ from pathlib import Path
 
 from linkwright.diagnostics import SourceText, phrase
 from linkwright.language.includes import real
+from linkwright.language.mentions import Mention, mentions_in
 from linkwright.language.occurrences import kinds_of_text
-from linkwright.language.proof import Edit, UnprovedError
+from linkwright.language.proof import Edit, ExpansionProof, UnprovedError, edited
 from linkwright.language.workspace import Workspace
 from linkwright.language.written import WrittenElement, innermost, written_elements
 
 _DEFINING = frozenset({"link", "joint", "frame", "model"})
-_SCOPES = frozenset({"model", "world"})
+_SCOPES = frozenset({"model", "world", "sdf"})
 _ATTRIBUTES = frozenset(
     {"relative_to", "attached_to", "expressed_in", "rotate_to", "canonical_link", "placement_frame"}
 )
@@ -28,7 +29,7 @@ _MIMIC = ("mimic", "joint")
 _TEXTS = frozenset({"parent", "child", "link", "joint", "gripper_link", "palm_link", "placement_frame"})
 _NAME = re.compile(r"[^\s<>&\"':/]+(?: [^\s<>&\"':/]+)*")
 _SEPARATOR = "::"
-_ENDINGS = (".sdf", ".world")
+_ENDINGS = (".sdf", ".world", ".sdf.xacro", ".world.xacro")
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,8 +71,12 @@ def sdf_name_at(text: str, file: Path, offset: int) -> SdfName | None:
     return next((name for name in sdf_names(text, file) if name.start <= offset <= name.end), None)
 
 
-def rename_in_sdf(project: Workspace, texts: Mapping[Path, str], name: SdfName, new: str) -> set[Edit]:
-    """Return the edits with which a link, joint, frame or model of an SDF text has a new name.
+def rename_in_sdf(
+    project: Workspace, texts: Mapping[Path, str], name: SdfName, new: str
+) -> tuple[set[Edit], list[Mention]]:
+    """Return the edits with which a link, joint, frame or model of an SDF text has a new name, and other mentions.
+
+    Other files may mean the name, such as a launch file that starts a model, but nothing proves it.
 
     Args:
         project: the workspace.
@@ -80,7 +85,8 @@ def rename_in_sdf(project: Workspace, texts: Mapping[Path, str], name: SdfName, 
         new: the new name.
 
     Raises:
-        UnprovedError: the new name is not valid or exists, or the file is outside of the workspace.
+        UnprovedError: the new name is not valid or exists, the file is outside of the workspace, or values would lead
+            to other elements.
     """
     text = project.text(name.file, texts) or ""
     span = SourceText(str(name.file), text).span(name.start, name.end)
@@ -99,18 +105,43 @@ def rename_in_sdf(project: Workspace, texts: Mapping[Path, str], name: SdfName, 
         for use in sdf_names(text, name.file)
         if use.definition == name.definition
     }
-    top = _path_from_top(definition)
-    if top is not None:
-        for file in project.files(_ENDINGS):
-            if file != name.file:
-                edits |= {*_edits_of_includer(project.text(file, texts) or "", file, name.file, top, new)}
-    return edits
+    _check(project, texts, name.file, edits)
+    path = _path_from_top(definition)
+    unchanged: list[Mention] = []
+    configurations = project.configuration_files(name.file)
+    for file in dict.fromkeys((*project.files(_ENDINGS), *configurations)):
+        if file == name.file:
+            continue
+        other = project.text(file, texts) or ""
+        found: set[Edit] = set()
+        if path is not None and file.name.endswith(_ENDINGS):
+            found = {*_edits_of_includer(other, file, name.file, path, new)}
+        edits |= found
+        if file in configurations or found:
+            edited_starts = {edit.start for edit in found}
+            mentions = mentions_in(other, file, frozenset({name.name}))
+            unchanged += [mention for mention in mentions if mention.start not in edited_starts]
+    return edits, unchanged
+
+
+def _check(project: Workspace, texts: Mapping[Path, str], file: Path, edits: set[Edit]) -> None:
+    """Check that as many values as before lead to elements, in the file and, if it is xacro, in its expansions."""
+    text = project.text(file, texts) or ""
+    pairs = [(text, edited(text, edits))]
+    if file.name.endswith(".xacro"):
+        proof = ExpansionProof(project, texts, file, is_partial=True)
+        pairs += [(pair.text_before, pair.text_after) for pair in proof.pairs(edits)]
+    for before, after in pairs:
+        if len([*sdf_names(before, file)]) != len([*sdf_names(after, file)]):
+            raise UnprovedError(phrase("some references keep the old name"))
 
 
 def _defines(element: WrittenElement) -> bool:
-    """Return whether a link or joint is one of a model, and not a parameter of a plugin."""
+    """Return whether a link or joint is one of a model, and not a parameter of a plugin or the state of a world."""
     parent = element.parent
-    return parent is not None and (parent.name in _SCOPES or (element.name == "model" and parent.name == "sdf"))
+    if any(outer.name == "state" for outer in element.around()):
+        return False
+    return parent is not None and parent.name in _SCOPES
 
 
 def _scope(element: WrittenElement | None) -> WrittenElement | None:
@@ -133,6 +164,8 @@ def _references(element: WrittenElement, text: str) -> Iterator[tuple[str, int, 
             scope = own or _scope_of_place(element)
             if scope is not None:
                 yield attribute.value, attribute.value_start, scope
+    if element.name in ("model", "link"):
+        yield from _of_state(element)
     is_named = element.name in _TEXTS or bool(kinds_of_text(element.name))
     if is_named and not element.children and not _defines(element) and element.end > 0:
         begin = element.tag.end
@@ -141,6 +174,22 @@ def _references(element: WrittenElement, text: str) -> Iterator[tuple[str, int, 
         scope = _scope(element.parent)
         if value and scope is not None:
             yield value, begin + written.index(value), scope
+
+
+def _of_state(element: WrittenElement) -> Iterator[tuple[str, int, WrittenElement]]:
+    """Yield the name of a model or link in the state of a world, which is that of one in the world."""
+    around = [*element.around()]
+    state = next((number for number, outer in enumerate(around) if outer.name == "state"), None)
+    scope = None if state is None else _scope(around[state].parent)
+    name = next((one for one in element.tag.attributes() if one.name == "name" and one.value), None)
+    if state is None or scope is None or name is None:
+        return
+    for outer in reversed(around[1:state]):
+        found = next((one for one in _named(scope) if one.value("name") == outer.value("name")), None)
+        if found is None:
+            return
+        scope = found
+    yield name.value or "", name.value_start, scope
 
 
 def _scope_of_place(element: WrittenElement) -> WrittenElement | None:
@@ -165,7 +214,7 @@ def _path(scope: WrittenElement, value: str) -> Iterator[tuple[str, int, Written
 
 
 def _path_from_top(element: WrittenElement) -> tuple[str, ...] | None:
-    """Return the names from the outermost model to an element, without that model; None for names in a world."""
+    """Return the names from the outermost model to an element; None for names in a world."""
     names: list[str] = []
     current: WrittenElement | None = element
     while current is not None and current.name != "sdf":
@@ -173,25 +222,35 @@ def _path_from_top(element: WrittenElement) -> tuple[str, ...] | None:
             return None
         names.append(current.value("name"))
         current = current.parent
-    return tuple(reversed(names[:-1])) or None
+    return tuple(reversed(names))
 
 
 def _edits_of_includer(text: str, file: Path, model: Path, path: tuple[str, ...], new: str) -> Iterator[Edit]:
-    """Yield the edits of a file that includes a model: values that lead through the include to the name."""
+    """Yield the edits of a file that includes a model: values that lead through the include to the name.
+
+    Args:
+        text: the text of the file.
+        file: the file.
+        model: the file of the model.
+        path: the names from the model to the one that changes; that of the model alone if it changes.
+        new: the new name.
+    """
     if model.parent.name not in text and model.name not in text:
         return
-    for include in written_elements(text):
+    elements = written_elements(text)
+    for include in elements:
         if include.name != "include" or not _includes(include, text, model):
             continue
-        name = _child_text(include, "name", text)
+        given = _child_text(include, "name", text)
         scope = _scope(include.parent)
-        for element in written_elements(text) if name and scope is not None else ():
+        if given and len(path) == 1:  # the include gives a name of its own to the model
+            continue
+        names = [given or path[0], *path[1:]]
+        for element in elements if scope is not None else ():
             for value, start, own in _references(element, text):
-                beginning = _SEPARATOR.join((name, *path[:-1])) + _SEPARATOR
-                parts = value.split(_SEPARATOR)
-                if own is scope and parts[: len(path) + 1] == [name, *path]:
-                    begin = start + len(beginning)
-                    yield Edit(file, begin, begin + len(path[-1]), new)
+                if own is scope and value.split(_SEPARATOR)[: len(names)] == names:
+                    begin = start + sum(len(name) + len(_SEPARATOR) for name in names[:-1])
+                    yield Edit(file, begin, begin + len(names[-1]), new)
 
 
 def _includes(include: WrittenElement, text: str, model: Path) -> bool:

@@ -7,6 +7,7 @@ expanded without the elements that fail. They are replaced by blanks, so all off
 
 from __future__ import annotations
 
+import os
 import time
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
@@ -30,7 +31,7 @@ _PLACEHOLDERS = ("value", "1")
 """Values for an argument that only a caller knows."""
 _MAX_GAPS = 60
 _MAX_WITH_GAPS = 3
-_MAX_SWITCHED = 16
+_MAX_SWITCHED = 10
 _MAX_SECONDS = 2.0
 """The time after which no further arguments are switched."""
 _OPPOSITES = {"true": "false", "false": "true", "True": "False", "False": "True", "0": "1", "1": "0"}
@@ -70,7 +71,7 @@ def expanded(
     Raises:
         LinkwrightError: the description cannot be expanded.
     """
-    blanked = {str(path): text for path, text in texts.items()}
+    blanked: dict[str | os.PathLike[str], str] = {str(path): text for path, text in texts.items()}
     for file, ranges in (gaps or {}).items():
         blanked[str(file)] = without(project.text(file, texts) or "", ranges)
     return expand(entry, arguments, packages=project.finder(entry), overlay=Overlay(blanked))
@@ -85,7 +86,7 @@ def without(text: str, ranges: tuple[Range, ...]) -> str:
 
 
 def trials(
-    project: Workspace, texts: Mapping[Path, str], entry: Path, *, is_partial: bool
+    project: Workspace, texts: Mapping[Path, str], entry: Path, *, is_partial: bool, is_switched: bool = True
 ) -> tuple[list[Trial], LinkwrightError | None]:
     """Return the expansions of a description, and an error of one that fails.
 
@@ -93,18 +94,22 @@ def trials(
         project: the workspace.
         texts: the texts of the open files.
         entry: the description.
-        is_partial: whether arguments are switched, and elements that fail are left out if nothing can be expanded.
+        is_partial: whether elements that fail are left out if nothing can be expanded.
+        is_switched: whether arguments are switched, too, if `is_partial`.
     """
-    found: list[Trial] = []
+    distinct: dict[tuple[str, frozenset[str]], Trial] = {}
     error: LinkwrightError | None = None
     for arguments, _ in project.calls(entry):
         try:
-            found.append(Trial(entry, arguments, expanded(project, texts, entry, arguments)))
+            expansion = expanded(project, texts, entry, arguments)
         except LinkwrightError as reason:  # noqa: PERF203 - each may fail for itself
             error = reason
+        else:
+            distinct.setdefault((str(expansion), frozenset(arguments)), Trial(entry, arguments, expansion))
+    found = [*distinct.values()]
     if is_partial and not found:
         found += _with_gaps(project, texts, entry)
-    if is_partial and found:
+    if is_partial and is_switched and found:
         found += _switched(project, texts, found[0], {str(trial.expansion) for trial in found})
     return found, error
 
@@ -129,25 +134,26 @@ def _repaired(project: Workspace, texts: Mapping[Path, str], entry: Path, argume
     for _ in range(_MAX_GAPS):
         try:
             return Trial(entry, given, expanded(project, texts, entry, given, gaps), gaps, reason)
-        except LinkwrightError as error:
-            undeclared = [one for one in error.diagnostics if one.code == _UNDECLARED]
-            names = [name for one in undeclared if (name := one.message.arguments.get("name"))]
-            added = {str(name): _PLACEHOLDERS[0] for name in names if str(name) not in given}
-            if added:
-                given |= added
-                continue
-            first = error.diagnostics[0]
-            place = None if first.span is None else _element_around(project, texts, first.span, gaps)
-            numbers = {name: _PLACEHOLDERS[1] for name, value in given.items() if value == _PLACEHOLDERS[0]}
-            if place is None:
-                return None
-            if not gaps and numbers and not first.code.startswith(("PKG", "XML")):
-                given |= numbers
-                continue
-            reason = reason or first.message
-            gaps[place[0]] = (*gaps.get(place[0], ()), place[1])
         except (Fault, RecursionError):
             return None
+        except LinkwrightError as raised:
+            error = raised
+        undeclared = [one for one in error.diagnostics if one.code == _UNDECLARED]
+        names = [str(name) for one in undeclared if (name := one.message.arguments.get("name"))]
+        added = {name: _PLACEHOLDERS[0] for name in names if name not in given}
+        if added:
+            given |= added
+            continue
+        first = error.diagnostics[0]
+        numbers = {name: _PLACEHOLDERS[1] for name, value in given.items() if value == _PLACEHOLDERS[0]}
+        if not gaps and numbers and not first.code.startswith(("PKG", "XML")):
+            given |= numbers
+            continue
+        place = None if first.span is None else _element_around(project, texts, first.span, gaps)
+        if place is None:
+            return None
+        reason = reason or first.message
+        gaps[place[0]] = (*gaps.get(place[0], ()), place[1])
     return None
 
 

@@ -67,6 +67,7 @@ class Workspace:
 
     Attributes:
         index: the descriptions in the folders.
+        kept: results about files that are kept until a file changes, each with the versions of the open texts.
     """
 
     def __init__(self, folders: Iterable[Path]) -> None:
@@ -76,10 +77,12 @@ class Workspace:
         self._names: dict[Path, tuple[int, tuple[NameDefinition, ...]]] = {}
         self._results: dict[Path, _Result] = {}
         self._robots: dict[Path, tuple[Mapping[Path, int], Robot | None]] = {}
+        self.kept: dict[tuple[str, Path], tuple[Mapping[Path, int], object]] = {}
 
     def file_saved(self, file: Path) -> None:
         """Note that a file on the disk was changed, made or removed."""
         self._robots.clear()
+        self.kept.clear()
         if file.name.endswith(_CALLERS):
             self._checker = Checker(folders=self._folders)
 
@@ -200,6 +203,12 @@ class Workspace:
             file.name == MANIFEST and file.exists() != (file.parent in self.index.packages)
         ):
             self.index.refresh()
+        elif not is_description and file not in texts:
+            below = [other for other in (*self.index.files, *self._results) if other.is_relative_to(file)]
+            if below or file.is_dir():  # a folder that was created, moved or deleted
+                entries = [entry for other in below for entry in self.index.entries(other, texts)]
+                self.index.refresh()
+                return [*dict.fromkeys((*entries, *below))]
         package = enclosing_package(file.parent)
         found = self.index.entries(file, texts) if is_description else []
         return [*found, *([] if package is None else [real(package[1])])]
@@ -219,6 +228,11 @@ class Workspace:
         if found:
             self._results[subject] = _Result(tuple(map(without_element, found)), versions_of(texts))
         return self._of_files({_file(diagnostic, subject) for diagnostic in (*before, *found)} | {*changed})
+
+    def without_findings(self) -> dict[Path, list[Diagnostic]]:
+        """Return the files with findings, each with none, so that an editor removes those that it shows."""
+        results = self._results.items()
+        return {_file(finding, subject): [] for subject, result in results for finding in result.findings}
 
     def fixable(self, file: Path, texts: Mapping[Path, str]) -> list[Finding]:
         """Return the findings about a file that have a fix, if the texts that the fix edits are those of the check.

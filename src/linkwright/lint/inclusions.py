@@ -17,6 +17,7 @@ _ATTRIBUTE = lazy_pattern(r"""\b(name|default)\s*=\s*["']([^"']+)["']""")
 _ARGUMENT_USE = lazy_pattern(r"\$\(arg\s+(\S+?)\s*\)")
 _OPTIONAL = lazy_pattern(r"\$\(optenv\s+\S+\s+([^)]*)\)")
 _IN_PACKAGE = lazy_pattern(r"\$\(find\s+([\w-]+)\s*\)[/\\]*(.*)")
+_PACKAGE = lazy_pattern(r"\$\(find\s+((?:[^()]|\([^()]*\))*)\)[/\\]*")
 _EXPRESSION = lazy_pattern(r"\$\{[^{}]*\}|\$\([^()]*\)")
 _SHORTEST = len("_.xacro")
 """The number of literal characters that a computed path must have. A shorter one could mean any file."""
@@ -89,11 +90,10 @@ def inclusions_in(text: str) -> Iterator[Inclusion]:
 
 def _pattern(filename: str) -> str:
     """Return the pattern of an include from its path as written; see `Inclusion.pattern`."""
-    in_package = _IN_PACKAGE.fullmatch(filename)
-    tail = in_package[2] if in_package else filename
-    literals = _EXPRESSION.split(tail)
-    is_computed = len(literals) > 1 and len("".join(literals)) >= _SHORTEST
-    return "[^/]*".join(map(re.escape, literals)) if is_computed else ""
+    package = _PACKAGE.match(filename)
+    literals = _EXPRESSION.split(filename[package.end() :] if package else filename)
+    is_computed = len(literals) > 1 or (package is not None and "$" in package[1])
+    return "[^/]*".join(map(re.escape, literals)) if is_computed and len("".join(literals)) >= _SHORTEST else ""
 
 
 def folders_by_package(folders: Iterable[Path]) -> dict[str, list[Path]]:

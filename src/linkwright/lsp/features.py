@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 from lsprotocol import types
 
+from linkwright.lsp.folders import watch_files
 from linkwright.lsp.requests import (
     actions,
     appearance,
@@ -17,6 +20,10 @@ from linkwright.lsp.requests import (
 )
 from linkwright.lsp.server import LinkwrightServer, path_of
 
+_FILES_AND_FOLDERS = types.FileOperationRegistrationOptions(
+    [types.FileOperationFilter(types.FileOperationPattern("**/*"), "file")]
+)
+
 
 def make_server() -> LinkwrightServer:
     """Return a server with all features."""
@@ -24,9 +31,12 @@ def make_server() -> LinkwrightServer:
 
     @server.feature(types.INITIALIZED)
     async def initialized(server: LinkwrightServer, _: types.InitializedParams) -> None:
-        folders = [path for uri in server.workspace.folders if (path := path_of(uri)) is not None]
-        root = path_of(server.workspace.root_uri) if server.workspace.root_uri else None
-        server.begin(folders or ([root] if root else []))
+        server.begin(_folders(server))
+        await watch_files(server)
+
+    @server.feature(types.WORKSPACE_DID_CHANGE_WORKSPACE_FOLDERS)
+    def did_change_workspace_folders(server: LinkwrightServer, _: types.DidChangeWorkspaceFoldersParams) -> None:
+        server.begin(_folders(server))
 
     @server.feature(types.SHUTDOWN)
     def shutdown(server: LinkwrightServer, _: None) -> None:
@@ -53,6 +63,29 @@ def make_server() -> LinkwrightServer:
         for change in watched.changes:
             server.file_saved(change.uri)
 
+    @server.feature(types.WORKSPACE_DID_CREATE_FILES, _FILES_AND_FOLDERS)
+    def did_create_files(server: LinkwrightServer, created: types.CreateFilesParams) -> None:
+        for file in created.files:
+            server.file_saved(file.uri)
+
+    @server.feature(types.WORKSPACE_DID_RENAME_FILES, _FILES_AND_FOLDERS)
+    def did_rename_files(server: LinkwrightServer, renamed: types.RenameFilesParams) -> None:
+        for file in renamed.files:
+            server.file_saved(file.old_uri)
+            server.file_saved(file.new_uri)
+
+    @server.feature(types.WORKSPACE_DID_DELETE_FILES, _FILES_AND_FOLDERS)
+    def did_delete_files(server: LinkwrightServer, deleted: types.DeleteFilesParams) -> None:
+        for file in deleted.files:
+            server.file_saved(file.uri)
+
     for requests in (texts, names, renames, actions, hints, appearance, navigation, expansions, virtual_documents):
         requests.add_requests(server)
     return server
+
+
+def _folders(server: LinkwrightServer) -> list[Path]:
+    """Return the folders that the editor has opened; its root if it names no folders."""
+    folders = [path for uri in server.workspace.folders if (path := path_of(uri)) is not None]
+    root = path_of(server.workspace.root_uri) if server.workspace.root_uri else None
+    return folders or ([root] if root else [])

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import asyncio
+import gc
 import logging
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from functools import cache, partial
 from pathlib import Path
@@ -17,7 +18,7 @@ from pygls.exceptions import JsonRpcException
 from pygls.lsp.server import LanguageServer
 
 from linkwright._version import __version__
-from linkwright.diagnostics import LinkwrightError, phrase
+from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 from linkwright.diagnostics.translation import localized
 from linkwright.language.definitions import NameDefinition
 from linkwright.language.format import Document, Format
@@ -27,11 +28,11 @@ from linkwright.language.values import ValuedText, values_in
 from linkwright.language.workspace import Workspace
 from linkwright.lint.targets import XML_FILES
 from linkwright.lsp.findings import as_diagnostics
+from linkwright.lsp.folders import with_progress
 from linkwright.lsp.positions import UTF_16, TextPositions
 from linkwright.lsp.protocol import LeanProtocol
 from linkwright.xacro.cache import BoundedCache
 from linkwright.xmltree.decoding import decode
-from linkwright.xmltree.nodes import seldom_collected
 from linkwright.xmltree.reader import read_bytes
 
 T = TypeVar("T")
@@ -40,6 +41,9 @@ _log = logging.getLogger(__name__)
 _MAX_TEXTS = 200
 """The number of files on the disk whose lines are stored, for the positions of findings."""
 _CACHE_DIVISOR = 8
+_CHECKS_PER_COLLECTION = 50
+_IDLE_SECONDS = 1.0
+"""The time without a change after which the server collects garbage."""
 
 
 class FormattedText(NamedTuple):
@@ -75,8 +79,16 @@ class LinkwrightServer(LanguageServer):
     def begin(self, folders: Iterable[Path]) -> None:
         """Open the folders of the editor, and check what changes from now on."""
         BoundedCache.divisor = _CACHE_DIVISOR
-        seldom_collected.ages_objects = False
+        if self._work is not None:
+            self._work.cancel()
+        self._is_indexed.clear()
+        self._values.clear()
+        previous = self.project
         self.project = Workspace(folders)
+        if previous is not None:
+            self._publish(previous.without_findings(), {})
+            for uri in self.workspace.text_documents:
+                self.file_changed(uri)
         self._work = asyncio.get_running_loop().create_task(self._check_changes(self.project))
 
     def end(self) -> None:
@@ -220,10 +232,16 @@ class LinkwrightServer(LanguageServer):
 
     async def _check_changes(self, project: Workspace) -> None:
         """Check files as they change, the newest change first; a subject that still waits is checked once."""
-        await self.in_thread(project.index.refresh)
+        search = self._attempt(project.index.refresh, Path())
+        await with_progress(self, phrase("Linkwright: searching the folders for robot descriptions"), search)
         self._is_indexed.set()
         pending: dict[Path, set[Path]] = {}
+        check_count = 0
         while True:
+            # An expansion leaves its garbage in the oldest generation (see `seldom_collected`).
+            if check_count >= _CHECKS_PER_COLLECTION or (check_count and not pending and await self._is_idle()):
+                await self.in_thread(gc.collect)
+                check_count = 0
             if not pending:
                 await self._has_changes.wait()
             self._has_changes.clear()
@@ -237,12 +255,24 @@ class LinkwrightServer(LanguageServer):
             if pending:
                 subject = next(iter(pending))
                 await self._check(project, subject, texts, pending.pop(subject))
+                check_count += 1
+
+    async def _is_idle(self) -> bool:
+        """Wait for a change, and return whether none has come for some time."""
+        try:
+            await asyncio.wait_for(self._has_changes.wait(), _IDLE_SECONDS)
+        except asyncio.TimeoutError:
+            return True
+        return False
 
     async def _check(self, project: Workspace, subject: Path, texts: dict[Path, str], changed: set[Path]) -> None:
         """Check one subject, and publish its findings."""
-        found = await self._attempt(partial(project.check, subject, texts, changed), subject)
+        self._publish(await self._attempt(partial(project.check, subject, texts, changed), subject) or {}, texts)
+
+    def _publish(self, found: Mapping[Path, Sequence[Diagnostic]], texts: Mapping[Path, str]) -> None:
+        """Publish the findings about files; those about an open file only if its text is still that of the check."""
         positions = cache(self.positions)
-        for file, findings in (found or {}).items():
+        for file, findings in found.items():
             uri = self.uri_of(file)
             document = self.workspace.text_documents.get(uri)
             if document is not None and texts.get(file) != document.source:

@@ -43,6 +43,7 @@ ON_DEMAND = (
             "CreateSourceFile",
             "LeaveSourceFile",
             "OpenEditor",
+            "ShowUnsavedText",
             "WriteSourceFile",
         ),
     ),

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from functools import lru_cache
 from itertools import groupby
 
 from linkwright.diagnostics import Diagnostic, Note, Phrase, SourceText, Span, phrase, term
@@ -199,22 +200,35 @@ def inactive_definition(
     """Return a definition of a name in a file that is not in effect at an offset, or None."""
     if f"<{prefix}{tag}" not in source.text:
         return None  # return early to avoid compiling the patterns below
-    text = re.sub(_COMMENT, lambda comment: " " * len(comment[0]), source.text)
-    pattern = rf"""<{prefix}{tag}\s(?:[^>"']|"[^"]*"|'[^']*')*?\bname\s*=\s*["']{re.escape(name)}["']"""
-    match = re.search(pattern, text)
-    if match is None:
+    text, definitions = _definitions(source.text, prefix + tag)
+    start = definitions.get(name)
+    if start is None:
         return None
     values = {"tag": term(tag), "name": name}
     hint = None
     if not prefix:
         message = phrase("a {tag} '{name}' is written here without the prefix 'xacro:'", **values)
-    elif used_at is not None and match.start() < used_at and _is_conditional(text[: match.start()]):
+    elif used_at is not None and start < used_at and _is_conditional(text[:start]):
         message = phrase("a {tag} '{name}' is defined here, under a condition that does not hold", **values)
         hint = phrase("use it under the same condition, or also define it for the other case")
     else:
         message = phrase("a {tag} '{name}' is defined here, but after its use or outside its scope", **values)
-    span = source.span(match.start(), match.start() + len(f"<{prefix}{tag}"))
+    span = source.span(start, start + len(f"<{prefix}{tag}"))
     return InactiveDefinition(Note(message, span), hint)
+
+
+@lru_cache(maxsize=16)
+def _definitions(text: str, tag: str) -> tuple[str, dict[str, int]]:
+    """Return a text with blank comments, and the offset of the first element with a tag for each of their names.
+
+    The result is stored, because a description whose arguments are missing has hundreds of undefined names.
+    """
+    text = re.sub(_COMMENT, lambda comment: " " * len(comment[0]), text)
+    pattern = rf"""<{tag}\s(?:[^>"']|"[^"]*"|'[^']*')*?\bname\s*=\s*(?:"([^"]*)"|'([^']*)')"""
+    definitions: dict[str, int] = {}
+    for match in re.finditer(pattern, text):
+        definitions.setdefault(match[1] or match[2] or "", match.start())
+    return text, definitions
 
 
 def _is_conditional(preceding_text: str) -> bool:

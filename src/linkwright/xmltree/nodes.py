@@ -25,13 +25,9 @@ _before = (0, 0, 0)
 class seldom_collected:  # noqa: N801 - it is called in a ``with`` statement, as a function is
     """A context in which the garbage collector runs less often.
 
-    Attributes:
-        ages_objects: whether all objects become part of the oldest generation at the end of the context, which spares
-            a command the search of the result. A process that runs for days sets it to False. Otherwise, the garbage
-            of each expansion gathers in the oldest generation, which Python seldom searches.
+    At the end of the context, all objects become part of the oldest generation, which Python seldom searches. A
+    process that runs for days calls `gc.collect` from time to time.
     """
-
-    ages_objects = True
 
     def __enter__(self) -> None:
         global _active, _before  # noqa: PLW0603 - there is one collector for the whole process
@@ -47,9 +43,7 @@ class seldom_collected:  # noqa: N801 - it is called in a ``with`` statement, as
         with _depth_lock:
             _active -= 1
             if _active == 0:
-                if (
-                    self.ages_objects and gc.get_freeze_count() == 0
-                ):  # move new objects to the oldest generation without a collection
+                if gc.get_freeze_count() == 0:  # move new objects to the oldest generation without a collection
                     gc.freeze()
                     gc.unfreeze()
                 gc.set_threshold(*_before)

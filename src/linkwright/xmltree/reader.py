@@ -426,8 +426,13 @@ class Overlay:
     """
 
     def __init__(self, texts: Mapping[str | os.PathLike[str], str] | None = None) -> None:
-        self._texts = {_key(path): text for path, text in (texts or {}).items()}
+        self._texts: dict[str | os.PathLike[str], str] = {_key(path): text for path, text in (texts or {}).items()}
         self._documents: dict[str, Document] = {}
+
+    @property
+    def texts(self) -> Mapping[str | os.PathLike[str], str]:
+        """The replacement texts by the real paths of the files."""
+        return self._texts
 
     def text(self, path: str | os.PathLike[str]) -> str | None:
         """Return the replacement text of a file, or None if the file has no replacement."""

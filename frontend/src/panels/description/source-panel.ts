@@ -2,7 +2,7 @@ import { button, coalesced, h } from "../../dom";
 import { icon } from "../../icons";
 import type { CallSite, SourceRange } from "../../protocol";
 import { browserStorage } from "../../storage";
-import { EXPANDED, type DescriptionModel } from "../../state/description-model";
+import { EXPANDED, type DescriptionModel, type ElementName } from "../../state/description-model";
 import { isSameElement } from "../../state/element-focus";
 import type { Session } from "../../state/session";
 import { strings } from "../../strings";
@@ -40,6 +40,10 @@ export class SourcePanel implements Panel {
   /** The file shown. */
   private file = "";
   private requested: RequestedPlace | null = null;
+  /** Whether the selection follows the cursor of the editor, which then stays where it is. */
+  private followsCursor = false;
+  /** The element whose lines were shown last. */
+  private focused: ElementName | null = null;
   private model: DescriptionModel | undefined;
   private isVisible = false;
   /** The lines to scroll to once their text has arrived. */
@@ -115,11 +119,15 @@ export class SourcePanel implements Panel {
     this.model = currentModel(this.session);
     const { expanded, origin } = this.writtenPlaces();
     if (expanded) this.pendingReveal.expanded = expanded.line;
-    if (origin) {
+    const { current } = this.session.focus;
+    const stays = this.editor.isShown && (this.followsCursor || isSameElement(current, this.focused));
+    this.focused = current;
+    if (origin && !stays) {
       this.requested = null;
       this.file = origin.file;
       this.pendingReveal.origin = origin.line;
     }
+    this.followsCursor = false;
     this.update();
   }
 
@@ -222,10 +230,12 @@ export class SourcePanel implements Panel {
     this.trail.replaceChildren(h("span", { class: "tag" }, words.made), ...steps, ...(back ? [back] : []));
   }
 
-  /** Selects the element written on a line, unless one of them is selected: clicks then only move the cursor. */
+  /** Selects the element written on the line of the cursor, unless one of them is selected. */
   private chooseInEditor(file: string, line: number): void {
     const here = this.model?.elementsAt(file, line) ?? [];
-    if (!here.some((element) => isSameElement(element, this.session.focus.current))) this.choose(file, line);
+    if (here.length === 0 || here.some((element) => isSameElement(element, this.session.focus.current))) return;
+    this.followsCursor = true;
+    this.choose(file, line);
   }
 
   /**

@@ -39,6 +39,7 @@ export class EditOutcome {
     const { editing } = this;
     const words = strings.editing;
     const { preview, refusal, isOpen, written } = editing;
+    const writtenWords = editing.isWrittenToText ? words.writtenToText : words.written;
     this.apply.disabled = !isOpen || (preview?.files.length ?? 0) === 0;
     this.discard.disabled = !isOpen;
     this.all.hidden = !isOpen || preview?.refusal?.code !== "EDIT104" || editing.isChangeOfAll;
@@ -48,7 +49,7 @@ export class EditOutcome {
     else if (preview?.refusal) this.text.replaceChildren(refusalElement(preview.refusal));
     else if (preview) this.text.replaceChildren(...alsoElement(preview.also), ...preview.files.map(diff));
     else if (isOpen) this.text.replaceChildren(h("p", { class: "hint" }, words.looking));
-    else if (written.length > 0) this.text.replaceChildren(h("p", { class: "hint" }, words.written(written.map((file) => shortPath(file)).join(", "))));
+    else if (written.length > 0) this.text.replaceChildren(h("p", { class: "hint" }, writtenWords(written.map((file) => shortPath(file)).join(", "))));
     else this.text.replaceChildren(h("p", { class: "hint" }, words.idle));
     this.element.classList.toggle("refused", refusal !== null || (preview?.refusal ?? null) !== null);
   }

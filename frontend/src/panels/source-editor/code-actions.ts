@@ -3,6 +3,7 @@ import type { EditorView } from "@codemirror/view";
 import { strings } from "../../strings";
 import { openMenuAt, type MenuEntry } from "../../widgets/menu";
 import type { Documents, ServerFinding } from "./documents";
+import { colorChoice } from "./meanings";
 import { placeOf } from "./server-places";
 import { applyWorkspaceEdit, messageOf, type WorkspaceEdit } from "./workspace-edit";
 
@@ -60,12 +61,16 @@ export class CodeActions {
     const asked = { textDocument: { uri: shown.uri }, range, context: { diagnostics } };
     const actions = (await this.client.request<object, CodeAction[] | null>("textDocument/codeAction", asked)) ?? [];
     if (shown !== this.documents.shown) return;
-    if (actions.length === 0) {
+    const color = colorChoice(view, from);
+    if (actions.length === 0 && color === null) {
       this.tell(strings.sourceEditor.noActions);
       return;
     }
     const at = view.coordsAtPos(Math.min(from, view.state.doc.length)) ?? view.dom.getBoundingClientRect();
-    openMenuAt(at.left, at.bottom + 2, view.contentDOM, this.entries(actions));
+    openMenuAt(at.left, at.bottom + 2, view.contentDOM, [
+      ...(color === null ? [] : [{ label: strings.sourceEditor.chooseColor, run: color }]),
+      ...this.entries(actions),
+    ]);
   }
 
   private entries(actions: readonly CodeAction[]): MenuEntry[] {

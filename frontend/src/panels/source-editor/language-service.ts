@@ -3,10 +3,12 @@ import { formatDocument, hoverTooltips, serverCompletion } from "@codemirror/lsp
 import { ChangeSet, type Extension, type Text, type TransactionSpec } from "@codemirror/state";
 import { EditorView, keymap, ViewPlugin, type ViewUpdate } from "@codemirror/view";
 import type { Connection } from "../../connection/connection";
+import { Signal } from "../../signal";
 import { ACTION_CAPABILITIES } from "./code-actions";
 import type { Documents, ServerFinding } from "./documents";
 import { languageId } from "./languages";
 import { fitsMessage } from "./message-size";
+import { MEANING_CAPABILITIES, meanings } from "./meanings";
 import { pathOf } from "./server-places";
 import { safeHtml } from "./safe-html";
 import type { SourceDocument } from "./source-document";
@@ -122,6 +124,8 @@ class DocumentWorkspace extends Workspace {
 /** The page's language server, to which the messages go through the page's own connection. */
 export class LanguageService {
   readonly client: LSPClient;
+  /** The server has sent a message for the user. */
+  readonly message = new Signal<string>();
   private readonly workspace: DocumentWorkspace;
   private readonly config: LSPClientConfig;
   private receive: (content: string) => void = () => undefined;
@@ -141,10 +145,16 @@ export class LanguageService {
           if (file && (version === undefined || version === null || version === file.version)) documents.findings(uri, diagnostics);
           return true;
         },
+        "window/showMessage": (_, { message }: { message: string }) => {
+          this.message.emit(message);
+          return true;
+        },
       },
       extensions: [
         { clientCapabilities: { textDocument: { publishDiagnostics: { versionSupport: true, codeDescriptionSupport: true } } } },
+        { clientCapabilities: { textDocument: { documentSymbol: { hierarchicalDocumentSymbolSupport: true } } } },
         { clientCapabilities: ACTION_CAPABILITIES },
+        { clientCapabilities: MEANING_CAPABILITIES },
       ],
     };
     this.client = new PatientClient(this.config);
@@ -191,6 +201,7 @@ export class LanguageService {
       this.client.plugin(document.uri, languageId(document.path)),
       serverCompletion({ override: true }),
       hoverTooltips(),
+      meanings(this.client, document.uri),
       ViewPlugin.define(() => new Synchronizer(this.client)),
       keymap.of([{ key: "Shift-Alt-f", run: formatDocument, preventDefault: true }]),
     ];

@@ -18,13 +18,12 @@ const marks = StateField.define<DecorationSet>({
 
 export const markedLines: Extension = marks;
 
-/** Returns the effect that marks lines, given as lines of the file on the disk. */
+/** Returns the effect that marks lines, given as lines of the text that the shown description was read from. */
 export function marksOf(document: SourceDocument, highlights: readonly Highlight[]): StateEffect<DecorationSet> {
   const ranges: Range<Decoration>[] = [];
   for (const { from, to, look } of highlights) {
-    for (let line = from; line <= Math.min(to, document.savedText.lines); line += 1) {
-      ranges.push(LOOKS[look].range(document.state.doc.lineAt(document.placeNow(document.savedText.line(line).from)).from));
-    }
+    const [first, last] = [from, to].map((line) => document.state.doc.lineAt(document.lineNow(line)).number);
+    for (let line = first ?? 1; line <= (last ?? 0); line += 1) ranges.push(LOOKS[look].range(document.state.doc.line(line).from));
   }
   return setMarks.of(Decoration.set(ranges, true));
 }

@@ -1,31 +1,51 @@
-import { LSPPlugin } from "@codemirror/lsp-client";
 import { showDialog, type EditorView } from "@codemirror/view";
 import { strings } from "../../strings";
 import type { Documents } from "./documents";
-import { placeOf, type ServerRange } from "./server-places";
-import { applyWorkspaceEdit, messageOf, type WorkspaceEdit } from "./workspace-edit";
+import type { LanguageService } from "./language-service";
+import { confirmRename, type RenamedFile } from "./rename-preview";
+import { pathOf, placeOf, type ServerRange } from "./server-places";
+import { applyWorkspaceEdit, editsByFile, messageOf, type WorkspaceEdit } from "./workspace-edit";
 
-/** Asks for a new name for the symbol at the cursor, and renames the symbol in all files, which are not saved yet. */
-export function renameAtCursor(view: EditorView, documents: Documents, tell: (message: string) => void): boolean {
-  const plugin = LSPPlugin.get(view);
-  if (!plugin) return false;
-  void rename(view, plugin, documents).then(tell, (error: unknown) => tell(messageOf(error)));
+/**
+ * Asks for a new name for the symbol at the cursor, shows what changes, and renames the symbol in all files, which are
+ * not saved yet.
+ */
+export function renameAtCursor(view: EditorView, service: LanguageService, documents: Documents, tell: (message: string) => void): boolean {
+  void rename(view, service, documents).then(tell, (error: unknown) => tell(messageOf(error)));
   return true;
 }
 
-async function rename(view: EditorView, { client, uri }: LSPPlugin, documents: Documents): Promise<string> {
+async function rename(view: EditorView, { client, message }: LanguageService, documents: Documents): Promise<string> {
   const words = strings.sourceEditor;
+  const { shown } = documents;
+  if (!shown) return "";
   client.sync();
-  const { head } = view.state.selection.main;
-  const place = { textDocument: { uri }, position: placeOf(view.state.doc, head) };
+  const place = { textDocument: { uri: shown.uri }, position: placeOf(view.state.doc, view.state.selection.main.head) };
   const named = await client.request<object, { range: ServerRange; placeholder: string } | null>("textDocument/prepareRename", place);
   if (named === null) return words.nothingToRename;
   const newName = await askName(view, named.placeholder);
   if (newName === null || newName === named.placeholder) return "";
   client.sync();
-  const edit = await client.request<object, WorkspaceEdit | null>("textDocument/rename", { ...place, newName });
-  const changed = edit === null ? [] : await applyWorkspaceEdit(client, edit, documents, "rename");
-  return changed.length === 0 ? words.nothingToRename : words.renamed(newName, changed.length);
+  const remarks: string[] = [];
+  const stop = message.on((remark) => remarks.push(remark));
+  const edit = await client.request<object, WorkspaceEdit | null>("textDocument/rename", { ...place, newName }).finally(stop);
+  const files = edit === null ? [] : await renamedFiles(edit, documents);
+  if (edit === null || files.length === 0) return [words.nothingToRename, ...remarks].join(" ");
+  if (!(await confirmRename(named.placeholder, newName, files, remarks))) return words.notRenamed;
+  const changed = await applyWorkspaceEdit(client, edit, documents, "rename");
+  return words.renamed(newName, changed.length);
+}
+
+async function renamedFiles(edit: WorkspaceEdit, documents: Documents): Promise<RenamedFile[]> {
+  const files: RenamedFile[] = [];
+  for (const [uri, edits] of editsByFile(edit).edits) {
+    const path = pathOf(uri);
+    const document = path === null ? null : await documents.load(path);
+    if (!document) throw new Error(strings.sourceEditor.notEditable(path ?? uri, ""));
+    if (document === documents.shown) files.unshift({ document, edits });
+    else files.push({ document, edits });
+  }
+  return files;
 }
 
 async function askName(view: EditorView, name: string): Promise<string | null> {

@@ -11,6 +11,25 @@ interface Conflict {
   readonly version: number;
 }
 
+/** A text that a document had, and its changes since. */
+class FormerText {
+  since: ChangeSet;
+
+  constructor(readonly text: Text) {
+    this.since = ChangeSet.empty(text.length);
+  }
+
+  /** Returns the place in the present text of a place in the former one. */
+  placeNow(position: number): number {
+    return this.since.mapPos(Math.min(position, this.text.length));
+  }
+
+  /** Returns the place in the former text of a place in the present one. */
+  placeThen(position: number): number {
+    return this.since.invertedDesc.mapPos(position);
+  }
+}
+
 /** A file in the editor: its edited text, and what is known of the file on the disk. */
 export class SourceDocument {
   conflict: Conflict | null = null;
@@ -18,8 +37,12 @@ export class SourceDocument {
   whyNot = "";
   /** The position of the first visible line when the document was last shown. */
   scrolledTo = 0;
+  /** The text that the shown description was read from; null for the text on the disk. */
+  described: FormerText | null = null;
   private saved: Text;
   private unsaved: ChangeSet;
+  /** The texts that were sent to be shown in the scene, by their numbers, until the scene shows a newer one. */
+  private readonly sent = new Map<number, FormerText>();
   /** The text that was sent to be written, and the changes since; null while nothing is being written. */
   private writing: { text: Text; since: ChangeSet } | null = null;
 
@@ -46,9 +69,48 @@ export class SourceDocument {
     return this.saved;
   }
 
-  /** Returns the place in the edited text of a place in the text on the disk. */
-  placeNow(position: number): number {
-    return this.unsaved.mapPos(Math.min(position, this.saved.length));
+  /** The text that was sent last to be shown in the scene. */
+  get newestSent(): FormerText | undefined {
+    return [...this.sent.values()].at(-1);
+  }
+
+  /** Returns the position where a line of the shown description is now; 1-based. */
+  lineNow(line: number): number {
+    const text = this.described?.text ?? this.saved;
+    const position = text.line(Math.max(1, Math.min(line, text.lines))).from;
+    return this.described ? this.described.placeNow(position) : this.unsaved.mapPos(position);
+  }
+
+  /** Returns the line of the shown description that a position was on; 1-based. */
+  lineThen(position: number): number {
+    const text = this.described?.text ?? this.saved;
+    const then = this.described ? this.described.placeThen(position) : this.unsaved.invertedDesc.mapPos(position);
+    return text.lineAt(Math.min(then, text.length)).number;
+  }
+
+  /** Notes that the text is sent to be shown in the scene. */
+  beginShowing(number: number): void {
+    this.sent.set(number, new FormerText(this.state.doc));
+  }
+
+  /** Notes that the scene shows a text, or cannot show it. */
+  endShowing(number: number, isShown: boolean): void {
+    if (!isShown) return;
+    this.described = this.sent.get(number) ?? this.described;
+    for (const older of this.sent.keys()) if (older < number) this.sent.delete(older);
+  }
+
+  /**
+   * Returns the transaction that brings an edit of the robot into the text; null if the text has changed at the same place
+   * meanwhile.
+   *
+   * @param base - the number of the text that was edited; 0 for the one on the disk.
+   */
+  robotEdited(content: string, base: number): TransactionSpec | null {
+    const former = this.sent.get(base);
+    const edit = smallestChange(former?.text ?? this.saved, textOf(content));
+    const merged = mergeChanges(edit, former?.since ?? this.unsaved);
+    return merged && { changes: merged.edit, annotations: [isolateHistory.of("full")], userEvent: "robot" };
   }
 
   /** Records a transaction that was applied to the text. */
@@ -58,6 +120,7 @@ export class SourceDocument {
     const { changes } = transaction;
     this.unsaved = transaction.annotation(fromDisk) ?? this.unsaved.compose(changes);
     if (this.writing) this.writing.since = this.writing.since.compose(changes);
+    for (const former of new Set([...this.sent.values(), ...(this.described ? [this.described] : [])])) former.since = former.since.compose(changes);
   }
 
   /**

@@ -13,6 +13,14 @@ export interface Draft {
   readonly rpy: readonly number[];
 }
 
+/** The history of an unsaved text. */
+interface TextHistory {
+  readonly canUndo: boolean;
+  readonly canRedo: boolean;
+  readonly undo: () => void;
+  readonly redo: () => void;
+}
+
 export type HandleMode = "translate" | "rotate";
 /** The frame along whose axes the handles are oriented. */
 export type HandleFrame = "parent" | "own";
@@ -38,8 +46,11 @@ export class EditingState {
   refusal: DiagnosticItem | null = null;
   /** The files written last. */
   written: readonly string[] = [];
-  canUndo = false;
-  canRedo = false;
+  /** The editor of source files has the last edit if it concerned an unsaved text. */
+  isWrittenToText = false;
+  private canUndoWritten = false;
+  private canRedoWritten = false;
+  private text: TextHistory | null = null;
   private link: { display: string; link: string } | null = null;
   private editable: EditableParts | null = null;
   private part: EditablePart | null = null;
@@ -64,7 +75,8 @@ export class EditingState {
       this.preview = message;
       this.changed.emit();
     });
-    connection.on("edit_written", ({ files, refusal }) => {
+    connection.on("edit_written", ({ files, refusal, is_saved }) => {
+      this.isWrittenToText = !is_saved;
       this.refusal = refusal;
       this.written = files;
       this.isWritten = refusal === null && this.currentDraft !== null;
@@ -73,7 +85,7 @@ export class EditingState {
       this.draftChanged.emit();
     });
     connection.on("edit_history", ({ can_undo, can_redo }) => {
-      [this.canUndo, this.canRedo] = [can_undo, can_redo];
+      [this.canUndoWritten, this.canRedoWritten] = [can_undo, can_redo];
       this.changed.emit();
     });
     connection.on("description_changed", ({ display }) => {
@@ -82,6 +94,22 @@ export class EditingState {
     connection.on("robot_scene", ({ display }) => {
       if (display === this.link?.display && this.isWritten) this.reset();
     });
+  }
+
+  /** Whether there is an edit to undo: in an unsaved text, or else one that was written. */
+  get canUndo(): boolean {
+    return this.text?.canUndo ?? this.canUndoWritten;
+  }
+
+  get canRedo(): boolean {
+    return this.text?.canRedo ?? this.canRedoWritten;
+  }
+
+  /** Takes over the history of the unsaved text of the editor of source files; null if all texts are saved. */
+  setTextHistory(text: TextHistory | null): void {
+    const before = [this.canUndo, this.canRedo];
+    this.text = text;
+    if (before[0] !== this.canUndo || before[1] !== this.canRedo) this.changed.emit();
   }
 
   /** Whether editing is active. */
@@ -200,12 +228,14 @@ export class EditingState {
 
   undo(): void {
     this.reset();
-    this.connection.send({ type: "undo_edit" });
+    if (this.text) this.text.undo();
+    else this.connection.send({ type: "undo_edit" });
   }
 
   redo(): void {
     this.reset();
-    this.connection.send({ type: "redo_edit" });
+    if (this.text) this.text.redo();
+    else this.connection.send({ type: "redo_edit" });
   }
 
   /** Discards the draft. */

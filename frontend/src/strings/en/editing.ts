@@ -29,5 +29,6 @@ export const editing = {
   idle: "Drag a handle in the scene, or type a number. The change to the source is shown here before it is written.",
   looking: "Looking for the source of this number…",
   written: (files: string): string => `Written: ${files}`,
+  writtenToText: (files: string): string => `Changed in the editor, not saved yet: ${files}`,
   also: (names: string): string => `Also changes: ${names}`,
 };

@@ -31,5 +31,6 @@ export const editing: typeof english = {
   idle: "在场景中拖动手柄，或输入数字：写入之前，这里会显示源文件的更改。",
   looking: "正在查找生成此数字的文本……",
   written: (files) => `已写入：${files}`,
+  writtenToText: (files) => `已在编辑器中修改，尚未保存：${files}`,
   also: (names) => `同时更改：${names}`,
 };

@@ -147,8 +147,9 @@ class _Planner:
 
     def plan(self) -> EditPlan:
         """Return the plan of all edits."""
-        texts = {str(path): text for path, text in self._now.texts.items()}
-        before = {path: Overlay().read(path).text for path in texts}
+        unsaved = self._first.texts
+        texts = {str(path): text for path, text in self._now.texts.items() if unsaved.get(path) != text}
+        before = {path: Overlay(unsaved).read(path).text for path in texts}
         return EditPlan(texts, before, tuple(self._also_changed))
 
     # one number

@@ -31,7 +31,7 @@ class Snapshot:
 
     Attributes:
         description: the description as it was first read, with its arguments.
-        texts: the changed text of each edited file, by real path.
+        texts: the changed text of each edited file, and unsaved texts, by real path.
         document: the expansion with these texts.
         files: the files that were read for the expansion.
         expansion: the result of the expansion, or None for plain URDF.
@@ -45,8 +45,9 @@ class Snapshot:
 
     @classmethod
     def of(cls, description: Description) -> Snapshot:
-        """Return the snapshot of a description that was just read, without changes."""
-        return cls(description, {}, description.document, description.files)
+        """Return the snapshot of a description that was just read, with the unsaved texts that it was read with."""
+        texts = {} if description.overlay is None else dict(description.overlay.texts)
+        return cls(description, texts, description.document, description.files)
 
     @property
     def root(self) -> Element:
@@ -101,13 +102,18 @@ class Snapshot:
         return Snapshot(self.description, texts, new_expansion.document, new_expansion.dependencies, new_expansion)
 
 
-def read_again(description: Description) -> Description:
+def read_again(description: Description, unsaved: Mapping[str | os.PathLike[str], str] | None = None) -> Description:
     """Return a description read again from its files, with the same arguments and packages.
+
+    Args:
+        description: the description.
+        unsaved: texts that replace the contents of files, by real path.
 
     Raises:
         LinkwrightError: if the files can no longer be read or expanded.
     """
-    snapshot = Snapshot.of(description).with_texts({})
+    overlay = Overlay(unsaved)
+    snapshot = Snapshot.of(description).with_texts(overlay.texts)
     if snapshot.expansion is None:
-        return Description(description.name, snapshot.document, read(snapshot.document))
-    return Description.of_expansion(description.name, snapshot.expansion)
+        return Description(description.name, snapshot.document, read(snapshot.document), overlay=overlay)
+    return Description.of_expansion(description.name, snapshot.expansion, overlay)

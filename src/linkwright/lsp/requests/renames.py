@@ -15,7 +15,8 @@ from linkwright.language.includes import real
 from linkwright.language.mentions import Mention
 from linkwright.language.occurrences import Occurrence
 from linkwright.language.proof import Edit
-from linkwright.language.renaming import occurrence_at, references, rename
+from linkwright.language.rename_places import RenamePlace, place_at, rename_place
+from linkwright.language.renaming import occurrence_at, references
 from linkwright.language.uses import uses_at
 from linkwright.lsp.edits import document_edits
 from linkwright.lsp.requests.names import target_locations
@@ -79,33 +80,46 @@ def add_requests(server: LinkwrightServer) -> None:
         return found
 
     @server.feature(types.TEXT_DOCUMENT_PREPARE_RENAME)
-    def prepare_rename_request(
+    async def prepare_rename_request(
         server: LinkwrightServer, asked: types.PrepareRenameParams
     ) -> types.PrepareRenamePlaceholder | None:
-        _, name = place(server, asked.text_document, asked.position)
-        positions = None if name is None else server.positions(name.file)
-        if name is None or positions is None:
+        found = await rename_place_at(server, asked.text_document, asked.position)
+        positions = None if found is None else server.positions(found.file)
+        if found is None or positions is None:
             return None
-        return types.PrepareRenamePlaceholder(positions.range(name.start, name.end), name.name)
+        return types.PrepareRenamePlaceholder(positions.range(found.start, found.end), found.name)
+
+    async def rename_place_at(
+        server: LinkwrightServer, document: types.TextDocumentIdentifier, position: types.Position
+    ) -> RenamePlace | None:
+        path, positions = server.text(document)
+        project = server.project
+        if positions is None or project is None:
+            return None
+        await server.when_indexed()
+        texts, offset = server.texts(), positions.offset(position)
+        return await server.in_thread(lambda: place_at(project, texts, real(path), offset))
 
     @server.feature(types.TEXT_DOCUMENT_RENAME, types.RenameOptions(prepare_provider=True))
     async def rename_request(server: LinkwrightServer, asked: types.RenameParams) -> types.WorkspaceEdit | None:
-        texts, name = place(server, asked.text_document, asked.position)
+        texts = server.texts()
+        found = await rename_place_at(server, asked.text_document, asked.position)
         project = server.project
-        if name is None or project is None:
+        if found is None or project is None:
             return None
-        await server.when_indexed()
         try:
-            renaming = await server.in_thread(lambda: rename(project, texts, name, asked.new_name))
+            renaming = await server.in_thread(lambda: rename_place(project, texts, found, asked.new_name))
         except LinkwrightError as error:
             message = "\n".join(localized(diagnostic.message) for diagnostic in error.diagnostics)
             raise JsonRpcException(message, code=int(types.LSPErrorCodes.RequestFailed)) from None
         if server.texts() != texts:  # the offsets of the edits are those of the former texts
             message = localized(phrase("a text has changed meanwhile; rename again"))
             raise JsonRpcException(message, code=int(types.LSPErrorCodes.ContentModified))
+        shown = [localized(note) for note in renaming.notes]
         if renaming.unchanged:
-            shown = types.ShowMessageParams(types.MessageType.Info, _unchanged(server, renaming.unchanged))
-            server.window_show_message(shown)
+            shown.append(_unchanged(server, renaming.unchanged))
+        if shown:
+            server.window_show_message(types.ShowMessageParams(types.MessageType.Info, "\n".join(shown)))
         return document_edits(server, renaming.edits)
 
     files = types.FileOperationFilter(types.FileOperationPattern("**/*"), "file")

@@ -70,11 +70,13 @@ class EditPreview(ServerMessage):
 class EditWritten(ServerMessage):
     """The files that were written for an edit or an undo.
 
-    `refusal` is the reason why writing failed, or None.
+    `refusal` is the reason why writing failed, or None. `is_saved` is False if the edit was sent to an editor of source
+    files instead, because it concerns unsaved texts.
     """
 
     files: list[str]
     refusal: DiagnosticItem | None
+    is_saved: bool
 
 
 class EditHistory(ServerMessage):

@@ -5,7 +5,7 @@ Paths are absolute. Texts have the line end LF, regardless of the line ends in t
 
 from __future__ import annotations
 
-from typing import ClassVar
+from typing import ClassVar, Literal
 
 from linkwright.page.protocol.description import DiagnosticItem
 from linkwright.page.protocol.message import PageMessage, ServerMessage
@@ -65,6 +65,44 @@ class WriteSourceFile(PageMessage):
     number: int
     path: str
     version: int
+    text: str
+
+
+class ShowUnsavedText(PageMessage):
+    """A request to show the descriptions of the page with the unsaved text of a file that the page edits.
+
+    `number` increases with each text of the page. `text` is None if the file counts as it is on the disk again.
+    """
+
+    number: int
+    path: str
+    text: str | None
+
+
+class UnsavedTextShown(ServerMessage):
+    """The result of `ShowUnsavedText` with this number.
+
+    `outcome` is ``shown``, ``errors`` if the last robot without errors stays, or ``elsewhere`` if no shown description
+    contains the file and follows unsaved texts.
+    """
+
+    NEWEST_OF: ClassVar[tuple[str, ...]] = ("number",)
+
+    number: int
+    path: str
+    outcome: Literal["shown", "errors", "elsewhere"]
+
+
+class UnsavedTextEdited(ServerMessage):
+    """An edit of the robot in a file with an unsaved text, which the page applies to that text.
+
+    `base` is the number of the text that the edit was made for, or 0 for the text on the disk.
+    """
+
+    NEWEST_OF: ClassVar[tuple[str, ...]] = ("path", "base")
+
+    path: str
+    base: int
     text: str
 
 

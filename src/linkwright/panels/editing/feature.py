@@ -7,15 +7,19 @@ expanding the description again.
 from __future__ import annotations
 
 import asyncio
+import os
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from linkwright.descriptions import Description
 from linkwright.descriptions.editing import EditHistory, EditPlan, EditRefusedError, Workspace, plan_edit, read_again
+from linkwright.descriptions.unsaved import UnsavedText, with_lf
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, phrase
 from linkwright.page.audience import Page
 from linkwright.page.protocol import editing
 from linkwright.page.protocol.message import PageMessage
+from linkwright.page.protocol.source_editor import UnsavedTextEdited
 from linkwright.panels.description import item_of
 from linkwright.panels.editing.parts import files_of, parts_of, request_of
 from linkwright.panels.page_feature import FeatureHost, PageFeature
@@ -87,12 +91,17 @@ class EditingFeature(PageFeature):
                 raise EditRefusedError(
                     Diagnostic("EDIT101", phrase("this edit cannot be applied, because it was not previewed"))
                 )
+            unsaved = self.context.library.unsaved.texts
+            if any(path in unsaved for path in plan.texts):
+                _edit_unsaved(plan, unsaved)
+                page.send(editing.EditWritten(list(plan.texts), None, is_saved=False))
+                return
             files = await self.write(plan)
         else:
             async with self._writing:
                 undone = history.undo if isinstance(message, editing.UndoEdit) else history.redo
                 files = await asyncio.to_thread(undone)
-        page.send(editing.EditWritten(files, None))
+        page.send(editing.EditWritten(files, None, is_saved=True))
         self._send_history()
 
     async def write(self, plan: EditPlan) -> list[str]:
@@ -120,7 +129,10 @@ class EditingFeature(PageFeature):
                 raise EditRefusedError(
                     Diagnostic("EDIT102", phrase("these numbers are not finite, or too large for a robot"))
                 )
-        plan = await asyncio.to_thread(_plan_request, description, message)
+        unsaved: dict[str | os.PathLike[str], str] = {
+            path: unsaved.text for path, unsaved in self.context.library.unsaved.texts.items()
+        }
+        plan = await asyncio.to_thread(_plan_request, description, message, unsaved)
         self._previewed_plans[page] = message.number, plan
         page.send(editing.EditPreview(message.number, files_of(plan), list(plan.side_effects), None))
 
@@ -149,12 +161,14 @@ class EditingFeature(PageFeature):
             self._previewed_plans.pop(page, None)
             page.send(editing.EditPreview(message.number, [], [], item_of(diagnostic)))
         else:
-            page.send(editing.EditWritten([], item_of(diagnostic)))
+            page.send(editing.EditWritten([], item_of(diagnostic), is_saved=False))
 
 
-def _plan_request(description: Description, message: editing.PreviewEdit) -> EditPlan:
-    """Return the plan of an edit, computed from the current content of the files."""
-    return plan_edit(read_again(description), request_of(message), Workspace(Path(description.name)).refusal)
+def _plan_request(
+    description: Description, message: editing.PreviewEdit, unsaved: Mapping[str | os.PathLike[str], str]
+) -> EditPlan:
+    """Return the plan of an edit, computed from the current content of the files, or their unsaved texts."""
+    return plan_edit(read_again(description, unsaved), request_of(message), Workspace(Path(description.name)).refusal)
 
 
 def _refusal_reason(robot: Robot | None, description: Description | None) -> Phrase | None:
@@ -170,6 +184,17 @@ def _refusal_reason(robot: Robot | None, description: Description | None) -> Phr
             "this description was received as text, so its file is unknown: open it with `linkwright view FILE`"
         )
     return None
+
+
+def _edit_unsaved(plan: EditPlan, unsaved: Mapping[str, UnsavedText]) -> None:
+    """Send an edit to the page that has unsaved texts of its files; a file without one is edited there, too."""
+    owner = next(unsaved[path].owner for path in plan.texts if path in unsaved)
+    for path, text in plan.texts.items():
+        own = unsaved.get(path)
+        page = owner if own is None else own.owner
+        if isinstance(page, Page):
+            known_path, base = (path, 0) if own is None else (own.path, own.number)
+            page.send(UnsavedTextEdited(known_path, base, with_lf(text)))
 
 
 def elsewhere() -> Diagnostic:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+from collections.abc import Coroutine
 from dataclasses import dataclass, field
 from importlib.util import find_spec
 from itertools import count
@@ -11,6 +12,7 @@ from typing import Any
 
 from linkwright.descriptions.editing import EditRefusedError
 from linkwright.descriptions.editing.refusals import changed_file
+from linkwright.descriptions.unsaved import UnsavedText
 from linkwright.diagnostics import Diagnostic, Phrase, phrase
 from linkwright.diagnostics.extras import EXTRAS, install_hint
 from linkwright.page.audience import Page
@@ -19,7 +21,7 @@ from linkwright.page.protocol.message import PageMessage
 from linkwright.panels.description import DescriptionFeature, item_of
 from linkwright.panels.editing.feature import EditingFeature, elsewhere
 from linkwright.panels.page_feature import FeatureHost, PageFeature
-from linkwright.panels.source_editor.files import FileContent, SourceFiles
+from linkwright.panels.source_editor.files import FileContent, SourceFiles, with_line_ends
 from linkwright.panels.source_editor.language_process import LanguageProcess
 
 _PERIOD = 0.4
@@ -54,6 +56,8 @@ class SourceEditorFeature(PageFeature):
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
         self._editors: dict[Page, _Editor] = {}
+        self._unsaved = viewer.context.library.unsaved
+        self._shown: set[asyncio.Task[None]] = set()
         self._waiting: asyncio.Queue[tuple[Page, PageMessage]] = asyncio.Queue()
         self._tasks: list[asyncio.Task[None]] = []
 
@@ -73,13 +77,20 @@ class SourceEditorFeature(PageFeature):
         editor = self._editors.pop(page, None)
         if editor is not None:
             editor.process.close()
+            self._start(self._unsaved.remove_all(page))
 
     def close(self) -> None:
         """End all language servers, and stop handling requests."""
-        for task in self._tasks:
-            task.cancel()
         for page in list(self._editors):
             self.page_closed(page)
+        for task in (*self._tasks, *self._shown):
+            task.cancel()
+
+    def _start(self, work: Coroutine[Any, Any, None]) -> None:
+        """Run work beside the requests, which need not wait for an expansion."""
+        task = asyncio.get_running_loop().create_task(work)
+        self._shown.add(task)
+        task.add_done_callback(self._shown.discard)
 
     async def _work(self) -> None:
         while True:
@@ -103,6 +114,9 @@ class SourceEditorFeature(PageFeature):
             await self._send_file(page, editor, message.path)
         elif isinstance(message, messages.LeaveSourceFile):
             editor.open_files.pop(message.path, None)
+        elif isinstance(message, messages.ShowUnsavedText):
+            if (open_file := editor.open_files.get(message.path)) is not None:
+                self._start(self._show_unsaved(page, message, open_file.content.text or ""))
         elif isinstance(message, messages.AskSourceFolder):
             folders, files = await asyncio.to_thread(editor.files.names, Path(message.path))
             page.send(messages.SourceFolder(message.path, folders, files))
@@ -163,6 +177,15 @@ class SourceEditorFeature(PageFeature):
             open_file.content = content
         uri = Path(path).as_uri() if Path(path).is_absolute() else ""
         page.send(messages.SourceFile(path, uri, open_file.version, content.page_text, content.why_not))
+
+    async def _show_unsaved(self, page: Page, message: messages.ShowUnsavedText, on_disk: str) -> None:
+        """Show descriptions with an unsaved text, and send the page what became of it."""
+        if message.text is None:
+            outcome = await self._unsaved.remove(page, message.path)
+        else:
+            text = with_line_ends(message.text, on_disk)
+            outcome = await self._unsaved.put(UnsavedText(page, message.path, message.number, text))
+        page.send(messages.UnsavedTextShown(message.number, message.path, outcome))
 
     async def _change(
         self, page: Page, editor: _Editor, message: messages.WriteSourceFile | messages.CreateSourceFile

@@ -9,6 +9,7 @@ from itertools import takewhile
 from pathlib import Path
 
 from linkwright.descriptions.editing import EditPlan, EditRefusedError, Workspace
+from linkwright.descriptions.unsaved import with_lf
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, display_path, foreign, phrase
 from linkwright.xmltree.decoding import decode
 from linkwright.xmltree.reader import read_bytes
@@ -46,7 +47,7 @@ class FileContent:
     @property
     def page_text(self) -> str | None:
         """The text with the line end LF."""
-        return None if self.text is None else _LINE_END.sub("\n", self.text)
+        return None if self.text is None else with_lf(self.text)
 
 
 class SourceFiles:

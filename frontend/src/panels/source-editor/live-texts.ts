@@ -1,0 +1,93 @@
+import type { Connection } from "../../connection/connection";
+import type { UnsavedTextEdited, UnsavedTextShown } from "../../protocol";
+import { fitsMessage } from "./message-size";
+import type { SourceDocument } from "./source-document";
+
+/** A text is sent this time after its last change, ms. */
+const PAUSE_MS = 300;
+
+/** The documents of the editor, for the scene. */
+interface LiveDocuments {
+  readonly open: readonly SourceDocument[];
+  /** Whether a file belongs to a description that the page shows. */
+  isShownInScene(path: string): boolean;
+  /** Applies an edit that was made in the scene. */
+  applyEdit(edit: UnsavedTextEdited): void;
+}
+
+/** Shows the unsaved texts in the scene, soon after they were typed. */
+export class LiveTexts {
+  private timer: ReturnType<typeof setTimeout> | undefined;
+  private number = 0;
+  /** The files whose unsaved texts the server has, with the newest of their numbers. */
+  private readonly sent = new Map<string, number>();
+  private readonly outcomes = new Map<string, UnsavedTextShown["outcome"]>();
+
+  /** @param onOutcome - called when the server has shown a text, or could not. */
+  constructor(
+    private readonly connection: Connection,
+    private readonly documents: LiveDocuments,
+    private readonly onOutcome: () => void,
+  ) {
+    connection.on("unsaved_text_shown", (message) => this.onShown(message));
+    connection.on("unsaved_text_edited", (message) => documents.applyEdit(message));
+  }
+
+  /** Whether the scene shows unsaved texts, or the robot from before their errors; null if there are none. */
+  get outcome(): "shown" | "errors" | null {
+    const outcomes = [...this.outcomes.values()];
+    return (["errors", "shown"] as const).find((outcome) => outcomes.includes(outcome)) ?? null;
+  }
+
+  /** Sends the texts that have changed, after a pause. */
+  changed(): void {
+    clearTimeout(this.timer);
+    this.timer = setTimeout(() => this.send(), PAUSE_MS);
+  }
+
+  /** Sends all unsaved texts to a program that has none of them. */
+  restart(): void {
+    this.sent.clear();
+    this.outcomes.clear();
+    for (const document of this.documents.open) document.described = null;
+    this.send();
+  }
+
+  private send(): void {
+    for (const document of this.documents.open) {
+      const { path } = document;
+      const wasSent = this.sent.has(path);
+      if (document.isUnsaved && this.documents.isShownInScene(path)) {
+        if (document.newestSent?.since.empty === true) continue;
+        const text = document.state.doc.toString();
+        if (!fitsMessage(text)) continue;
+        this.number += 1;
+        document.beginShowing(this.number);
+        this.request(path, text);
+      } else if (wasSent && !document.isUnsaved) {
+        this.number += 1;
+        document.beginShowing(this.number);
+        this.request(path, null);
+      }
+    }
+  }
+
+  private request(path: string, text: string | null): void {
+    this.sent.set(path, this.number);
+    this.connection.send({ type: "show_unsaved_text", number: this.number, path, text });
+  }
+
+  private onShown({ number, path, outcome }: UnsavedTextShown): void {
+    const document = this.documents.open.find((each) => each.path === path);
+    if (!document) return;
+    document.endShowing(number, outcome === "shown");
+    if (this.sent.get(path) !== number) return;
+    if (document.isUnsaved) this.outcomes.set(path, outcome);
+    else {
+      this.outcomes.delete(path);
+      this.sent.delete(path);
+      document.described = null;
+    }
+    this.onOutcome();
+  }
+}

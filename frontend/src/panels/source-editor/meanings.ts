@@ -1,0 +1,203 @@
+import { setDiagnosticsEffect } from "@codemirror/lint";
+import type { LSPClient } from "@codemirror/lsp-client";
+import { Prec, RangeSet, StateEffect, type Extension, type Range, type Text } from "@codemirror/state";
+import { Decoration, EditorView, ViewPlugin, WidgetType, type DecorationSet, type ViewUpdate } from "@codemirror/view";
+import { h } from "../../dom";
+import { strings } from "../../strings";
+import { colorOf, hexOf, tokenRanges, type Color, type Legend } from "./server-meanings";
+import { positionIn, placeOf, type ServerRange } from "./server-places";
+import type { TextEdit } from "./workspace-edit";
+
+/** The meaning of a text is requested this time after its last change, ms. */
+const PAUSE_MS = 250;
+const MAX_HINT = 60;
+
+interface Hint {
+  readonly position: ServerRange["start"];
+  readonly label: string | readonly { readonly value: string }[];
+}
+interface WrittenColor {
+  readonly range: ServerRange;
+  readonly color: Color;
+}
+/** What the client shows of the meaning of a text, for the server. */
+export const MEANING_CAPABILITIES = {
+  textDocument: {
+    inlayHint: {},
+    colorProvider: {},
+    semanticTokens: { requests: { range: true, full: true }, tokenTypes: [], tokenModifiers: ["definition"], formats: ["relative"] },
+  },
+};
+
+const arrived = StateEffect.define<DecorationSet>();
+
+/** The value of an expression, or the name of a parameter, beside the text. */
+class HintWidget extends WidgetType {
+  constructor(private readonly label: string) {
+    super();
+  }
+
+  override eq(other: HintWidget): boolean {
+    return other.label === this.label;
+  }
+
+  toDOM(): HTMLElement {
+    const short = this.label.length > MAX_HINT ? `${this.label.slice(0, MAX_HINT)}…` : this.label;
+    return h("span", { class: "cm-inlay-hint", title: this.label, aria: { hidden: "true" } }, short);
+  }
+}
+
+/** A colour before the text that writes it; a click changes it. */
+class ColorWidget extends WidgetType {
+  constructor(
+    private readonly written: WrittenColor,
+    private readonly choose: (view: EditorView, written: WrittenColor, swatch: HTMLElement) => void,
+  ) {
+    super();
+  }
+
+  override eq(other: ColorWidget): boolean {
+    return JSON.stringify(other.written) === JSON.stringify(this.written);
+  }
+
+  toDOM(view: EditorView): HTMLElement {
+    const swatch = h("span", { class: "cm-color", title: strings.sourceEditor.chooseColor, aria: { hidden: "true" } }, h("i"));
+    const { red, green, blue, alpha } = this.written.color;
+    (swatch.firstElementChild as HTMLElement).style.background = `rgb(${red * 255} ${green * 255} ${blue * 255} / ${alpha})`;
+    swatch.addEventListener("mousedown", (event) => {
+      event.preventDefault();
+      this.choose(view, this.written, swatch);
+    });
+    return swatch;
+  }
+
+  override ignoreEvent(): boolean {
+    return true;
+  }
+}
+
+/** Requests values, names and colours of the visible text, and shows them. */
+class Meanings {
+  decorations: DecorationSet = Decoration.none;
+  colors: readonly WrittenColor[] = [];
+  private timer: ReturnType<typeof setTimeout> | undefined;
+  private isClosed = false;
+
+  constructor(
+    private readonly view: EditorView,
+    private readonly client: LSPClient,
+    private readonly uri: string,
+  ) {
+    this.later();
+  }
+
+  update({ docChanged, viewportChanged, changes, transactions }: ViewUpdate): void {
+    if (docChanged) this.decorations = this.decorations.map(changes);
+    const effects = transactions.flatMap((each) => each.effects);
+    for (const effect of effects) if (effect.is(arrived)) this.decorations = effect.value;
+    if (docChanged || viewportChanged || effects.some((effect) => effect.is(setDiagnosticsEffect))) this.later();
+  }
+
+  destroy(): void {
+    this.isClosed = true;
+    clearTimeout(this.timer);
+  }
+
+  /** Opens the browser's choice of colours for a colour of the text. */
+  choose(written: WrittenColor, anchor: DOMRect): void {
+    const field = h("input", { class: "cm-color-field", aria: { label: strings.sourceEditor.chooseColor } });
+    field.type = "color";
+    field.value = hexOf(written.color);
+    field.style.left = `${anchor.left}px`;
+    field.style.top = `${anchor.bottom}px`;
+    document.body.append(field);
+    field.addEventListener("change", () => void this.write(written, field.value).finally(() => field.remove()));
+    field.addEventListener("blur", () => field.remove());
+    field.focus();
+    field.showPicker();
+  }
+
+  private async write({ range, color }: WrittenColor, hex: string): Promise<void> {
+    this.client.sync();
+    const { doc } = this.view.state;
+    const asked = { textDocument: { uri: this.uri }, range, color: { ...colorOf(hex), alpha: color.alpha } };
+    const [first] = (await this.client.request<object, { label: string; textEdit?: TextEdit }[] | null>("textDocument/colorPresentation", asked)) ?? [];
+    if (this.isClosed || first === undefined || this.view.state.doc !== doc) return;
+    const edit = first.textEdit ?? { range, newText: first.label };
+    this.view.dispatch({ changes: { from: positionIn(doc, edit.range.start), to: positionIn(doc, edit.range.end), insert: edit.newText }, userEvent: "action" });
+    this.view.focus();
+  }
+
+  private later(): void {
+    clearTimeout(this.timer);
+    this.timer = setTimeout(() => void this.request().catch(() => undefined), PAUSE_MS); // the next change asks again
+  }
+
+  private async request(): Promise<void> {
+    const { client, view } = this;
+    if (!client.connected) return;
+    client.sync();
+    const { doc } = view.state;
+    const { from, to } = view.viewport;
+    const textDocument = { uri: this.uri };
+    const asked = { textDocument, range: { start: placeOf(doc, from), end: placeOf(doc, to) } };
+    const [hints, tokens, colors] = await Promise.all([
+      this.ask<Hint[]>("textDocument/inlayHint", asked),
+      this.ask<{ data: number[] }>("textDocument/semanticTokens/range", asked),
+      this.ask<WrittenColor[]>("textDocument/documentColor", { textDocument }),
+    ]);
+    if (this.isClosed || view.state.doc !== doc) return;
+    this.colors = colors ?? [];
+    const provider = client.serverCapabilities?.semanticTokensProvider as { legend: Legend } | undefined;
+    const found = [
+      ...(hints ?? []).map((hint) => hintAt(doc, hint)),
+      ...(provider ? tokenRanges(doc, tokens?.data ?? [], provider.legend).map(({ from, to, names }) => markOf(names).range(from, to)) : []),
+      ...this.colors.map((color) => this.swatch(doc, color)),
+    ];
+    view.dispatch({ effects: arrived.of(RangeSet.of(found, true)) });
+  }
+
+  private swatch(doc: Text, written: WrittenColor): Range<Decoration> {
+    const choose = (_: EditorView, color: WrittenColor, element: HTMLElement): void => this.choose(color, element.getBoundingClientRect());
+    return Decoration.widget({ widget: new ColorWidget(written, choose), side: -1 }).range(positionIn(doc, written.range.start));
+  }
+
+  /** Returns the answer of the server; null if it has none because the text has changed. */
+  private ask<Result>(method: string, asked: object): Promise<Result | null> {
+    return this.client.request<object, Result | null>(method, asked).catch(() => null);
+  }
+}
+
+let plugin: ViewPlugin<Meanings, { client: LSPClient; uri: string }> | undefined;
+
+function meaningsPlugin(): ViewPlugin<Meanings, { client: LSPClient; uri: string }> {
+  plugin ??= ViewPlugin.define<Meanings, { client: LSPClient; uri: string }>((view, { client, uri }) => new Meanings(view, client, uri), {
+    decorations: ({ decorations }) => decorations,
+  });
+  return plugin;
+}
+
+/** Returns what shows values of expressions, names by their meaning, and colours in a text. */
+export function meanings(client: LSPClient, uri: string): Extension {
+  // The meaning of a name counts more than its syntax: the colour of the inner element is seen.
+  return Prec.highest(meaningsPlugin().of({ client, uri }));
+}
+
+/** Returns what lets the user choose the colour on the line of a position; null if there is none. */
+export function colorChoice(view: EditorView, position: number): (() => void) | null {
+  const found = view.plugin(meaningsPlugin());
+  const line = view.state.doc.lineAt(position).number - 1;
+  const written = found?.colors.find(({ range }) => range.start.line === line);
+  if (!found || !written) return null;
+  const at = view.coordsAtPos(positionIn(view.state.doc, written.range.start)) ?? view.dom.getBoundingClientRect();
+  return () => found.choose(written, new DOMRect(at.left, at.top, 0, at.bottom - at.top));
+}
+
+function hintAt(doc: Text, { position, label }: Hint): Range<Decoration> {
+  const text = typeof label === "string" ? label : label.map(({ value }) => value).join("");
+  return Decoration.widget({ widget: new HintWidget(text), side: 1 }).range(positionIn(doc, position));
+}
+
+function markOf(names: readonly string[]): Decoration {
+  return Decoration.mark({ class: names.map((name) => `cm-token-${name}`).join(" ") });
+}

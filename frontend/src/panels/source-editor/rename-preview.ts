@@ -1,0 +1,55 @@
+import { h } from "../../dom";
+import { strings } from "../../strings";
+import { Dialog } from "../../widgets/dialog";
+import { shortPath } from "../place";
+import { excerpt } from "./navigation";
+import type { SourceDocument } from "./source-document";
+import type { TextEdit } from "./workspace-edit";
+
+/** A file that a rename changes. */
+export interface RenamedFile {
+  readonly document: SourceDocument;
+  readonly edits: readonly TextEdit[];
+}
+
+const MAX_LINES = 400;
+
+/**
+ * Shows the lines that a rename changes, and returns whether the user wants it.
+ *
+ * @param remarks - what the server tells about the rename, such as mentions that stay as they are.
+ */
+export function confirmRename(name: string, newName: string, files: readonly RenamedFile[], remarks: readonly string[]): Promise<boolean> {
+  const words = strings.sourceEditor;
+  const count = files.reduce((sum, { edits }) => sum + edits.length, 0);
+  let left = MAX_LINES;
+  const lists = files.flatMap(({ document, edits }) => {
+    const shown = edits.slice(0, left);
+    left -= shown.length;
+    return shown.length === 0 ? [] : [fileList(document, shown)];
+  });
+  const region = h("div", { class: "rename-lines", role: "group", tabIndex: 0, aria: { label: words.changedLines } }, ...lists);
+  if (count > MAX_LINES) region.append(h("p", {}, words.moreLines(count - MAX_LINES)));
+  const notes = remarks.map((remark) => h("p", { class: "rename-remark" }, remark));
+  return new Promise((resolve) => {
+    let isWanted = false;
+    const accept = (): undefined => void (isWanted = true);
+    const dialog = new Dialog(
+      words.renameTitle(name, newName),
+      [h("p", {}, words.renameCount(count, files.length)), region, ...notes],
+      [{ label: strings.shell.cancel }, { label: words.rename, run: accept, main: true }],
+      "rename-preview",
+    );
+    dialog.element.addEventListener("close", () => resolve(isWanted));
+    dialog.open();
+  });
+}
+
+function fileList(document: SourceDocument, edits: readonly TextEdit[]): HTMLElement {
+  const lines = [...edits].sort((a, b) => a.range.start.line - b.range.start.line || a.range.start.character - b.range.start.character).map(({ range, newText }) => {
+    const { line, before, name, after } = excerpt(document, range);
+    const code = h("code", {}, before, h("del", {}, name), h("ins", {}, newText), after);
+    return h("li", {}, h("span", { class: "place-list-line" }, String(line)), code);
+  });
+  return h("section", {}, h("h3", { title: document.path }, shortPath(document.path)), h("ul", {}, ...lines));
+}

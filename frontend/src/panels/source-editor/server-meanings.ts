@@ -1,0 +1,50 @@
+import type { Text } from "@codemirror/state";
+import { positionIn } from "./server-places";
+
+const TOKEN_FIELDS = 5;
+
+/** A colour whose parts are between 0 and 1. */
+export interface Color {
+  readonly red: number;
+  readonly green: number;
+  readonly blue: number;
+  readonly alpha: number;
+}
+/** The names of types and modifiers, by which tokens refer to them. */
+export interface Legend {
+  readonly tokenTypes: readonly string[];
+  readonly tokenModifiers: readonly string[];
+}
+
+interface TokenRange {
+  readonly from: number;
+  readonly to: number;
+  readonly names: readonly string[];
+}
+
+/** Returns the ranges of semantic tokens, with their types and modifiers, from the relative numbers of the protocol. */
+export function tokenRanges(doc: Text, data: readonly number[], { tokenTypes, tokenModifiers }: Legend): TokenRange[] {
+  const ranges: TokenRange[] = [];
+  let [line, character] = [0, 0];
+  for (let at = 0; at + TOKEN_FIELDS <= data.length; at += TOKEN_FIELDS) {
+    const [lines = 0, characters = 0, length = 0, type = 0, modifiers = 0] = data.slice(at, at + TOKEN_FIELDS);
+    character = lines === 0 ? character + characters : characters;
+    line += lines;
+    const names = [tokenTypes[type] ?? "", ...tokenModifiers.filter((_, bit) => (modifiers >> bit) & 1)];
+    const from = positionIn(doc, { line, character });
+    const to = positionIn(doc, { line, character: character + length });
+    if (to > from) ranges.push({ from, to, names });
+  }
+  return ranges;
+}
+
+/** Returns a colour as `#rrggbb`, without its alpha. */
+export function hexOf({ red, green, blue }: Color): string {
+  return `#${[red, green, blue].map((part) => Math.round(Math.min(Math.max(part, 0), 1) * 255).toString(16).padStart(2, "0")).join("")}`;
+}
+
+/** Returns the colour of `#rrggbb`, opaque. */
+export function colorOf(hex: string): Color {
+  const [red = 0, green = 0, blue = 0] = [1, 3, 5].map((at) => Math.round((parseInt(hex.slice(at, at + 2), 16) / 255) * 1000) / 1000);
+  return { red, green, blue, alpha: 1 };
+}

@@ -1,0 +1,195 @@
+import type { EditorState, TransactionSpec } from "@codemirror/state";
+import type { SourceFile, SourceFileWritten } from "../../protocol";
+import { Signal } from "../../signal";
+import type { Session } from "../../state/session";
+import { strings } from "../../strings";
+import { fitsMessage } from "./message-size";
+import { SourceDocument } from "./source-document";
+
+const RESTARTS = 3;
+const RESTART_MS = 1000;
+
+/** The editor, for its files. */
+interface FilesHost {
+  /** Returns the state of a view of a new document. */
+  stateOf(path: string, uri: string, text: string, isReadOnly: boolean): EditorState;
+  change(document: SourceDocument, spec: TransactionSpec): void;
+  /** The workspace was opened, for the first time or again. */
+  opened(folder: string, uri: string): void;
+  added(document: SourceDocument): void;
+  /** The file of a document was written by the editor, or by another program. */
+  written(document: SourceDocument, isOwn: boolean): void;
+  created(): void;
+  tell(message: string): void;
+}
+
+/** The documents of the editor, which are read from the server and written there. */
+export class SourceFiles {
+  /** A document was opened, changed on the disk or written. */
+  readonly changed = new Signal();
+  /** Why nothing can be edited; empty if files can, null before the server has answered. */
+  whyNot: string | null = null;
+  private readonly documents = new Map<string, SourceDocument>();
+  private readonly awaited = new Map<string, ((document: SourceDocument | null) => void)[]>();
+  private readonly writing = new Map<number, SourceDocument>();
+  private readonly creating = new Map<number, { resolve: () => void; reject: (reason: Error) => void }>();
+  /** The file whose workspace is edited. */
+  private main = "";
+  private isOpen = false;
+  private restarts = 0;
+  private number = 0;
+
+  constructor(
+    private readonly session: Session,
+    private readonly host: FilesHost,
+  ) {
+    this.listen();
+  }
+
+  get open(): readonly SourceDocument[] {
+    return [...this.documents.values()];
+  }
+
+  get unsaved(): readonly SourceDocument[] {
+    return this.open.filter((document) => document.isUnsaved);
+  }
+
+  /** Opens a file, and the workspace if it is the first one; null if it cannot be read. */
+  load(path: string): Promise<SourceDocument | null> {
+    const known = this.documents.get(path);
+    if (known) return Promise.resolve(known);
+    if (this.whyNot !== "") this.main = path;
+    return new Promise((resolve) => {
+      const waiting = this.awaited.get(path);
+      if (waiting) waiting.push(resolve);
+      else {
+        this.awaited.set(path, [resolve]);
+        if (this.isOpen) this.session.connection.send({ type: "ask_source_file", path });
+        else this.openWorkspace();
+      }
+    });
+  }
+
+  /** Creates an empty file, and rejects with the reason if it cannot be created. */
+  create(path: string): Promise<void> {
+    return new Promise((resolve, reject) => {
+      this.number += 1;
+      this.creating.set(this.number, { resolve, reject });
+      this.session.connection.send({ type: "create_source_file", number: this.number, path });
+    });
+  }
+
+  /** Writes all files that have changed. */
+  saveAll(): void {
+    const words = strings.sourceEditor;
+    const { connection } = this.session;
+    if (connection.state !== "connected") {
+      this.host.tell(words.disconnected);
+      return;
+    }
+    for (const document of this.unsaved) {
+      if (document.conflict !== null || document.isWriting) continue;
+      const text = document.beginWriting();
+      if (!fitsMessage(text)) {
+        document.endWriting(null);
+        this.host.tell(words.tooLong(nameOf(document.path)));
+        continue;
+      }
+      this.number += 1;
+      this.writing.set(this.number, document);
+      connection.send({ type: "write_source_file", number: this.number, path: document.path, version: document.version, text });
+    }
+  }
+
+  private listen(): void {
+    const { connection, description } = this.session;
+    connection.on("editor_opened", ({ folder, uri, why_not }) => this.onOpened(folder, uri, why_not));
+    connection.on("source_file", (message) => this.onFile(message));
+    connection.on("source_file_written", (message) => this.onWritten(message));
+    connection.on("hello", () => this.onProgramStarted());
+    connection.on("diagnostics", () => this.reopen());
+    connection.on("description_changed", () => this.reopen());
+    description.arrived.on(() => this.reopen());
+    connection.on("language_server_ended", () => {
+      this.isOpen = false;
+      this.restarts += 1;
+      this.host.tell(strings.sourceEditor.ended);
+      if (this.restarts <= RESTARTS) setTimeout(() => this.reopen(), RESTART_MS);
+    });
+    window.addEventListener("beforeunload", (event) => this.unsaved.length > 0 && event.preventDefault());
+  }
+
+  /** Forgets what the program before was asked. */
+  private onProgramStarted(): void {
+    this.isOpen = false;
+    for (const document of this.writing.values()) document.endWriting(null);
+    for (const { reject } of this.creating.values()) reject(new Error(strings.sourceEditor.disconnected));
+    this.writing.clear();
+    this.creating.clear();
+  }
+
+  /** Opens the workspace again, after the program was restarted. */
+  private reopen(): void {
+    if (!this.isOpen && this.main !== "") this.openWorkspace();
+  }
+
+  private openWorkspace(): void {
+    this.session.connection.send({ type: "open_editor", file: this.main });
+  }
+
+  private onOpened(folder: string, uri: string, whyNot: string): void {
+    this.whyNot = whyNot;
+    this.isOpen = whyNot === "";
+    if (this.isOpen) {
+      for (const path of [...this.documents.keys(), ...this.awaited.keys()]) this.session.connection.send({ type: "ask_source_file", path });
+      this.host.opened(folder, uri);
+    } else for (const path of [...this.awaited.keys()]) this.settle(path, null);
+    this.changed.emit();
+  }
+
+  private onFile({ path, uri, version, text, why_not }: SourceFile): void {
+    let document = this.documents.get(path);
+    if (document) {
+      document.whyNot = why_not;
+      const spec = text === null ? null : document.diskChanged(text, version);
+      if (spec) this.host.change(document, spec);
+      this.host.written(document, false);
+    } else if (text !== null) {
+      document = new SourceDocument(path, uri, version, this.host.stateOf(path, uri, text, why_not !== ""));
+      document.whyNot = why_not;
+      this.documents.set(path, document);
+      this.host.added(document);
+    } else this.host.tell(why_not);
+    this.settle(path, document ?? null);
+    this.changed.emit();
+  }
+
+  private onWritten({ number, path, version, refusal }: SourceFileWritten): void {
+    const [document, created] = [this.writing.get(number), this.creating.get(number)];
+    this.writing.delete(number);
+    this.creating.delete(number);
+    document?.endWriting(refusal === null ? version : null);
+    const why = refusal ? [refusal.message, ...refusal.hints].join(" ") : "";
+    if (refusal && created) created.reject(new Error(why));
+    else if (refusal) this.host.tell(why);
+    else if (document) {
+      this.host.written(document, true);
+      this.host.tell(strings.sourceEditor.saved(nameOf(path)));
+    } else {
+      this.host.created();
+      created?.resolve();
+    }
+    this.changed.emit();
+  }
+
+  private settle(path: string, document: SourceDocument | null): void {
+    const waiting = this.awaited.get(path) ?? [];
+    this.awaited.delete(path);
+    for (const resolve of waiting) resolve(document);
+  }
+}
+
+/** Returns the name of a file without its folders. */
+export function nameOf(path: string): string {
+  return path.slice(path.lastIndexOf("/") + 1);
+}

@@ -1,0 +1,169 @@
+import type { LSPClient } from "@codemirror/lsp-client";
+import { button, h } from "../../dom";
+import { strings } from "../../strings";
+import { Dialog } from "../../widgets/dialog";
+import { shortPath } from "../place";
+import type { Documents } from "./documents";
+import type { ServerLocation } from "./navigation";
+import { pathOf, type ServerRange } from "./server-places";
+import { matches } from "./symbol-match";
+import { messageOf } from "./workspace-edit";
+
+interface DocumentSymbol {
+  readonly name: string;
+  readonly detail?: string | null;
+  readonly selectionRange: ServerRange;
+  readonly children?: readonly DocumentSymbol[] | null;
+}
+interface WorkspaceSymbol {
+  readonly name: string;
+  readonly containerName?: string | null;
+  readonly location: ServerLocation;
+}
+
+/** A symbol in the list: the depth is that of the element in its file. */
+interface ListedSymbol {
+  readonly name: string;
+  readonly detail: string;
+  readonly depth: number;
+  readonly location: ServerLocation;
+}
+
+const SEARCH_MS = 120;
+const MAX_LISTED = 300;
+let searches = 0;
+
+/** The search for names in the shown file, or in the whole workspace. */
+export class SymbolSearch {
+  private readonly id = `symbols-${String(++searches)}`;
+  private readonly field = h("input", { class: "field wide", role: "combobox" });
+  private readonly list = h("div", { class: "symbol-list", role: "listbox" });
+  private readonly status = h("p", { class: "hint", role: "status" });
+  private readonly scopes: readonly [HTMLButtonElement, HTMLButtonElement];
+  private readonly dialog: Dialog;
+  private ofFile: readonly ListedSymbol[] = [];
+  private listed: readonly ListedSymbol[] = [];
+  private isWide = false;
+  private chosen = 0;
+  private number = 0;
+  private timer: ReturnType<typeof setTimeout> | undefined;
+
+  /** @param open - called with the place of the symbol that the user chose. */
+  constructor(
+    private readonly client: LSPClient,
+    private readonly documents: Documents,
+    open: (location: ServerLocation) => void,
+  ) {
+    const words = strings.sourceEditor;
+    this.scopes = [
+      button(words.symbolsOfFile, () => this.setWide(false), "tool framed", words.symbolsOfFile),
+      button(words.symbolsOfAll, () => this.setWide(true), "tool framed", words.symbolsOfAll),
+    ];
+    const attributes = { "aria-label": words.symbolName, "aria-controls": this.id, "aria-expanded": "true", "aria-autocomplete": "list", autocomplete: "off" };
+    for (const [name, value] of Object.entries(attributes)) this.field.setAttribute(name, value);
+    this.field.placeholder = words.symbolName;
+    this.list.id = this.id;
+    this.list.setAttribute("aria-label", words.symbols);
+    const go = (): undefined => {
+      const symbol = this.listed[this.chosen];
+      if (symbol) open(symbol.location);
+    };
+    const scopes = h("div", { class: "symbol-scopes", role: "group", aria: { label: words.symbolsIn } }, ...this.scopes);
+    this.dialog = new Dialog(words.symbols, [scopes, this.field, this.list, this.status], [{ label: strings.shell.cancel }, { label: words.goTo, run: go, main: true }], "symbol-search");
+    this.field.addEventListener("input", () => this.later());
+    this.dialog.element.addEventListener("keydown", (event) => this.onKeyDown(event), true);
+    this.list.addEventListener("click", ({ target }) => {
+      const option = target instanceof Element ? target.closest<HTMLElement>("[role=option]") : null;
+      if (!option) return;
+      this.choose([...this.list.children].indexOf(option));
+      go();
+      this.dialog.close();
+    });
+  }
+
+  /** Opens the search with the symbols of the shown file. */
+  async open(): Promise<void> {
+    const { shown } = this.documents;
+    if (!shown) return;
+    this.dialog.open(this.field);
+    this.client.sync();
+    const found = await this.client.request<object, DocumentSymbol[] | null>("textDocument/documentSymbol", { textDocument: { uri: shown.uri } });
+    this.ofFile = flatten(found ?? [], shown.uri, 0);
+    this.setWide(false);
+  }
+
+  private setWide(isWide: boolean): void {
+    this.isWide = isWide;
+    for (const [at, scope] of this.scopes.entries()) scope.setAttribute("aria-pressed", String((at === 1) === isWide));
+    void this.search();
+    this.field.focus();
+  }
+
+  private later(): void {
+    clearTimeout(this.timer);
+    this.timer = setTimeout(() => void this.search(), this.isWide ? SEARCH_MS : 0);
+  }
+
+  private async search(): Promise<void> {
+    const query = this.field.value.trim();
+    this.number += 1;
+    const { number } = this;
+    if (!this.isWide) {
+      const found = this.ofFile.filter(({ name, detail }) => matches(query, name) || matches(query, detail));
+      this.show(query === "" ? found : found.map((symbol) => ({ ...symbol, depth: 0 })));
+      return;
+    }
+    try {
+      const found = (await this.client.request<object, WorkspaceSymbol[] | null>("workspace/symbol", { query })) ?? [];
+      if (number === this.number) this.show(found.map((symbol) => listedSymbol(symbol)));
+    } catch (error) {
+      this.status.textContent = messageOf(error);
+    }
+  }
+
+  private show(symbols: readonly ListedSymbol[]): void {
+    this.listed = symbols.slice(0, MAX_LISTED);
+    this.list.replaceChildren(...this.listed.map((symbol, at) => this.optionOf(symbol, at)));
+    this.status.textContent = strings.sourceEditor.symbolCount(symbols.length);
+    this.dialog.ready = symbols.length > 0;
+    this.choose(0);
+  }
+
+  private optionOf({ name, detail, depth }: ListedSymbol, at: number): HTMLElement {
+    const option = h("div", { class: "symbol", role: "option" }, h("span", {}, name), h("small", {}, detail));
+    option.id = `${this.id}-${String(at)}`;
+    option.style.setProperty("--level", String(depth));
+    return option;
+  }
+
+  private choose(at: number): void {
+    this.chosen = Math.max(0, Math.min(at, this.listed.length - 1));
+    for (const [each, option] of [...this.list.children].entries()) option.setAttribute("aria-selected", String(each === this.chosen));
+    const option = this.list.children[this.chosen];
+    option?.scrollIntoView({ block: "nearest" });
+    if (option) this.field.setAttribute("aria-activedescendant", option.id);
+    else this.field.removeAttribute("aria-activedescendant");
+  }
+
+  private onKeyDown(event: KeyboardEvent): void {
+    const next = { ArrowDown: this.chosen + 1, ArrowUp: this.chosen - 1, PageDown: this.chosen + 10, PageUp: this.chosen - 10 }[event.key];
+    if (event.target === this.field && next !== undefined) this.choose(next);
+    else if ((event.ctrlKey || event.metaKey) && event.shiftKey && event.key.toLowerCase() === "o") this.setWide(!this.isWide);
+    else return;
+    event.preventDefault();
+    event.stopPropagation();
+  }
+}
+
+function flatten(symbols: readonly DocumentSymbol[], uri: string, depth: number): ListedSymbol[] {
+  return symbols.flatMap(({ name, detail, selectionRange, children }) => [
+    { name, detail: detail ?? "", depth, location: { uri, range: selectionRange } },
+    ...flatten(children ?? [], uri, depth + 1),
+  ]);
+}
+
+function listedSymbol({ name, location, containerName }: WorkspaceSymbol): ListedSymbol {
+  const path = pathOf(location.uri);
+  const file = path === null ? (containerName ?? "") : shortPath(path);
+  return { name, detail: `${file}:${location.range.start.line + 1}`, depth: 0, location };
+}

@@ -1,0 +1,95 @@
+"""The unsaved texts of editors, with which descriptions are read before they are saved."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Awaitable, Callable, Hashable, Mapping
+
+from linkwright.loading.lean_dataclasses import NamedTuple, dataclass
+from linkwright.loading.lean_typing import Literal
+from linkwright.xmltree import Overlay
+
+Outcome = Literal["shown", "errors", "elsewhere"]
+"""Whether descriptions are shown with a new text, stay as they were because of its errors, or do not contain it."""
+
+Listener = Callable[[str], Awaitable[Outcome]]
+"""A function that reads descriptions again after the text of a file, given by its real path, has changed."""
+
+
+@dataclass(frozen=True, slots=True)
+class UnsavedText:
+    """The unsaved text of a file in an editor.
+
+    Attributes:
+        owner: the editor.
+        path: the path by which the editor knows the file.
+        number: the number that the editor gave to this text.
+        text: the text, with the line ends of the file.
+    """
+
+    owner: Hashable
+    path: str
+    number: int
+    text: str
+
+
+class _Key(NamedTuple):
+    owner: Hashable
+    real_path: str
+
+
+def with_lf(text: str) -> str:
+    """Return a text with the line end LF, as pages have it."""
+    return text.replace("\r\n", "\n").replace("\r", "\n")
+
+
+def _key(owner: Hashable, path: str) -> _Key:
+    return _Key(owner, os.path.realpath(path))
+
+
+class UnsavedTexts:
+    """The unsaved texts of all editors; of two texts of a file, the newer one counts."""
+
+    def __init__(self) -> None:
+        self._texts: dict[_Key, UnsavedText] = {}
+        self._listeners: list[Listener] = []
+
+    def listen(self, listener: Listener) -> None:
+        """Call a function after each change."""
+        self._listeners.append(listener)
+
+    @property
+    def texts(self) -> Mapping[str, UnsavedText]:
+        """The texts by the real paths of their files."""
+        return {key.real_path: unsaved for key, unsaved in self._texts.items()}
+
+    def overlay(self) -> Overlay | None:
+        """Return the texts for reading descriptions, or None if there are none."""
+        return Overlay({path: unsaved.text for path, unsaved in self.texts.items()}) if self._texts else None
+
+    async def put(self, unsaved: UnsavedText) -> Outcome:
+        """Replace the editor's text of a file, and return what descriptions make of it."""
+        key = _key(unsaved.owner, unsaved.path)
+        self._texts.pop(key, None)  # the newest text is the last one
+        self._texts[key] = unsaved
+        return await self._changed(key.real_path)
+
+    async def remove(self, owner: Hashable, path: str) -> Outcome:
+        """Remove the editor's text of a file, which then counts as it is on the disk."""
+        key = _key(owner, path)
+        return "elsewhere" if self._texts.pop(key, None) is None else await self._changed(key.real_path)
+
+    async def remove_all(self, owner: Hashable) -> None:
+        """Remove all texts of an editor."""
+        paths = [key.real_path for key in self._texts if key.owner == owner]
+        self._texts = {key: unsaved for key, unsaved in self._texts.items() if key.owner != owner}
+        for path in paths:
+            await self._changed(path)
+
+    async def _changed(self, real_path: str) -> Outcome:
+        import asyncio  # imported here because the import of asyncio is slow
+
+        outcomes = await asyncio.gather(*(listener(real_path) for listener in self._listeners))
+        if "errors" in outcomes:
+            return "errors"
+        return "shown" if "shown" in outcomes else "elsewhere"

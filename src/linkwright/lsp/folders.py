@@ -1,0 +1,59 @@
+"""The folders of an editor: the search for their files with its progress, and changes on the disk."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Awaitable
+from uuid import uuid4
+
+from lsprotocol import types
+from pygls.lsp.server import LanguageServer
+
+from linkwright.diagnostics import Phrase
+from linkwright.diagnostics.translation import localized
+
+_PROGRESS_AFTER = 0.5
+"""The time in seconds after which an editor shows the progress of work; shorter work would only flicker."""
+
+WATCHED_FILES = (
+    "**/*.{xacro,urdf,sdf,world,srdf,launch,xml,py,yaml,yml,toml,msg,srv,action}",
+    "**/model.config",
+    "**/CMakeLists.txt",
+)
+"""The files whose changes on the disk can change findings: descriptions, their callers, packages and settings."""
+
+
+async def with_progress(server: LanguageServer, title: Phrase, work: Awaitable[None]) -> None:
+    """Wait for work. If it takes long, the editor shows its progress, provided that it can.
+
+    Args:
+        server: the server.
+        title: the title of the progress.
+        work: the work.
+    """
+    task = asyncio.ensure_future(work)
+    await asyncio.wait([task], timeout=_PROGRESS_AFTER)
+    window = server.client_capabilities.window
+    if task.done() or window is None or not window.work_done_progress:
+        await task
+        return
+    token = str(uuid4())
+    await server.work_done_progress.create_async(token)
+    server.work_done_progress.begin(token, types.WorkDoneProgressBegin(localized(title)))
+    try:
+        await task
+    finally:
+        server.work_done_progress.end(token, types.WorkDoneProgressEnd())
+        server.work_done_progress.tokens.pop(token, None)
+
+
+async def watch_files(server: LanguageServer) -> None:
+    """Ask the editor for the changes of files on the disk, provided that it can be asked."""
+    workspace = server.client_capabilities.workspace
+    watched = None if workspace is None else workspace.did_change_watched_files
+    if watched is None or not watched.dynamic_registration:
+        return
+    options = types.DidChangeWatchedFilesRegistrationOptions([types.FileSystemWatcher(glob) for glob in WATCHED_FILES])
+    method = types.WORKSPACE_DID_CHANGE_WATCHED_FILES
+    registration = types.Registration("watched-files", method, options)
+    await server.client_register_capability_async(types.RegistrationParams([registration]))

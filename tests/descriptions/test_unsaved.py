@@ -1,0 +1,52 @@
+"""Unsaved texts: which one counts, and who is told of changes."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+from linkwright.descriptions.unsaved import Outcome, UnsavedText, UnsavedTexts
+
+
+def real_path(path: str) -> str:
+    return os.path.realpath(path)
+
+
+def texts_of(unsaved: UnsavedTexts) -> dict[str, str]:
+    return {path: each.text for path, each in unsaved.texts.items()}
+
+
+async def test_of_two_editors_the_newer_text_counts_and_without_it_the_other_one(tmp_path: Path) -> None:
+    unsaved, path = UnsavedTexts(), str(tmp_path / "a.urdf")
+    real = real_path(path)
+    await unsaved.put(UnsavedText("one", path, 1, "first"))
+    await unsaved.put(UnsavedText("two", path, 1, "second"))
+    assert texts_of(unsaved) == {real: "second"}
+    await unsaved.put(UnsavedText("one", path, 2, "third"))
+    assert texts_of(unsaved) == {real: "third"}
+    await unsaved.remove("one", path)
+    assert texts_of(unsaved) == {real: "second"}
+    await unsaved.remove_all("two")
+    assert texts_of(unsaved) == {}
+    assert unsaved.overlay() is None
+
+
+async def test_listeners_tell_what_descriptions_make_of_a_text(tmp_path: Path) -> None:
+    unsaved, path = UnsavedTexts(), str(tmp_path / "a.urdf")
+    assert await unsaved.put(UnsavedText("one", path, 1, "")) == "elsewhere"
+    heard: list[str] = []
+
+    def listener(outcome: Outcome) -> None:
+        async def listen(real_path: str) -> Outcome:
+            heard.append(real_path)
+            return outcome
+
+        unsaved.listen(listen)
+
+    listener("elsewhere")
+    listener("shown")
+    assert await unsaved.put(UnsavedText("one", path, 2, "")) == "shown"
+    listener("errors")
+    assert await unsaved.remove("one", path) == "errors"
+    assert await unsaved.remove("one", path) == "elsewhere"  # it was removed before
+    assert heard == [real_path(path)] * 5

@@ -1,0 +1,120 @@
+"""The folders of an editor: added, removed, renamed and deleted while the server runs; its progress."""
+
+from __future__ import annotations
+
+import asyncio
+import shutil
+
+import pytest
+from lsprotocol import types
+
+from linkwright.diagnostics import phrase
+from linkwright.lsp.folders import WATCHED_FILES, with_progress
+from tests.lsp.conftest import MAIN, MANIFEST, PARTS, connected
+from tests.waiting import SECONDS
+
+MAIN_FILE, PARTS_FILE = "urdf/arm.urdf.xacro", "urdf/parts.xacro"
+
+
+def changed_folders(added=(), removed=()):
+    """Return the notification that folders were added and removed."""
+    event = types.WorkspaceFoldersChangeEvent(
+        [types.WorkspaceFolder(folder.as_uri(), folder.name) for folder in added],
+        [types.WorkspaceFolder(folder.as_uri(), folder.name) for folder in removed],
+    )
+    return types.DidChangeWorkspaceFoldersParams(event)
+
+
+async def test_a_folder_that_is_added_is_searched(editor):
+    other = editor.folder.parent / "other"
+    other.mkdir()
+    (other / "package.xml").write_text(MANIFEST.replace("arm_description", "other"))
+    (other / "main.urdf.xacro").write_text(MAIN.replace("parts.xacro", "$(find arm_description)/urdf/parts.xacro"))
+    editor.open(PARTS_FILE)
+    await editor.until(PARTS_FILE)
+    editor.client.workspace_did_change_workspace_folders(changed_folders(added=[other]))
+    symbols = await editor.client.workspace_symbol_async(types.WorkspaceSymbolParams("base"))
+    assert {symbol.location.uri for symbol in symbols} >= {(other / "main.urdf.xacro").as_uri()}
+
+
+async def test_findings_of_a_folder_that_is_removed_disappear(editor):
+    editor.open(PARTS_FILE, PARTS.replace('name="bar"', 'name="rod"'))
+    await editor.until(MAIN_FILE, "XAC401")
+    editor.client.workspace_did_change_workspace_folders(changed_folders(removed=[editor.folder]))
+    await editor.until(MAIN_FILE)
+
+
+async def test_findings_of_a_deleted_folder_disappear(editor):
+    editor.open(PARTS_FILE, PARTS.replace('name="bar"', 'name="rod"'))
+    await editor.until(MAIN_FILE, "XAC401")
+    shutil.rmtree(editor.folder / "urdf")
+    deleted = types.DeleteFilesParams([types.FileDelete(editor.uri("urdf"))])
+    editor.client.workspace_did_delete_files(deleted)
+    await editor.until(MAIN_FILE)
+
+
+async def test_a_renamed_folder_is_searched_again(editor):
+    editor.open("package.xml")
+    (editor.folder / "urdf").rename(editor.folder / "description")
+    renamed = types.FileRename(editor.uri("urdf"), editor.uri("description"))
+    editor.client.workspace_did_rename_files(types.RenameFilesParams([renamed]))
+    for _ in range(int(SECONDS / 0.1)):
+        symbols = await editor.client.workspace_symbol_async(types.WorkspaceSymbolParams("base"))
+        if {symbol.location.uri for symbol in symbols} == {editor.uri("description/arm.urdf.xacro")}:
+            return
+        await asyncio.sleep(0.1)
+    raise AssertionError(symbols)
+
+
+async def test_an_editor_is_asked_to_watch_files(package):
+    watched = types.DidChangeWatchedFilesClientCapabilities(dynamic_registration=True)
+    workspace = types.WorkspaceClientCapabilities(did_change_watched_files=watched)
+    registrations: asyncio.Queue[types.Registration] = asyncio.Queue()
+    async with connected(package, types.ClientCapabilities(workspace=workspace), registrations) as _:
+        registration = await asyncio.wait_for(registrations.get(), SECONDS)
+    assert registration.method == types.WORKSPACE_DID_CHANGE_WATCHED_FILES
+    assert [watcher["globPattern"] for watcher in registration.register_options["watchers"]] == [*WATCHED_FILES]
+
+
+class Recorder:
+    """A server that records the progress it shows."""
+
+    def __init__(self, *, can_show: bool) -> None:
+        self.client_capabilities = types.ClientCapabilities(
+            window=types.WindowClientCapabilities(work_done_progress=can_show)
+        )
+        self.shown: list[str] = []
+        self.work_done_progress = self
+        self.tokens: dict[str, None] = {}
+
+    async def create_async(self, token: str) -> None:
+        self.tokens[token] = None
+
+    def begin(self, token: str, value: types.WorkDoneProgressBegin) -> None:
+        assert token in self.tokens
+        self.shown.append(value.title)
+
+    def end(self, token: str, _: types.WorkDoneProgressEnd) -> None:
+        assert token in self.tokens
+        self.shown.append("end")
+
+
+@pytest.mark.parametrize(
+    ("seconds", "can_show", "shown"), [(0.0, True, []), (1.0, False, []), (1.0, True, ["searching", "end"])]
+)
+async def test_long_work_shows_its_progress(seconds, can_show, shown):
+    server = Recorder(can_show=can_show)
+    await with_progress(server, phrase("searching"), asyncio.sleep(seconds))
+    assert server.shown == shown
+    assert not server.tokens
+
+
+async def test_the_progress_of_work_that_fails_ends():
+    async def fail() -> None:
+        await asyncio.sleep(1)
+        raise ZeroDivisionError
+
+    server = Recorder(can_show=True)
+    with pytest.raises(ZeroDivisionError):
+        await with_progress(server, phrase("searching"), fail())
+    assert server.shown == ["searching", "end"]
