@@ -214,7 +214,7 @@ def test_malformed_samples_are_dropped_counted_and_told_once(processes, programs
     peer.ask("publish", "fine")
     us.spin_until(lambda: got)
     assert got == ["fine"]
-    assert subscription.malformed == 3
+    assert subscription.malformed_count == 3
     (warning,) = us.warnings()
     assert "Dropped a malformed message of topic '/from_ros'" in warning
 

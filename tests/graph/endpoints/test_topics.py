@@ -57,7 +57,7 @@ async def test_of_messages_that_are_taken_together_those_that_cannot_be_read_are
         subscription.receive(message)
     await graph.settle()
     assert texts(received) == ["a", "b"]
-    assert subscription.malformed == 1
+    assert subscription.malformed_count == 1
 
 
 async def test_callbacks_are_not_reentrant(graph):

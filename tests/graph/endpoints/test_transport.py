@@ -224,7 +224,7 @@ async def test_malformed_bytes_are_dropped_and_told_once(graph, log):
     reader.receive(serialize(String("good")), MessageInfo(0, 0))
     await graph.settle()
     assert received == [String("good")]
-    assert reader.malformed == 3
+    assert reader.malformed_count == 3
     (record,) = log
     assert record.text.startswith("Dropped a malformed message of topic '/topic'")
 

@@ -34,7 +34,7 @@ def followed(process, session):
 
 def sessions_here(process):
     """How many sessions a process was told of that say so when they leave."""
-    return len(process.transport._departures.here)
+    return len(process.transport._departures.live_sessions)
 
 
 def test_what_own_endpoints_need_is_known_and_nothing_else(processes):

@@ -28,4 +28,4 @@ def test_robots_that_come_and_go_leave_nothing(monkeypatch):
         assert remote.remove(token.key) is token
         assert remote.count(token.kind, token.data_key) == 0
     left = {name: len(value) for name, value in vars(remote).items() if hasattr(value, "__len__")}
-    assert left == {**empty, "_gone": 1}  # when the last one went
+    assert left == {**empty, "_removal_times": 1}  # when the last one went
