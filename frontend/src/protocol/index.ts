@@ -146,6 +146,7 @@ import type {
   SourceFolder,
   WriteSourceFile,
 } from "./source-editor";
+import type { EditorAttached, ElementSelected, ShowElement } from "./text-editor";
 import type {
   Clock,
   GoLive,
@@ -214,6 +215,7 @@ export * from "./points";
 export * from "./robot";
 export * from "./simulation";
 export * from "./source-editor";
+export * from "./text-editor";
 export * from "./time";
 export * from "./views-and-tools";
 export * from "./voice";
@@ -241,6 +243,7 @@ export type ServerMessage =
   | EditPreview
   | EditWritten
   | EditableParts
+  | EditorAttached
   | EditorOpened
   | ExportFailed
   | ExportReady
@@ -274,6 +277,7 @@ export type ServerMessage =
   | RobotScene
   | SavedViews
   | SeriesStates
+  | ShowElement
   | SimulationNotice
   | SimulationStatus
   | SourceFile
@@ -334,6 +338,7 @@ export type PageMessage =
   | Drive
   | DumpParameters
   | DuplicateDisplays
+  | ElementSelected
   | EndTake
   | GiveArguments
   | GoLive

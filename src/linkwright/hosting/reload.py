@@ -7,9 +7,10 @@ last valid one remains in use, and the errors are shown until the file is fixed.
 from __future__ import annotations
 
 import asyncio
+import os
 import stat
 import threading
-from collections.abc import Awaitable, Callable, Coroutine, Iterable, Sequence
+from collections.abc import Awaitable, Callable, Coroutine, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -103,6 +104,12 @@ class LiveReload:
         """Start to watch the files. An event loop must be running."""
         self._is_started = True
         self._watch_files()
+
+    def set_texts(self, texts: Mapping[str | os.PathLike[str], str]) -> None:
+        """Replace the unsaved texts of a text editor, and reload the descriptions that read the changed ones."""
+        before, self.descriptions.texts = self.descriptions.texts, texts
+        changed = {path for path in {*before, *texts} if before.get(path) != texts.get(path)}
+        self._on_change({Path(path) for path in changed})
 
     def close(self) -> None:
         """Stop watching the files."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from contextvars import ContextVar
 from dataclasses import dataclass, field
@@ -66,10 +66,15 @@ class Descriptions:
 
     Args:
         finder: the finder of ROS packages.
+
+    Attributes:
+        finder: the finder of ROS packages.
+        texts: the unsaved texts of a text editor by absolute path, which replace those of the files.
     """
 
     def __init__(self, finder: PackageFinder) -> None:
         self.finder = finder
+        self.texts: Mapping[str | os.PathLike[str], str] = {}
         self._warnings: dict[XacroCall, tuple[Diagnostic, ...]] = {}
         self._read_ns: dict[XacroCall, int] = {}
         self._calls: dict[str, XacroCall] = {}
@@ -129,12 +134,18 @@ class Descriptions:
         if isinstance(call, WorldCall):
             return self._read_world(call)
         from linkwright.descriptions import examine
+        from linkwright.xmltree import Overlay
 
         self.begin(call)
         try:
             xacro = None if call.path.suffix == ".sdf" else True  # SDF models are accepted too.
             description = examine(
-                call.path, arguments=dict(call.arguments), packages=self.finder, xacro=xacro, partly=True
+                call.path,
+                arguments=dict(call.arguments),
+                packages=self.finder,
+                xacro=xacro,
+                partly=True,
+                overlay=Overlay(self.texts) if self.texts else None,
             )
         except LinkwrightError as error:
             raise DescriptionError(call, error.diagnostics) from error

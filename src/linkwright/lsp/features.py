@@ -12,6 +12,7 @@ from linkwright.lsp.requests import (
     names,
     navigation,
     renames,
+    robot_pages,
     texts,
     virtual_documents,
 )
@@ -53,6 +54,17 @@ def make_server() -> LinkwrightServer:
         for change in watched.changes:
             server.file_saved(change.uri)
 
-    for requests in (texts, names, renames, actions, hints, appearance, navigation, expansions, virtual_documents):
+    for requests in (
+        texts,
+        names,
+        renames,
+        actions,
+        hints,
+        appearance,
+        navigation,
+        expansions,
+        virtual_documents,
+        robot_pages,
+    ):
         requests.add_requests(server)
     return server

@@ -1,5 +1,4 @@
 import { commands, type ExtensionContext, languages, type TextDocument, Uri, window, workspace } from "vscode";
-import { Views } from "../page/views.js";
 import { DOCUMENTS, OF_ROBOTS, WATCHED } from "../server/documents.js";
 import { offerInstallation } from "./installation.js";
 import { selectedPythonChanged } from "./python.js";
@@ -15,7 +14,6 @@ let server: Server | undefined;
 export function activate(context: ExtensionContext): void {
   const output = window.createOutputChannel("Linkwright", { log: true });
   const watcher = workspace.createFileSystemWatcher(WATCHED);
-  const views = new Views((line) => output.info(line));
   const running = new Server({ output, watcher }, (search) => {
     void offerInstallation(search, () => void running.restart());
   });
@@ -23,9 +21,8 @@ export function activate(context: ExtensionContext): void {
   context.subscriptions.push(
     output,
     watcher,
-    views,
     commands.registerCommand("linkwright.openInPage", (uri?: Uri | string) =>
-      showRobot(running, views, typeof uri === "string" ? Uri.parse(uri, true) : uri), // a code lens passes a text
+      showRobot(running, typeof uri === "string" ? Uri.parse(uri, true) : uri), // a code lens passes a text
     ),
     commands.registerCommand(SHOW_REFERENCES, showReferences),
     commands.registerCommand("linkwright.restartServer", () => running.restart()),
