@@ -33,6 +33,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         action="store_true",
         help="join the ROS 2 network (ROS_DOMAIN_ID), so that other programs see the nodes",
     )
+    parser.add_argument("--editor", action="store_true", help=argparse.SUPPRESS)  # see hosting/text_editor.py
     add_viewer_options(parser)
 
 
@@ -94,6 +95,7 @@ def run(arguments: argparse.Namespace) -> int:
         network=arguments.join,
         history=arguments.history,
         rviz=rviz,
+        follows_editor=arguments.editor,
     )
     if is_recording(Path(arguments.file)):
         return _view_recordings(arguments, options)

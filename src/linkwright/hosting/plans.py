@@ -140,6 +140,7 @@ class HostOptions:
         network: whether the nodes join the ROS 2 network, where other programs can discover them.
         history: the maximum number of bytes of messages that a viewer stores; 0 to store none.
         rviz: the path of the viewer's configuration file; None for the default configuration.
+        follows_editor: whether a text editor is connected, see `linkwright.hosting.text_editor`.
     """
 
     host: str = "127.0.0.1"
@@ -149,6 +150,7 @@ class HostOptions:
     network: bool = True
     history: int = DEFAULT_HISTORY
     rviz: Path | None = None
+    follows_editor: bool = False
 
 
 class Supervisor(Protocol):

@@ -226,6 +226,10 @@ class ModelView:
     def _set_viewer(self, viewer: Viewer) -> None:
         self._viewer = viewer
         self._show_form()
+        if self.options.follows_editor:
+            from linkwright.hosting.text_editor import TextEditorConnection
+
+            TextEditorConnection(viewer, self.reload, partial(self.shut_down, "the text editor has ended"))
 
     def _publish_fixed(self, _: str) -> None:
         self._publish_again(self._call)

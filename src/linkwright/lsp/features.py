@@ -15,6 +15,7 @@ from linkwright.lsp.requests import (
     names,
     navigation,
     renames,
+    robot_pages,
     texts,
     virtual_documents,
 )
@@ -79,7 +80,18 @@ def make_server() -> LinkwrightServer:
         for file in deleted.files:
             server.file_saved(file.uri)
 
-    for requests in (texts, names, renames, actions, hints, appearance, navigation, expansions, virtual_documents):
+    for requests in (
+        texts,
+        names,
+        renames,
+        actions,
+        hints,
+        appearance,
+        navigation,
+        expansions,
+        virtual_documents,
+        robot_pages,
+    ):
         requests.add_requests(server)
     return server
 

@@ -31,6 +31,7 @@ from linkwright.lsp.findings import as_diagnostics
 from linkwright.lsp.folders import with_progress
 from linkwright.lsp.positions import UTF_16, TextPositions
 from linkwright.lsp.protocol import LeanProtocol
+from linkwright.lsp.robot_views import RobotViews
 from linkwright.xacro.cache import BoundedCache
 from linkwright.xmltree.decoding import decode
 from linkwright.xmltree.reader import read_bytes
@@ -59,6 +60,7 @@ class LinkwrightServer(LanguageServer):
 
     Attributes:
         project: the files of the editor's folders; None before it has named them.
+        robot_views: the pages that show robots.
     """
 
     def __init__(self) -> None:
@@ -73,6 +75,7 @@ class LinkwrightServer(LanguageServer):
         self._thread = ThreadPoolExecutor(1, thread_name_prefix="check")
         self._background: dict[Path, Future[None]] = {}
         self._work: asyncio.Task[None] | None = None
+        self.robot_views = RobotViews(self._go_to)
 
     # --- files ------------------------------------------------------------------------------------------------
 
@@ -96,6 +99,15 @@ class LinkwrightServer(LanguageServer):
         if self._work is not None:
             self._work.cancel()
         self._thread.shutdown(wait=False, cancel_futures=True)
+        self.robot_views.close()
+
+    def _go_to(self, file: Path, line: int, column: int) -> None:
+        """Show a place in the editor, where it can; the line and the column count from 1."""
+        window = self.client_capabilities.window
+        if window is not None and window.show_document is not None and window.show_document.support:
+            place = types.Position(line - 1, column - 1)
+            asked = types.ShowDocumentParams(self.uri_of(file), take_focus=True, selection=types.Range(place, place))
+            self.window_show_document(asked)
 
     def file_opened(self, uri: str) -> None:
         """Remember the URI that the editor has for a file, and check the file."""
@@ -110,6 +122,7 @@ class LinkwrightServer(LanguageServer):
         if path is not None:
             self._changed[real(path)] = None
             self._has_changes.set()
+            self.robot_views.texts_changed(self.texts)
 
     def file_saved(self, uri: str) -> None:
         """Note that a file on the disk has changed."""

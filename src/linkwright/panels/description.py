@@ -234,6 +234,14 @@ class DescriptionFeature(PageFeature):
         for task in self._answer_tasks.values():
             task.cancel()
 
+    async def details(self, display: RobotModelDisplay) -> Description | None:
+        """Return the details of the description that a display shows, or None if it shows none."""
+        known = self._look_at(display)
+        if known is None:
+            return None
+        async with self._answer_lock:
+            return await asyncio.to_thread(lambda: known.account)
+
     async def _answer(self, page: Page, request: _Request) -> None:
         robot_models = self.managers.of(page).robot_models()
         display = next((display for display in robot_models if display.id == request.display), None)

@@ -18,11 +18,13 @@ from linkwright.language.parameters import block_parameters
 from linkwright.language.renaming import references
 from linkwright.language.values import ValuedText, short_values, whole_texts
 from linkwright.lsp.positions import TextPositions
+from linkwright.lsp.requests.robot_pages import SHOW_ROBOT
 from linkwright.lsp.server import LinkwrightServer
 
 SHOW_REFERENCES = "linkwright.showReferences"
 """The command of lenses: it shows the locations of references. A client that has it registers it."""
 OPEN_IN_PAGE = "linkwright.openInPage"
+"""The command of a client that shows the robot itself; it is asked instead of the server."""
 _COUNTED_KINDS = (NameKind.MACRO, NameKind.PROPERTY, NameKind.ARGUMENT)
 
 
@@ -63,10 +65,11 @@ def lenses(server: LinkwrightServer, path: Path, positions: TextPositions) -> li
             place = positions.range(name.start, name.end)
             found.append(types.CodeLens(place, data={"uri": server.uri_of(path), "offset": name.start}))
     for element in Outline.of(positions.text).elements:
-        if element.tag.name == "robot" and OPEN_IN_PAGE in server.client_commands:
+        if element.tag.name == "robot":
             title = localized(phrase("open in the page"))
             place = positions.range(element.tag.start, element.tag.end)
-            found.append(types.CodeLens(place, types.Command(title, OPEN_IN_PAGE, arguments=[server.uri_of(path)])))
+            command = OPEN_IN_PAGE if OPEN_IN_PAGE in server.client_commands else SHOW_ROBOT
+            found.append(types.CodeLens(place, types.Command(title, command, arguments=[server.uri_of(path)])))
     return found
 
 

@@ -197,6 +197,9 @@ def add_requests(server: LinkwrightServer) -> None:
     def document_highlight(
         server: LinkwrightServer, asked: types.DocumentHighlightParams
     ) -> list[types.DocumentHighlight] | None:
+        place = path_of(asked.text_document.uri)
+        if place is not None:  # editors ask when the cursor has moved
+            server.robot_views.cursor_moved(real(place), asked.position.line + 1)
         own = server.document(asked.text_document)
         if own is not None:
             offset = own.positions.offset(asked.position)
