@@ -113,7 +113,7 @@ def _path(costmap: Costmap, end: float) -> NDArray[np.float64]:
 
 
 def _anew(layered: LayeredCostmap) -> None:
-    layered.touch()
+    layered.invalidate()
     layered.update(_HERE, 0)
 
 

@@ -28,7 +28,7 @@ from linkwright.graph import Graph
 from linkwright.images import RangeFinder, Unpacker, decode_image
 from linkwright.messages import get_message
 from linkwright.vision.detector import Limits
-from linkwright.vision.detectors.drawing import drawn
+from linkwright.vision.detectors.drawing import draw_detections
 from linkwright.vision.detectors.library import load_opencv
 from linkwright.vision.detectors.options import DetectorOptions
 from linkwright.vision.detectors.registry import make_detector
@@ -65,7 +65,7 @@ def _one_image() -> Iterator[Row]:
             _milliseconds(partial(vision_message, message.header, found)),
             "ms",
         )
-        yield Row(f"{model}: the picture with boxes", _milliseconds(partial(drawn, image, found)), "ms")
+        yield Row(f"{model}: the picture with boxes", _milliseconds(partial(draw_detections, image, found)), "ms")
 
 
 def _scene() -> NDArray[np.uint8]:

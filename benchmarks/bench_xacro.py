@@ -24,7 +24,7 @@ from benchmarks import peers
 from benchmarks.measure import LINKWRIGHT, Row, commands, peak_memory, show, side_by_side
 from benchmarks.robots import SHIPPED, Model, collected, models
 from linkwright.xacro import cache, expand, macros
-from linkwright.xacro.expressions import expression, scope, template, yamldata, yamlnodes
+from linkwright.xacro.expressions import expression, scope, template, yaml_conversion, yaml_data
 
 SMALL = SHIPPED / "urdf" / "mbot_base.xacro"
 PASSES = 7
@@ -74,8 +74,8 @@ def forget() -> None:
         cache.documents.values,
         template.templates,
         expression.expressions,
-        yamldata.cache.values,
-        yamlnodes.tags,
+        yaml_data.cache.values,
+        yaml_conversion.tags,
     ):
         values.clear()
     macros.parse_parameters.cache_clear()

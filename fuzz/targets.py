@@ -30,7 +30,7 @@ from linkwright.urdf import read, save, to_gv, tree_text
 from linkwright.urdf.plaintext import parse_as_urdfdom
 from linkwright.xacro import cache, expand
 from linkwright.xacro.expressions.scope import Scope
-from linkwright.xacro.expressions.yamldata import YamlError, load
+from linkwright.xacro.expressions.yaml_data import YamlError, load
 from linkwright.xacro.faults import Fault
 from linkwright.xacro.limits import Limits, recursion_limit_for
 from linkwright.xacro.session import Session

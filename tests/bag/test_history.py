@@ -107,7 +107,7 @@ def test_large_messages_that_repeat_themselves_take_less_room_and_are_read_as_th
     assert history.start_ns == 0
     assert history.state_at(["/camera"], 50 * SECOND) == [("/camera", 50 * SECOND, image(50))]
     assert [data for _, _, data in history.messages(["/camera"], 98 * SECOND)] == [image(98), image(99)]
-    part = history.part(97 * SECOND, 99 * SECOND)
+    part = history.messages_between(97 * SECOND, 99 * SECOND)
     assert sum(len(data) for _, _, data in part) < 204_000, "packed, but for the state before them"
     assert [uncompressed_bytes(data) for _, _, data in part] == [image(96), image(97), image(98), image(99)]
     history.close()
@@ -195,7 +195,7 @@ def test_a_part_of_a_robot_that_stands_still_is_as_long_as_it_was_asked_for() ->
     still, moves = [0.0] * 300, [number / 100 for number in range(1, 301)]
     states(clock, history, [*still, *moves, *still])
     for start, end, last in ((1.0, 2.5, 0.0), (2.0, 4.5, 1.51), (4.5, 8.9, 0.0)):
-        part = history.part(int(start * SECOND), int(end * SECOND))
+        part = history.messages_between(int(start * SECOND), int(end * SECOND))
         assert (part[0][1], part[-1][1]) == (int(start * SECOND), int(end * SECOND))
         assert positions(part)[-1][0] == pytest.approx(last)
 
@@ -286,7 +286,7 @@ def test_a_clock_that_begins_anew_is_seen_to() -> None:
     for number in range(800):
         clock.ns = number * SECOND // 100
         tick(history, clock, clock.ns % (4 * SECOND))
-    part = history.part(0, clock.ns)
+    part = history.messages_between(0, clock.ns)
     assert last_reset_ns(part) == 4 * SECOND
     assert told_at(history, 3.99) == pytest.approx(3.99)
     assert told_at(history, 4.0) == 0.0
@@ -300,7 +300,7 @@ def test_messages_between_which_a_clock_ran_alone_have_the_simulated_times_that_
         tick(history, clock, SECOND + clock.ns)
         if number in (333, 667):
             transforms(history, clock, number)
-    moved = [stamp for name, stamp, _ in to_simulated_time(history.part(0, clock.ns)) if name == "/tf"]
+    moved = [stamp for name, stamp, _ in to_simulated_time(history.messages_between(0, clock.ns)) if name == "/tf"]
     assert moved[:2] == [int(4.33 * SECOND), int(7.67 * SECOND)]
 
 
@@ -316,7 +316,7 @@ def test_events_without_a_stamp_are_all_kept() -> None:
 @pytest.mark.parametrize("data", [b"", b"\0\1\0\0", b"\0\1\0\0\xff\0\0\0", b"\0\0\0\0\0\0\0\1" + bytes(80)])
 def test_bytes_that_are_no_transforms_have_no_content(data: bytes) -> None:
     found = content_of(TFMessage.TYPE_NAME, data)
-    assert found is None or found.what == ""
+    assert found is None or found.child_frames == ""
 
 
 def test_images_that_fill_the_room_are_thinned_and_minutes_of_them_stay() -> None:
@@ -359,7 +359,7 @@ def test_the_content_of_transforms_has_their_frames_and_poses_without_stamps() -
     left, right = [1.0, 2, 3, 0, 0, 0, 1], [4.0, 5, 6, 0, 0, 1, 0]
     for children, numbers in ((("a", "b"), [left, right]), (("c", "d"), [left, right]), (("c", "d"), [right, left])):
         found = content_of_poses(children, numbers, 7)
-        assert found.what.replace("\0", "") == "\n".join(children)
+        assert found.child_frames.replace("\0", "") == "\n".join(children)
         assert np.frombuffer(found.poses).reshape(-1, 7).tolist() == numbers
         assert found == content_of_poses(children, numbers, 9_000_000_000)
         assert found.is_repeated_by(content_of_poses(children, numbers))

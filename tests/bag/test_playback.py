@@ -266,7 +266,7 @@ async def test_steps_may_go_by_the_messages_of_one_topic(shown: Shown) -> None:
 
 
 async def test_a_step_over_more_than_goes_in_a_turn_is_a_jump(shown: Shown, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("linkwright.bag.playback._MOST_MESSAGES", 2)
+    monkeypatch.setattr("linkwright.bag.playback._MAX_TICK_MESSAGES", 2)
     shown.listen("/a")
     await shown.taken()
     shown.playback.step(True, "/b")

@@ -350,7 +350,7 @@ def test_selection(selection: TopicSelection, taken: list[str]) -> None:
         ("/b/_hidden", "std_msgs/msg/Int32"),
         ("/s/_service_event", "std_srvs/srv/Empty_Event"),
     ]
-    assert [name for name, kind in topics if selection.takes(name, kind)] == taken
+    assert [name for name, kind in topics if selection.selects(name, kind)] == taken
     assert not selection.is_empty
 
 

@@ -39,7 +39,7 @@ def team(request, tmp_path, monkeypatch):
 
 def _forget() -> None:
     sys.modules.pop("team_rules", None)
-    for cached in (extensions._all_groups, registry._found, registry._index):
+    for cached in (extensions._all_groups, registry._all_rules, registry._index):
         cached.cache_clear()
 
 

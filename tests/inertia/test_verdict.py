@@ -68,7 +68,7 @@ def test_the_worst_is_said_and_sorts_first(tmp_path):
     worse = verdict_on(tmp_path, inertial(moment=16))
     bad = verdict_on(tmp_path, inertial(moment=1.6))
     fine = verdict_on(tmp_path, inertial())
-    assert sorted([fine, bad, worse, verdict], key=lambda each: each.place) == [verdict, worse, bad, fine]
+    assert sorted([fine, bad, worse, verdict], key=lambda each: each.sort_key) == [verdict, worse, bad, fine]
 
 
 def test_a_mass_of_next_to_nothing_in_a_large_shape_has_a_density_of_zero(tmp_path):

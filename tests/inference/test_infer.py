@@ -47,7 +47,7 @@ def test_named_wheels_drive_and_the_others_roll_along():
     assert found.drive is not None
     assert found.drive.kind == "differential"
     assert [each.link for each in (*found.drive.left, *found.drive.right)] == ["c", "d"]
-    assert found.held == ()
+    assert found.held_joints == ()
 
 
 def test_the_kind_that_the_user_asks_for_is_taken():

@@ -42,7 +42,7 @@ def shown(found: Inference) -> str:
         left, right = (" ".join(each.joint for each in side) for side in (drive.left, drive.right))
         lines.append(f"left {left}; right {right}")
     lines += [f"casters {' '.join(found.casters)}"] if found.casters else []
-    lines += [f"held {' '.join(found.held)}"] if found.held else []
+    lines += [f"held {' '.join(found.held_joints)}"] if found.held_joints else []
     lines += [f"{diagnostic.code} {diagnostic.severity.value} {diagnostic.message}" for diagnostic in found.diagnostics]
     return "".join(f"{line}\n" for line in lines)
 

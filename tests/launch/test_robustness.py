@@ -168,14 +168,14 @@ def test_what_a_process_writes_is_divided_into_lines() -> None:
     assert lines.feed("机".encode()[-1:]) == []
     assert lines.feed(b"\xff\n") == ["机\N{REPLACEMENT CHARACTER}"]
     assert lines.feed(b"end\xe6") == []
-    assert lines.end() == ["end\N{REPLACEMENT CHARACTER}"]
+    assert lines.finish() == ["end\N{REPLACEMENT CHARACTER}"]
 
 
 def test_a_line_without_an_end_is_shown_in_pieces() -> None:
     lines = _LineSplitter()
     shown = [piece for _ in range(300) for piece in lines.feed(b"x" * 1000)]
     assert [len(piece) for piece in shown] == [_MAX_LINE_LENGTH] * 3
-    assert lines.end() == []
+    assert lines.finish() == []
 
 
 PARAM = '<launch>\n <arg name="n" default="x"/>\n <node pkg="robot_state_publisher" exec="robot_state_publisher">\n  {}'

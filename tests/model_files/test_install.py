@@ -10,7 +10,7 @@ from dataclasses import replace
 import pytest
 
 from linkwright.diagnostics import LinkwrightError
-from linkwright.model_files import checked, find_model, install, is_installed, remove
+from linkwright.model_files import find_model, install, is_installed, remove, verify
 from tests.full_disk import full_disk, needs_limits
 from tests.model_files.shop import ARCHIVE, FILES, PACKED, SINGLE, archive
 
@@ -160,7 +160,7 @@ def test_models_come_from_files_and_folders(form, tmp_path, home):
         zipfile.ZipFile(io.BytesIO(ARCHIVE)).extractall(given)
     source = {"file": given / "toy.zip", "unpacked": given / "toy-1.0"}.get(form, given)
     assert get(entry, source) == home / "toy-1.0"
-    checked(entry, home / "toy-1.0")
+    verify(entry, home / "toy-1.0")
     assert source.exists()
 
 
@@ -251,14 +251,14 @@ def test_an_installed_model_that_changed_is_found_out(home, tmp_path):
     place = get(PACKED, packed)
     (place / "conf" / "model.conf").write_bytes(b"--beam=1\n")
     with pytest.raises(LinkwrightError) as caught:
-        checked(PACKED, place)
+        verify(PACKED, place)
     assert caught.value.diagnostics[0].code == "MODEL104"
     (place / "conf" / "model.conf").unlink()
     with pytest.raises(LinkwrightError) as caught:
-        checked(PACKED, place)
+        verify(PACKED, place)
     assert caught.value.diagnostics[0].code == "MODEL105"
     get(PACKED, packed)
-    checked(PACKED, place)
+    verify(PACKED, place)
 
 
 def test_a_model_that_was_not_fetched_says_how():

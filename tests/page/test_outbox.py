@@ -46,7 +46,7 @@ async def test_heavy_content_that_was_taken_away_comes_after_what_said_so():
     outbox = Outbox()
     old, new = scaled("a"), scaled("a")
     outbox.put("a", old)
-    old.gone = True
+    old.is_withdrawn = True
     outbox.put("forgotten", "forgotten")
     outbox.put("a", new)
     assert [await outbox.take(), await outbox.take()] == ["forgotten", new]

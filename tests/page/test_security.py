@@ -387,7 +387,10 @@ async def test_who_asks_for_the_page_and_reads_nothing_costs_little(served, tmp_
             await reader.readexactly(100)
         await is_served(client)
         assert len(server._page_contents) == 1
-        waiting = [stranger._transport.get_write_buffer_size() for stranger in server._admission._strangers.values()]
+        waiting = [
+            stranger._transport.get_write_buffer_size()
+            for stranger in server._admission._unadmitted_connections.values()
+        ]
         assert len(waiting) > MAX_CONNECTIONS - 5
         assert max(waiting) < 256 << 10
         status, body, _ = await raw(served.viewer, "/assets/index-abc.js", token=False)

@@ -203,7 +203,7 @@ async def test_why_not_is_said_in_the_language_of_the_page():
 async def test_what_the_program_recorded_is_shown_and_stays(tmp_path: Path):
     (path,) = recorded(tmp_path).glob("*.mcap")
     async with host() as (made, sender):
-        url = made.viewer.context.downloads.keep(path).lstrip("/")
+        url = made.viewer.context.downloads.offer_repeatedly(path).lstrip("/")
         status, answer = await sender.ask("POST", url)
         assert status == 200, answer
         async with seen(sender, answer["recording"]) as client:

@@ -58,7 +58,7 @@ def bridge(published):
 async def until_published(graph, bridge):
     """Wait until the bridge has told of a change."""
     await graph.settle()
-    await eventually(lambda: bridge._soon is None)
+    await eventually(lambda: bridge._send_timer is None)
 
 
 async def filled(graph, panel):

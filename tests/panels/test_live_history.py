@@ -99,7 +99,9 @@ async def test_what_came_is_written_when_somebody_asks_for_it():
         assert not live.has_playback
         began, end = live.span_ns
         assert began <= end
-        kept = [deserialize(data, TFMessage).batch.poses[0, 0] for _, _, data in live.history.part(began, end)]
+        kept = [
+            deserialize(data, TFMessage).batch.poses[0, 0] for _, _, data in live.history.messages_between(began, end)
+        ]
         assert kept == [0.0, 1.0, 2.0]
         assert live.size > 0
 
@@ -119,7 +121,7 @@ async def test_a_message_that_cannot_be_written_is_told_of_and_the_others_are_ke
         made.viewer.context.node.create_subscription(String, "words", lambda _: None, 10)
         made.graph.create_node("speaker").create_publisher(String, "words", 10).publish(wrong)
         end = moved(made, 2.0)
-        assert [topic for topic, _, _ in made.viewer.live.history.part(began, end)] == ["/tf", "/tf"]
+        assert [topic for topic, _, _ in made.viewer.live.history.messages_between(began, end)] == ["/tf", "/tf"]
         assert any("keeping a message of '/words' failed" in record.text for record in made.log)
 
 

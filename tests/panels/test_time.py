@@ -63,12 +63,12 @@ def point(x: float, stamp: float, frame: str = "base"):
 def test_exact_shows_the_time_of_the_sources_last_message():
     clock, received = FakeClock(), []
     control = TimeControl(clock, on_signal=lambda: received.append(1))
-    control.took("scan", 90)
+    control.record_stamp("scan", 90)
     assert (control.lookup_ns(), control.sources) == (None, ["scan"])
     control.set(paused=False, mode="Exact", source="scan")
     assert control.lookup_ns() is None  # until its next message
-    control.took("other", 80)
-    control.took("scan", 95)
+    control.record_stamp("other", 80)
+    control.record_stamp("scan", 95)
     assert (control.lookup_ns(), control.now_ns(), received) == (95, 95, [1])
 
 
@@ -77,7 +77,7 @@ def test_approximate_follows_the_delay_of_the_source_smoothly():
     control = TimeControl(clock)
     control.set(paused=False, mode="Approximate", source="scan")
     clock.ns = 2_000
-    control.took("scan", 1_000)
+    control.record_stamp("scan", 1_000)
     times = [control.lookup_ns() for _ in range(30)]
     assert times[0] == 1_700
     assert abs(times[-1] - 1_000) < 20

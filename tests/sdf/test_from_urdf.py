@@ -403,7 +403,7 @@ def test_real_robots(entry, arguments, packages, facts):
         assert references <= {"SDF132"}, "what nothing in it has a mass has no links left"
         frames = Frames(model)
         for name in robot.links:
-            if name != "world" and (name in frames.named or not lump):
+            if name != "world" and (name in frames.elements_by_name or not lump):
                 frames.pose(name)
         if facts is not None and not lump:
             sensors = [sensor for link in model.links for sensor in link.sensors]

@@ -47,7 +47,7 @@ def test_many_robots_drive_the_same_way_together(monkeypatch):
     assert is_together(together)
     together.advance(NANOSECONDS_PER_SECOND)
     with monkeypatch.context() as patch:
-        patch.setattr(Solving, "_look", lambda _: None)
+        patch.setattr(Solving, "_update_solver", lambda _: None)
         alone = driving()
         alone.advance(5 * LOOK + NANOSECONDS_PER_SECOND)
         assert not is_together(alone)

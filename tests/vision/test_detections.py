@@ -18,4 +18,4 @@ def test_each_has_a_name():
 
 
 def test_a_image_may_have_none():
-    assert len(Detections.none(("ball",))) == 0
+    assert len(Detections.empty(("ball",))) == 0

@@ -12,7 +12,7 @@ from linkwright.graph.log.logger import LogLevel
 from linkwright.messages.distribution import ASSUMED
 from linkwright.wire import dds, zenoh
 from linkwright.wire.background import BackgroundTransport
-from linkwright.wire.unfollowed import DISCOVERY_SERVERS, SECURITY
+from linkwright.wire.unsupported_settings import DISCOVERY_SERVERS, SECURITY
 from linkwright.wire.zenoh.settings import ATTEMPTS, OVERRIDES, ROUTER_FILE, SESSION_FILE
 from tests.domains import own_domain
 from tests.waiting import SECONDS

@@ -10,7 +10,7 @@ from linkwright.diagnostics import LinkwrightError, install_hint
 from linkwright.graph import Graph
 from linkwright.wire.dds import DdsTransport
 from linkwright.wire.joining import available, check_settings, join, middleware, unavailable_reason
-from linkwright.wire.unfollowed import CYCLONE, ZENOH
+from linkwright.wire.unsupported_settings import CYCLONE, ZENOH
 from linkwright.wire.zenoh import ZenohTransport
 
 PLACES = ("linkwright.wire.joining", "linkwright.wire.dds.joining", "linkwright.wire.zenoh.joining")

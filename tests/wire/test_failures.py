@@ -6,7 +6,7 @@ import threading
 
 from linkwright.graph.qos.profile import DurabilityPolicy, QoSProfile
 from linkwright.messages import String, get_service
-from linkwright.wire.living_threads import guarded
+from linkwright.wire.guarded_calls import guarded
 from tests.waiting import wait_until
 from tests.wire.conftest import both_wires
 

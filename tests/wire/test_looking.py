@@ -22,7 +22,7 @@ on_linux = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="the 
 @pytest.fixture
 def looking():
     graph = Graph(threads=True)
-    transport = join(graph, only_looks=True)
+    transport = join(graph, discovers_only=True)
     assert transport is not None
     assert transport.wait_until_ready(SECONDS)
     yield graph, transport
@@ -60,7 +60,7 @@ def test_where_all_are_known_it_waits_no_longer(programs, never_quiet):
     programs("our_program", "one")
     programs("our_program", "two")
     graph = Graph(threads=True)
-    transport = join(graph, only_looks=True)
+    transport = join(graph, discovers_only=True)
     assert transport is not None
     assert transport.wait_for_discovery(SECONDS)
     assert {node.name for node in transport.remote_nodes()} == {"one", "two"}
@@ -92,7 +92,7 @@ def test_beyond_the_own_machine_the_system_cannot_tell(range_name, monkeypatch):
     monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", range_name)
     monkeypatch.setattr(module, "other_processes", lambda _domain: 0)
     graph = Graph(threads=True)
-    transport = join(graph, only_looks=True)
+    transport = join(graph, discovers_only=True)
     assert transport is not None
     assert not transport._knows_all_processes()
     graph.close_threadsafe()
@@ -106,7 +106,7 @@ def test_neither_numpy_nor_what_it_does_not_use_of_cyclone_is_imported():
 
         graph = Graph(threads=True)
         graph.create_node("looks")
-        transport = join(graph, only_looks=True)
+        transport = join(graph, discovers_only=True)
         assert transport.wait_until_ready(60)
         graph.close_threadsafe()
         costly = ("numpy", "cyclonedds.pub", "cyclonedds.qos", "cyclonedds.idl._xt_builder", "urllib.request")

@@ -114,36 +114,36 @@ def test_graphs_share_the_types_of_their_domain(shared, processes):
         processes(name).node.create_publisher(String, "chatter", 10)
     assert shared.users == 4
     described = shared.descriptions.message(String)
-    processes("e").spin_until(lambda: described in shared.types._made)
-    address = shared.types._made[described]
+    processes("e").spin_until(lambda: described in shared.types._type_addresses)
+    address = shared.types._type_addresses[described]
     last = processes("f")
     last.node.create_subscription(String, "chatter", print, 10)
     last.spin_until(lambda: last.node.count_subscribers("/chatter") and last.node.count_publishers("/chatter") == 2)
-    assert shared.types._made[described] == address
+    assert shared.types._type_addresses[described] == address
 
 
 def test_a_type_outlives_its_last_topic(shared, processes):
     described = shared.descriptions.message(Point)
     a = processes("short")
     a.node.create_publisher(Point, "points", 10)
-    a.spin_until(lambda: described in shared.types._made)
+    a.spin_until(lambda: described in shared.types._type_addresses)
     a.close()
-    assert described in shared.types._made
+    assert described in shared.types._type_addresses
 
 
 def test_a_closed_domain_keeps_nothing(processes, domain):
     us = processes("alone")
     us.node.create_publisher(String, "chatter", 10)
-    us.spin_until(lambda: domain in opened._opened and len(opened._opened[domain].types._made) > 1)
+    us.spin_until(lambda: domain in opened._opened and len(opened._opened[domain].types._type_addresses) > 1)
     types = opened._opened[domain].types
     us.close()
     assert domain not in opened._opened
-    assert types._made == {}
+    assert types._type_addresses == {}
 
 
 def test_the_functions_that_describe_a_type_are_left_out(shared, processes):
     processes("c").node.create_publisher(String, "chatter", 10)
-    for address in tuple(shared.types._made.values()):
+    for address in tuple(shared.types._type_addresses.values()):
         table = ctypes.c_void_p.from_address(address).value
         functions = (ctypes.c_void_p * 12).from_address(table)
         assert list(functions[8:11]) == [None, None, None]

@@ -214,7 +214,7 @@ def test_no_attribute_gives_anything_but_plain_values_and_methods(name: str) -> 
 
 
 def test_a_yaml_file_cannot_run_code() -> None:
-    from linkwright.xacro.expressions.yamldata import YamlError, load
+    from linkwright.xacro.expressions.yaml_data import YamlError, load
 
     for text in (
         "!!python/object/apply:os.system ['true']",

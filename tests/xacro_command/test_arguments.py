@@ -21,7 +21,7 @@ def test_declared_arguments(write):
     found = arguments_of(path)
     assert [argument.name for argument in found] == ["x", "y"]
     x, y = found
-    assert (x.default, x.value, x.required, x.used, x.given) == ("1", "1", False, True, False)
+    assert (x.default, x.value, x.required, x.used, x.is_given) == ("1", "1", False, True, False)
     assert (y.default, y.value) == ("$(arg x)0", "10")
     assert (y.span.file, y.span.line, y.span.column) == ("a.xacro", 3, 18)
 
@@ -29,7 +29,7 @@ def test_declared_arguments(write):
 def test_an_argument_that_is_given(write):
     path = write("a.xacro", '<xacro:arg name="x" default="1"/><l n="$(arg x)"/>')
     x = listed(path, {"x": "5"})["x"]
-    assert (x.default, x.value, x.required, x.given) == ("1", "5", False, True)
+    assert (x.default, x.value, x.required, x.is_given) == ("1", "5", False, True)
 
 
 def test_arguments_of_includes_and_their_includes(write):

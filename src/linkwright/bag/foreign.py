@@ -64,7 +64,7 @@ def header_patch(file: BinaryIO) -> dict[int, bytes]:
     return {len(MAGIC) + HEAD.size: _text(_PROFILE) + _text(library)}
 
 
-def schema_patch(place: int, content: bytes) -> dict[int, bytes]:
+def schema_patch(offset: int, content: bytes) -> dict[int, bytes]:
     """Return the patch that empties a schema in a language that ROS 2 does not use.
 
     The result is empty for any other schema.
@@ -72,14 +72,14 @@ def schema_patch(place: int, content: bytes) -> dict[int, bytes]:
     The length of the schema record stays the same.
 
     Args:
-        place: the offset of the record's content in the file.
+        offset: the offset of the record's content in the file.
         content: the content of the record.
     """
     fields = _read_strings(content, _ID_SIZE, 3)
     if fields is None or fields[1] in _ROS_LANGUAGES:
         return {}
     name, language, text = fields
-    return {place + _ID_SIZE: _text(name) + _text(b"") + _text(b" " * (len(language) + len(text)))}
+    return {offset + _ID_SIZE: _text(name) + _text(b"") + _text(b" " * (len(language) + len(text)))}
 
 
 def readable_schema(content: bytes) -> bytes:

@@ -139,8 +139,8 @@ class _Track:
 
     def __init__(self, name: str) -> None:
         self.name = name
-        self.kept: list[_Entry] = []
-        self.first = 0
+        self.entries: list[_Entry] = []
+        self.first_index = 0
         self.size = 0
         self.before: dict[object, _Entry] = {}
         self.is_queued = False
@@ -148,7 +148,7 @@ class _Track:
         self._repeated_numbers: set[int] = set()
 
     def __len__(self) -> int:
-        return len(self.kept) - self.first
+        return len(self.entries) - self.first_index
 
     @property
     def can_be_thinned(self) -> bool:
@@ -162,11 +162,11 @@ class _Track:
             or self.name in (TRANSFORMS, STATIC_TRANSFORMS)
         ):
             return False
-        return self.kept[-1][0] - self.kept[self.first][0] < _MAX_THINNED_NS
+        return self.entries[-1][0] - self.entries[self.first_index][0] < _MAX_THINNED_NS
 
     def append(self, stamp_ns: int, number: int, data: bytes) -> None:
         """Append a message."""
-        self.kept.append((stamp_ns, number, data))
+        self.entries.append((stamp_ns, number, data))
         self.size += _stored_size(data)
 
     def repeat(self, stamp_ns: int, number: int, data: bytes, content: Content) -> int | None:
@@ -180,31 +180,31 @@ class _Track:
         Returns:
             The number of additional bytes; None if there is no message to replace, so that it must be appended.
         """
-        run = self._runs.get(content.what)
+        run = self._runs.get(content.child_frames)
         if run is None or not run.content.is_repeated_by(content) or stamp_ns - run.since_ns >= _MAX_REPEAT_NS:
-            self._runs[content.what] = _Run(stamp_ns, content)
+            self._runs[content.child_frames] = _Run(stamp_ns, content)
             return None
-        index = None if run.second is None else self._place(run.second)
+        index = None if run.second is None else self._index_of(run.second)
         is_clock = content.clock_ns is not None
-        if index is None or (is_clock and index != len(self.kept) - 1):
+        if index is None or (is_clock and index != len(self.entries) - 1):
             run.second = number
             self._repeated_numbers.add(number)
             return None
-        arrival_ns, number, old_data = self.kept[index]
-        self.kept[index] = stamp_ns if is_clock else arrival_ns, number, data
+        arrival_ns, number, old_data = self.entries[index]
+        self.entries[index] = stamp_ns if is_clock else arrival_ns, number, data
         self.size += len(data) - len(old_data)
         return len(data) - len(old_data)
 
     def drop(self) -> int:
         """Drop the oldest message, and return the number of freed bytes."""
-        oldest = self.kept[self.first]
-        self.kept[self.first] = (oldest[0], oldest[1], b"")
-        self.first += 1
+        oldest = self.entries[self.first_index]
+        self.entries[self.first_index] = (oldest[0], oldest[1], b"")
+        self.first_index += 1
         self.size -= _stored_size(oldest[2])
         self._repeated_numbers.discard(oldest[1])
-        if self.first >= _MAX_UNUSED:
-            del self.kept[: self.first]
-            self.first = 0
+        if self.first_index >= _MAX_UNUSED:
+            del self.entries[: self.first_index]
+            self.first_index = 0
         if self.name == TRANSFORMS:
             return _stored_size(
                 oldest[2]
@@ -227,7 +227,7 @@ class _Track:
         Returns:
             The number of freed bytes.
         """
-        kept = self.kept[self.first :]
+        kept = self.entries[self.first_index :]
         now_ns = kept[-1][0] + NANOSECONDS_PER_SECOND
         gaps = [
             ((next_entry[0] - previous_entry[0]) / (now_ns - entry[0]), index)
@@ -242,25 +242,25 @@ class _Track:
                 dropped.add(place)
                 freed += _stored_size(kept[place][2])
         self._repeated_numbers.difference_update(kept[place][1] for place in dropped)
-        self.kept = [each for place, each in enumerate(kept) if place not in dropped]
-        self.first = 0
+        self.entries = [each for place, each in enumerate(kept) if place not in dropped]
+        self.first_index = 0
         self.size -= freed
         return freed
 
     def replace(self, number: int, packed: Packed) -> int:
         """Replace a message with its compressed form, and return the number of freed bytes."""
-        index = self._place(number)
+        index = self._index_of(number)
         if index is None:
             return 0  # the message was dropped in the meantime
-        stamp_ns, _, data = self.kept[index]
-        self.kept[index] = stamp_ns, number, packed
+        stamp_ns, _, data = self.entries[index]
+        self.entries[index] = stamp_ns, number, packed
         self.size -= len(data) - len(packed)
         return len(data) - len(packed)
 
-    def _place(self, number: int) -> int | None:
+    def _index_of(self, number: int) -> int | None:
         """Return the index of the message with a number, or None if it was dropped."""
-        index = bisect_left(self.kept, number, lo=self.first, key=lambda item: item[1])
-        return index if index < len(self.kept) and self.kept[index][1] == number else None
+        index = bisect_left(self.entries, number, lo=self.first_index, key=lambda item: item[1])
+        return index if index < len(self.entries) and self.entries[index][1] == number else None
 
     def repeated_after(self, start_ns: int, end_ns: int) -> list[_Entry]:
         """Return the messages in a time interval that also represent the equal messages after them."""
@@ -278,8 +278,8 @@ class _Track:
 
     def until(self, at_ns: int, count: int) -> list[_Entry]:
         """Return the last `count` messages up to a time, or fewer if there are not as many."""
-        end = bisect_right(self.kept, (at_ns, sys.maxsize), lo=self.first)
-        return self.kept[max(self.first, end - count) : end]
+        end = bisect_right(self.entries, (at_ns, sys.maxsize), lo=self.first_index)
+        return self.entries[max(self.first_index, end - count) : end]
 
     def clock_at(self, at_ns: int) -> list[_Entry]:
         """Return the last message of a clock up to a time, in a list.
@@ -289,16 +289,16 @@ class _Track:
         If the message represents several clock messages, the time is interpolated.
         """
         entries = self.until(at_ns, 1)
-        next_index = bisect_right(self.kept, (at_ns, sys.maxsize), lo=self.first)
-        if not entries or next_index == len(self.kept) or self.kept[next_index][1] not in self._repeated_numbers:
+        next_index = bisect_right(self.entries, (at_ns, sys.maxsize), lo=self.first_index)
+        if not entries or next_index == len(self.entries) or self.entries[next_index][1] not in self._repeated_numbers:
             return entries
-        (start_ns, number, earlier), (end_ns, _, later) = entries[0], self.kept[next_index]
+        (start_ns, number, earlier), (end_ns, _, later) = entries[0], self.entries[next_index]
         return [(at_ns, number, clock_between(earlier, later, (at_ns - start_ns) / (end_ns - start_ns)))]
 
     def between(self, start_ns: int, end_ns: int) -> list[_Entry]:
         """Return the messages from one time to another, both inclusive."""
-        start_index = bisect_left(self.kept, (start_ns,), lo=self.first)
-        return self.kept[start_index : bisect_right(self.kept, (end_ns, sys.maxsize), lo=self.first)]
+        start_index = bisect_left(self.entries, (start_ns,), lo=self.first_index)
+        return self.entries[start_index : bisect_right(self.entries, (end_ns, sys.maxsize), lo=self.first_index)]
 
 
 class _Run:
@@ -419,13 +419,13 @@ class History:
         """Add a track to the queue. The queue is ordered by the oldest message of each track."""
         if not track.is_queued and len(track) > 0:
             track.is_queued = True
-            heappush(self._queue_by_oldest, (track.kept[track.first][1], track.name, track))
+            heappush(self._queue_by_oldest, (track.entries[track.first_index][1], track.name, track))
 
     def _first(self) -> _Track | None:
         """Return the track with the oldest message, or None if there are no messages."""
         while self._queue_by_oldest:
             number, _, track = self._queue_by_oldest[0]
-            if len(track) > 0 and track.kept[track.first][1] == number:
+            if len(track) > 0 and track.entries[track.first_index][1] == number:
                 return track
             heappop(self._queue_by_oldest)
             track.is_queued = False
@@ -445,7 +445,7 @@ class History:
         """
         with self.lock:
             oldest = self._first()
-            return self.end_ns if oldest is None else oldest.kept[oldest.first][0]
+            return self.end_ns if oldest is None else oldest.entries[oldest.first_index][0]
 
     @property
     def end_ns(self) -> int:
@@ -496,7 +496,7 @@ class History:
             last_entries = [self._tracks[name].until(at_ns - 1, 1) for name in topics if name in self._tracks]
             return max((item[0][0] for item in last_entries if item), default=None)
 
-    def part(self, start_ns: int, end_ns: int) -> list[Recorded]:
+    def messages_between(self, start_ns: int, end_ns: int) -> list[Recorded]:
         """Return the messages from one time to another, both inclusive, ordered by time.
 
         The result begins with the state at the start (see `state_at`); the times of its messages are set to the
@@ -529,9 +529,9 @@ class History:
                 track = self._tracks.get(name)
                 if track is None:
                     continue
-                index = bisect_left(track.kept, (start_ns, number), lo=track.first)
-                if index < len(track.kept) and (best is None or track.kept[index][:2] < best[0][:2]):
-                    best = track.kept[index], name
+                index = bisect_left(track.entries, (start_ns, number), lo=track.first_index)
+                if index < len(track.entries) and (best is None or track.entries[index][:2] < best[0][:2]):
+                    best = track.entries[index], name
         if best is None:
             return None
         (stamp, found_number, data), name = best

@@ -18,7 +18,7 @@ from linkwright.graph.time.clock import Alarm
 _TICK_NS = 16_000_000
 """The real time between two checks for messages to publish."""
 
-_MOST_MESSAGES, _MOST_BYTES = 1000, 16 << 20
+_MAX_TICK_MESSAGES, _MAX_TICK_BYTES = 1000, 16 << 20
 """The maximum number of messages and bytes in one tick; if there are more, playback is slower but skips nothing."""
 
 SLOWEST, FASTEST = 0.1, 10.0
@@ -49,7 +49,7 @@ class Recording(Protocol):
 class Output(Protocol):
     """The interface for destinations of played messages."""
 
-    def wanted(self) -> frozenset[str]:
+    def subscribed_topics(self) -> frozenset[str]:
         """Return the topics of the recording that have subscribers."""
 
     def publish_time(self, stamp_ns: int, /) -> None:
@@ -84,10 +84,10 @@ class Playback:
         self._node = node
         self._recording = recording
         self._output = output
-        self._failed = on_error
-        self._wanted: frozenset[str] = frozenset()
+        self._on_error = on_error
+        self._subscribed_topics: frozenset[str] = frozenset()
         self._stream: Iterator[Recorded] = iter(())
-        self._next: Recorded | None = None
+        self._next_message: Recorded | None = None
         self._alarm: Alarm | None = None
         self._last_tick_ns = 0
         self._target_ns: int | None = None
@@ -158,15 +158,15 @@ class Playback:
         self.pause()
         try:
             if not forward:
-                previous_ns = self._recording.time_before({topic} if topic else self._wanted, self._target())
+                previous_ns = self._recording.time_before({topic} if topic else self._subscribed_topics, self._target())
                 if previous_ns is not None:
                     self.seek(previous_ns)
             elif topic:
                 self._step_to_next_of(topic)
             elif self._target_ns is None:
-                self._next = next(self._stream, None) if self._next is None else self._next
-                if self._next is not None:
-                    self._publish_until(self._next[1])
+                self._next_message = next(self._stream, None) if self._next_message is None else self._next_message
+                if self._next_message is not None:
+                    self._publish_until(self._next_message[1])
                     self._notify()
         except LinkwrightError as error:
             self._fail(error)
@@ -188,7 +188,7 @@ class Playback:
     def take_over(self, stamp_ns: int) -> None:
         """Continue from a time at which the subscribers already have the state."""
         self.position_ns, self._target_ns = stamp_ns, None
-        self._wanted = self._output.wanted()
+        self._subscribed_topics = self._output.subscribed_topics()
         self._open_stream()
 
     def before(self, topics: Collection[str], length_ns: int, max_bytes: int) -> list[Recorded]:
@@ -220,10 +220,10 @@ class Playback:
 
         Publish the last message of each topic that was added.
         """
-        topics = self._output.wanted()
-        if topics == self._wanted or self._target_ns is not None:
+        topics = self._output.subscribed_topics()
+        if topics == self._subscribed_topics or self._target_ns is not None:
             return
-        new_topics, self._wanted = topics - self._wanted, topics
+        new_topics, self._subscribed_topics = topics - self._subscribed_topics, topics
         try:
             for message in self._recording.state_at(new_topics, self.position_ns) if new_topics else ():
                 self._output.publish(*message)
@@ -235,7 +235,7 @@ class Playback:
         """Stop playing, and remove the listeners. The recording stays open."""
         self._stop()
         self.changed.clear()
-        self._stream, self._next = iter(()), None
+        self._stream, self._next_message = iter(()), None
 
     def _target(self) -> int:
         return self.position_ns if self._target_ns is None else self._target_ns
@@ -247,9 +247,9 @@ class Playback:
     def _finish_seek(self) -> None:
         self.position_ns, self._target_ns = self._target(), None
         self.seeks += 1
-        self._wanted = self._output.wanted()
+        self._subscribed_topics = self._output.subscribed_topics()
         try:
-            state = self._recording.state_at(self._wanted, self.position_ns)
+            state = self._recording.state_at(self._subscribed_topics, self.position_ns)
             self._open_stream()
         except LinkwrightError as error:
             self._fail(error)
@@ -263,8 +263,12 @@ class Playback:
 
     def _open_stream(self) -> None:
         """Open the stream of the messages after the current position."""
-        self._stream = self._recording.messages(self._wanted, self.position_ns + 1) if self._wanted else iter(())
-        self._next = next(self._stream, None)
+        self._stream = (
+            self._recording.messages(self._subscribed_topics, self.position_ns + 1)
+            if self._subscribed_topics
+            else iter(())
+        )
+        self._next_message = next(self._stream, None)
 
     def _tick(self) -> None:
         self._alarm = None
@@ -289,21 +293,21 @@ class Playback:
     def _publish_until(self, stamp_ns: int) -> None:
         """Publish the messages up to a time, but no more than one tick allows."""
         self._output.publish_time(stamp_ns)
-        if self._next is None:
-            self._next = next(self._stream, None)  # a recording in progress may have new messages
+        if self._next_message is None:
+            self._next_message = next(self._stream, None)  # a recording in progress may have new messages
         size = 0
-        for _ in range(_MOST_MESSAGES):
-            if self._next is None or self._next[1] > stamp_ns:
+        for _ in range(_MAX_TICK_MESSAGES):
+            if self._next_message is None or self._next_message[1] > stamp_ns:
                 break
-            if size > _MOST_BYTES:
-                stamp_ns = self._next[1] - 1
+            if size > _MAX_TICK_BYTES:
+                stamp_ns = self._next_message[1] - 1
                 break
-            self._output.publish(*self._next)
-            size += len(self._next[2])
-            self._next = next(self._stream, None)
+            self._output.publish(*self._next_message)
+            size += len(self._next_message[2])
+            self._next_message = next(self._stream, None)
         else:
-            if self._next is not None and self._next[1] <= stamp_ns:
-                stamp_ns = self._next[1] - 1
+            if self._next_message is not None and self._next_message[1] <= stamp_ns:
+                stamp_ns = self._next_message[1] - 1
         self.position_ns = max(self.position_ns, stamp_ns)
 
     def _set_alarm(self) -> None:
@@ -318,7 +322,7 @@ class Playback:
 
     def _fail(self, error: LinkwrightError) -> None:
         self._stop()
-        self._failed(error)
+        self._on_error(error)
         self._notify()
 
     def _notify(self) -> None:

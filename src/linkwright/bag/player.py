@@ -86,7 +86,7 @@ class Player:
             ends.append(self._begin_ns + round(options.duration * NANOSECONDS_PER_SECOND))
         self._end_ns = min(ends, default=None)
         self._stream: Iterator[tuple[str, int, bytes]] = iter(())
-        self._next: tuple[str, int, bytes] | None = None
+        self._next_message: tuple[str, int, bytes] | None = None
         self._alarm: Alarm | None = None
         self._rate = options.rate
         self._is_paused = options.paused
@@ -159,11 +159,11 @@ class Player:
         published = 0
         while (
             self._is_paused
-            and self._next is not None
+            and self._next_message is not None
             and not self._is_beyond_end()
             and (published < count or not count)
         ):
-            self._position_ns = max(self._position_ns, self._next[1])
+            self._position_ns = max(self._position_ns, self._next_message[1])
             self._publish_next()
             published += 1
         if published:
@@ -200,7 +200,7 @@ class Player:
     def _read_from(self, time_ns: int) -> None:
         topics = list(self._publishers)
         self._stream = self._bag.messages(topics, time_ns) if topics else iter(())
-        self._next = next(self._stream, None)
+        self._next_message = next(self._stream, None)
         self._position_ns = time_ns
 
     def _run(self) -> None:
@@ -209,22 +209,22 @@ class Player:
             return
         now = self.now_ns()
         for _ in range(_MAX_BATCH):
-            if self._next is None or self._next[1] > now or self._is_beyond_end():
+            if self._next_message is None or self._next_message[1] > now or self._is_beyond_end():
                 break
             self._publish_next()
         self._end_or_schedule()
 
     def _publish_next(self) -> None:
-        assert self._next is not None
-        topic, stamp_ns, data = self._next
+        assert self._next_message is not None
+        topic, stamp_ns, data = self._next_message
         if self._clock is not None and (self._options.clock_before_all or topic in self._options.clock_topics):
             self._publish_time(stamp_ns)
         self._publishers[topic].publish(data)
         self.message_count += 1
-        self._next = next(self._stream, None)
+        self._next_message = next(self._stream, None)
 
     def _end_or_schedule(self) -> None:
-        if self._next is not None and not self._is_beyond_end():
+        if self._next_message is not None and not self._is_beyond_end():
             self._schedule()
         elif self._options.loop and self.message_count:
             self._begin(self._reference_ns + _MIN_ROUND_NS)
@@ -232,15 +232,15 @@ class Player:
             self.close()
 
     def _is_beyond_end(self) -> bool:
-        return self._end_ns is not None and self._next is not None and self._next[1] > self._end_ns
+        return self._end_ns is not None and self._next_message is not None and self._next_message[1] > self._end_ns
 
     def _schedule(self) -> None:
         if self._alarm is not None:
             self._alarm.cancel()
             self._alarm = None
-        if self.finished or self._is_paused or self._next is None:
+        if self.finished or self._is_paused or self._next_message is None:
             return
-        wait_ns = round((self._next[1] - self._position_ns) / self._rate)
+        wait_ns = round((self._next_message[1] - self._position_ns) / self._rate)
         assert self._node.handle.dispatcher is not None
         self._alarm = self._node.handle.dispatcher.call_at(self._reference_ns + max(0, wait_ns), self._run)
 
@@ -268,7 +268,7 @@ class Player:
             every_service=not options.pattern,
         )
         named_topics = [topics[name] for name in options.topics or topics]
-        selected_topics = [topic for topic in named_topics if selection.takes(topic.name, topic.type_name)]
+        selected_topics = [topic for topic in named_topics if selection.selects(topic.name, topic.type_name)]
         return make_publishers(self._node, selected_topics, options.qos_overrides)
 
     def _start_clock(self) -> Publisher[Any] | None:

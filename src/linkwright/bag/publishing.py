@@ -97,7 +97,7 @@ class PublishedRecording:
         """The topics that can be played."""
         return frozenset(self._publishers)
 
-    def wanted(self) -> frozenset[str]:
+    def subscribed_topics(self) -> frozenset[str]:
         """Return the topics that have subscribers."""
         publishers = [*self._publishers.items(), *self._remapped_publishers.items()]
         return frozenset(name for name, publisher in publishers if publisher.get_subscription_count())

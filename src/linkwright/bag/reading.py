@@ -86,7 +86,7 @@ class BagReader:
         self._is_truncated = False
         self._targets = list(files) or _storage_targets(self.path, self._display_name)
         try:
-            self._reader = self._opened(self._targets)
+            self._reader = self._open_reader(self._targets)
         except BaseException:
             self._open.close()
             raise
@@ -118,7 +118,7 @@ class BagReader:
                 Diagnostic("BAG102", message, hint=phrase("the encoding of each topic's messages is in brackets"))
             )
 
-    def _opened(self, targets: Sequence[Path]) -> Reader:
+    def _open_reader(self, targets: Sequence[Path]) -> Reader:
         if len(targets) == 1:
             return self._open_target(targets[0], self.path, self._display_name)
         from linkwright.bag.several import SeveralReader
@@ -279,7 +279,7 @@ class BagReader:
         Raises:
             LinkwrightError: BAG102, the messages cannot be read.
         """
-        return self._look(lambda: self._state_lookup.state_at(topics, at_ns))
+        return self._search(lambda: self._state_lookup.state_at(topics, at_ns))
 
     def time_before(self, topics: Collection[str], at_ns: int) -> int | None:
         """Return the reception time of the last message before a time, or None.
@@ -289,7 +289,7 @@ class BagReader:
         Raises:
             LinkwrightError: BAG102, the messages cannot be read.
         """
-        return self._look(lambda: self._state_lookup.time_before(topics, at_ns))
+        return self._search(lambda: self._state_lookup.time_before(topics, at_ns))
 
     def counts(self, intervals: int) -> dict[str, list[int]]:
         """Return the number of messages of each topic in equal intervals of the recording's duration.
@@ -298,7 +298,7 @@ class BagReader:
         """
         return self._state_lookup.counts(intervals) if self._reader.message_count else {}
 
-    def _look(self, search: Callable[[], T]) -> T:
+    def _search(self, search: Callable[[], T]) -> T:
         try:
             return search()
         except Exception as error:  # a damaged file can make the library raise any exception

@@ -64,9 +64,11 @@ class Recorder:
         self._count = 0
         self.paused = paused
         self._logger.info("Listening for topics...")
-        self._discovery_timer = node.create_timer(polling_seconds, wrap_callback(self._look)) if discover else None
+        self._discovery_timer = (
+            node.create_timer(polling_seconds, wrap_callback(self._subscribe_to_new_topics)) if discover else None
+        )
         self._flush_timer = node.create_timer(_FLUSH_SECONDS, wrap_callback(writer.flush))
-        self._look()
+        self._subscribe_to_new_topics()
 
     @property
     def message_count(self) -> int:
@@ -88,19 +90,19 @@ class Recorder:
             self._discovery_timer.cancel()
         self._writer.close()
         self._logger.info("Recording stopped")
-        missing = sorted(self._rejected | (self._selection.named - set(self._writer.topics)))
+        missing = sorted(self._rejected | (self._selection.selected_names - set(self._writer.topics)))
         if missing:
             self._logger.warning(f"Not in the recording: {', '.join(missing)}")
 
-    def _look(self) -> None:
+    def _subscribe_to_new_topics(self) -> None:
         if self._uses_sim_time and self._discovery_timer is not None and self._now() == 0:
             return  # simulated time is still unknown; a later subscription also receives latched messages
         for name, types in self._node.get_topic_names_and_types():
             if name in self._writer.topics or name in self._rejected:
                 continue
             if len(types) > 1:
-                self._refuse(name, f"Topic '{name}' has several types: {', '.join(types)}. It is not recorded.")
-            elif self._selection.takes(name, types[0]):
+                self._reject(name, f"Topic '{name}' has several types: {', '.join(types)}. It is not recorded.")
+            elif self._selection.selects(name, types[0]):
                 self._subscribe(name, types[0])
         requested = self._selection.is_complete_with
         if self._discovery_timer is not None and requested is not None and requested <= set(self._writer.topics):
@@ -117,7 +119,7 @@ class Recorder:
         try:
             message_class = get_message(type_name)
         except LinkwrightError as error:
-            self._refuse(name, f"Topic '{name}' is not recorded: {error}")
+            self._reject(name, f"Topic '{name}' is not recorded: {error}")
             return
         self._writer.add_topic(name, type_name, offered)
         self._node.create_subscription(
@@ -129,7 +131,7 @@ class Recorder:
         )
         self._logger.info(f"Subscribed to topic '{name}'")
 
-    def _refuse(self, name: str, reason: str) -> None:
+    def _reject(self, name: str, reason: str) -> None:
         self._rejected.add(name)
         self._logger.warning(reason)
 

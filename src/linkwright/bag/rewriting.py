@@ -103,7 +103,7 @@ class _Output:
             profiles.setdefault(topic.name, []).extend(topic.offered_qos)
         for name, type_names in types.items():
             (type_name, *other_types) = type_names
-            if not other_types and self._selection.takes(name, type_name):
+            if not other_types and self._selection.selects(name, type_name):
                 writer.add_topic(name, type_name, profiles[name])
         return writer
 

@@ -43,11 +43,11 @@ class TopicSelection:
     every_service: bool = False
     services: Sequence[str] = ()
     without_services: Sequence[str] = ()
-    _wanted: re.Pattern[str] | None = field(init=False, repr=False, compare=False)
+    _compiled_pattern: re.Pattern[str] | None = field(init=False, repr=False, compare=False)
     _unwanted: re.Pattern[str] | None = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "_wanted", _compiled(self.pattern))
+        object.__setattr__(self, "_compiled_pattern", _compiled(self.pattern))
         object.__setattr__(self, "_unwanted", _compiled(self.without_pattern))
 
     @property
@@ -58,10 +58,10 @@ class TopicSelection:
     @property
     def is_complete_with(self) -> frozenset[str] | None:
         """The topics whose discovery completes the search, or None if any new topic may be selected."""
-        return None if self._accepts_unnamed else self.named
+        return None if self._accepts_unnamed else self.selected_names
 
     @property
-    def named(self) -> frozenset[str]:
+    def selected_names(self) -> frozenset[str]:
         """The topics that are selected by name."""
         return frozenset((*self.names, *(name + EVENT_TOPIC_SUFFIX for name in self.services)))
 
@@ -69,7 +69,7 @@ class TopicSelection:
     def _accepts_unnamed(self) -> bool:
         return bool(self.everything or self.every_service or self.types or self.pattern)
 
-    def takes(self, name: str, type_name: str) -> bool:
+    def selects(self, name: str, type_name: str) -> bool:
         """Return whether a topic is selected.
 
         Args:
@@ -92,7 +92,7 @@ class TopicSelection:
         return self.every_service or service in self.services or type_name in self.types or self._is_wanted(service)
 
     def _is_wanted(self, name: str) -> bool:
-        return self._wanted is not None and self._wanted.search(name) is not None
+        return self._compiled_pattern is not None and self._compiled_pattern.search(name) is not None
 
     def _is_unwanted(self, name: str) -> bool:
         return self._unwanted is not None and self._unwanted.search(name) is not None

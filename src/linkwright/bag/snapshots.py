@@ -28,7 +28,7 @@ class LatestMessages:
             _, _, dropped = self._messages.popleft()
             self._used_bytes -= len(dropped)
 
-    def taken(self) -> list[tuple[str, int, bytes]]:
+    def take_all(self) -> list[tuple[str, int, bytes]]:
         """Remove and return the messages, oldest first."""
         take = list(self._messages)
         self._messages.clear()

@@ -31,13 +31,13 @@ class Content(NamedTuple):
     """The content of a message without its stamps.
 
     Attributes:
-        what: the child frames of transforms, because many nodes publish on one topic; empty for other messages.
+        child_frames: the child frames of transforms, because many nodes publish on one topic; empty for other messages.
         state: the serialized values without stamps, and for transforms also without poses.
         poses: the bytes of the poses' numbers, float64: positions in m, and quaternions.
         clock_ns: the simulated time of a clock message; None for any other message.
     """
 
-    what: str
+    child_frames: str
     state: bytes
     poses: bytes = b""
     clock_ns: int | None = None
@@ -102,13 +102,13 @@ class _Layout(NamedTuple):
     """The offsets of stamps and poses. They are the same in all messages with the same frames.
 
     Attributes:
-        what: the child frames, one per line.
+        child_frames: the child frames, one per line.
         state: the bytes after the encapsulation header, with zeros for stamps and poses.
         numbers: the offsets of the bytes that belong to poses.
         blank: the offsets of the bytes that belong to stamps or poses.
     """
 
-    what: str
+    child_frames: str
     state: bytes
     numbers: NDArray[np.intp]
     blank: NDArray[np.intp]
@@ -132,7 +132,7 @@ def _content_of_transforms(data: bytes) -> Content | None:
         poses = state[layout.numbers].tobytes()
         state[layout.blank] = 0
         if state.tobytes() == layout.state:
-            return Content(layout.what, layout.state, poses)
+            return Content(layout.child_frames, layout.state, poses)
     layout = _parse_layout(data)
     if layout is None:
         return None
@@ -140,7 +140,7 @@ def _content_of_transforms(data: bytes) -> Content | None:
         _layouts.clear()
     _layouts[len(data)] = layout
     numbers = np.frombuffer(data, np.uint8, offset=_ENCAPSULATION_SIZE)[layout.numbers]
-    return Content(layout.what, layout.state, numbers.tobytes())
+    return Content(layout.child_frames, layout.state, numbers.tobytes())
 
 
 def _parse_layout(data: bytes) -> _Layout | None:

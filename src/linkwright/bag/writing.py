@@ -165,7 +165,7 @@ class BagWriter:
         with self._lock:
             if self._snapshot_buffer is None:
                 return False
-            for message in self._snapshot_buffer.taken():
+            for message in self._snapshot_buffer.take_all():
                 if self._part is None:
                     break
                 try:

@@ -96,7 +96,7 @@ async def _carry(first: Side, second: Side, directions: tuple[Direction, Directi
                 direction.add()
             unsettled_until = loop.time() + _UNSETTLED_S
         settled = [direction.settle() for direction in directions]
-        settled += [directions[0].show(directions[1]), directions[1].show(directions[0])]
+        settled += [directions[0].announce(directions[1]), directions[1].announce(directions[0])]
         pause_s = _IDLE_INTERVAL_S if all(settled) and loop.time() > unsettled_until else _BUSY_INTERVAL_S
         wait_task = asyncio.ensure_future(change_event.wait())
         try:

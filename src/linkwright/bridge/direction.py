@@ -112,9 +112,9 @@ class Direction:
                 self._publishers[gid].expects_listeners = self._is_expected(info)
         for key, info in self._selected_services.items():
             if key not in self._services:
-                self._services[key] = MirroredService(self._mirror_node(info), self._source.own, info)
+                self._services[key] = MirroredService(self._mirror_node(info), self._source.bridge_node, info)
 
-    def show(self, opposite: Direction) -> bool:
+    def announce(self, opposite: Direction) -> bool:
         """Announce the source's subscriptions and clients in the target.
 
         Return whether all of them are announced.
@@ -131,19 +131,19 @@ class Direction:
         for gid in self._selected_presences.keys() - self._presences.keys():
             info = self._selected_presences[gid]
             deadline = self._announcement_deadlines.setdefault(
-                gid, now + (MATCH_TIMEOUT_S if opposite.reaches(info) else _ANNOUNCEMENT_DELAY_S)
+                gid, now + (MATCH_TIMEOUT_S if opposite.has_match(info) else _ANNOUNCEMENT_DELAY_S)
             )
-            if info.kind is EndpointKind.CLIENT or now >= deadline or opposite.hears(info.name):
+            if info.kind is EndpointKind.CLIENT or now >= deadline or opposite.is_subscribed(info.name):
                 node = self._mirror_node(info)
                 self._presences[gid] = node.add(Presence(node, info))
                 del self._announcement_deadlines[gid]
         return not self._announcement_deadlines
 
-    def hears(self, name: str) -> bool:
+    def is_subscribed(self, name: str) -> bool:
         """Return whether the bridge subscribes to a topic in the source."""
         return any(stream.name == name for stream in self._taps)
 
-    def reaches(self, subscription: EndpointInfo) -> bool:
+    def has_match(self, subscription: EndpointInfo) -> bool:
         """Return whether a mirrored publisher matches a subscription in the target."""
         return any(
             publisher.info.name == subscription.name
@@ -197,7 +197,7 @@ class Direction:
 
     def _select_endpoints(self) -> None:
         """Decide which endpoints and nodes of the source are mirrored, and which streams are awaited."""
-        source_snapshot, target_snapshot = self._source.seen, self._target.seen
+        source_snapshot, target_snapshot = self._source.snapshot, self._target.snapshot
         self._selected_publishers, self._selected_services, self._selected_nodes = {}, {}, {}
         self._selected_presences = {}
         hidden = {node.full_name for node in source_snapshot.nodes}
@@ -232,7 +232,7 @@ class Direction:
 
     def _is_expected(self, publisher: EndpointInfo) -> bool:
         """Return whether a subscription in the target can receive from the mirror of a publisher."""
-        subscriptions = self._target.seen.subscriptions.get(publisher.name, ())
+        subscriptions = self._target.snapshot.subscriptions.get(publisher.name, ())
         return any(can_receive(endpoint, publisher, keyed=self._target.needs_hashes) for endpoint in subscriptions)
 
     def _can_carry(self, info: EndpointInfo) -> bool:
@@ -259,7 +259,7 @@ class Direction:
         again, late joiners would receive the history twice. While a topic has no publisher, and while its first
         publisher is being matched, every possible stream is subscribed to.
         """
-        subscriptions = self._target.seen.subscriptions
+        subscriptions = self._target.snapshot.subscriptions
         streams = {
             publisher.stream
             for publisher in self._publishers.values()
@@ -273,7 +273,7 @@ class Direction:
         # A publisher may send as soon as it discovers one of several subscriptions, so the subscription that matches
         # most publishers is created first.
         for stream in sorted(streams - self._taps.keys(), key=lambda stream: (stream.history, stream.reliability)):
-            self._taps[stream] = Tap(self._source.own, stream, self._carry)
+            self._taps[stream] = Tap(self._source.bridge_node, stream, self._carry)
 
     def _carry(self, tap: Tap, data: bytes, info: MessageInfo) -> None:
         """Publish a message in the target, unless a bridge has published it in the source.
@@ -289,7 +289,7 @@ class Direction:
                 publisher.put(data)
                 if publisher.info.gid in self._departed_publishers:
                     self._departed_publishers[publisher.info.gid] = 0
-        elif info.publisher_gid not in self._source.seen.bridge_gids:
+        elif info.publisher_gid not in self._source.snapshot.bridge_gids:
             self._early_messages.append(
                 EarlyMessage(time.monotonic() + _DISCOVERY_TIMEOUT_S, tap, info.publisher_gid, data)
             )

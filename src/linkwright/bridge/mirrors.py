@@ -85,7 +85,7 @@ class MirroredPublisher:
         publisher.type_hash = info.type_hash
         publisher.raw = True
         self._waiting: deque[bytes] | None = deque(maxlen=KEPT)
-        self._made = time.monotonic()
+        self._created_at = time.monotonic()
         self.expects_listeners = False
         self._publisher = node.add(publisher)
         on_failure = partial(log_failure, node.logger, f"publisher of topic '{info.name}'")
@@ -136,7 +136,7 @@ class MirroredPublisher:
 
     def _has_waited(self) -> bool:
         timeout = MATCH_TIMEOUT_S if self.expects_listeners else _DISCOVERY_TIMEOUT_S
-        return time.monotonic() >= self._made + timeout
+        return time.monotonic() >= self._created_at + timeout
 
     def _publish(self, data: bytes) -> None:
         if self._outlet is None:

@@ -14,7 +14,7 @@ from linkwright.graph.log.logger import Logger, LogSink
 from linkwright.wire import dds, zenoh
 from linkwright.wire.background import BackgroundTransport
 from linkwright.wire.dds.settings import read_settings as read_dds_settings
-from linkwright.wire.unfollowed import refuse_enforced_security
+from linkwright.wire.unsupported_settings import refuse_enforced_security
 from linkwright.wire.zenoh.settings import read_settings as read_zenoh_settings
 
 _JOINED_WITHIN = 10.0

@@ -9,7 +9,7 @@ from functools import partial
 from queue import Queue
 
 from linkwright.graph.faults import InvalidHandleError
-from linkwright.wire.living_threads import guarded
+from linkwright.wire.guarded_calls import guarded
 
 
 class Outlet:

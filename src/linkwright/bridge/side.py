@@ -65,8 +65,8 @@ class Side:
         self._transport = transport
         self._bridge_id = bridge_id
         self._enclave = f"{ENCLAVE}/{bridge_id}"
-        self.seen = Snapshot()
-        self.own = self.open_node(NodeIdentity(f"linkwright_bridge_{bridge_id}", "/"))
+        self.snapshot = Snapshot()
+        self.bridge_node = self.open_node(NodeIdentity(f"linkwright_bridge_{bridge_id}", "/"))
 
     async def join(self, seconds: float) -> None:
         """Wait until the network is joined.
@@ -119,7 +119,7 @@ class Side:
                 snapshot.subscriptions.setdefault(endpoint.name, []).append(endpoint)
             elif endpoint.kind is EndpointKind.SERVICE:
                 snapshot.served.add(endpoint.name)
-        self.seen = snapshot
+        self.snapshot = snapshot
 
 
 def endpoint_provision(endpoint: EndpointInfo) -> Provision:

@@ -94,12 +94,12 @@ def main(words: Sequence[str] | None = None, *, program: str = PROGRAM) -> int:
 
 
 def _reduce_garbage_collection() -> None:
-    def looked(phase: str, _: object) -> None:
+    def on_collection(phase: str, _: object) -> None:
         if phase == "stop" and gc.get_threshold()[0] == _FIRST_GC_THRESHOLD:
             gc.set_threshold(_GC_THRESHOLD)
 
     gc.set_threshold(_FIRST_GC_THRESHOLD)
-    gc.callbacks.append(looked)
+    gc.callbacks.append(on_collection)
 
 
 def groups() -> dict[str, dict[str, str]]:

@@ -133,10 +133,10 @@ def run(arguments: argparse.Namespace) -> int:
         splits=arguments.splits,
         copies=arguments.copies,
         distractors=arguments.distractors,
-        most=arguments.most,
-        kept=arguments.keep,
-        least_size=arguments.min_size,
-        least_visible=arguments.min_visible,
+        max_objects=arguments.most,
+        fixed_properties=arguments.keep,
+        min_size=arguments.min_size,
+        min_visible=arguments.min_visible,
         form=arguments.image_format,
     )
     path = Path(arguments.output)
@@ -181,7 +181,7 @@ class _Progress:
     def begin(self, studio: Studio) -> None:
         """Print the classes and the rendering method."""
         print_message(localized(phrase("Classes: {names}", names=", ".join(studio.classes))))
-        print_message(localized(phrase("Rendering images with {way}", way=studio.way)))
+        print_message(localized(phrase("Rendering images with {way}", way=studio.render_method)))
         if studio.unused:
             print_message(
                 localized(phrase("These worlds have no object of the classes {names}", names=", ".join(studio.unused)))

@@ -71,7 +71,7 @@ def run(arguments: argparse.Namespace) -> int:
     if "run_verb" in arguments:
         return run_nested(arguments)
     from linkwright.doctor import examine, examine_parameter_files, observe, report
-    from linkwright.wire.unfollowed import new_unsupported_settings
+    from linkwright.wire.unsupported_settings import new_unsupported_settings
 
     frames = _fixed_frames(arguments)
     settings = new_unsupported_settings()  # reported as findings, not when joining the graph

@@ -100,7 +100,7 @@ def _warn_if_local_only() -> None:
     """Print a warning if the topic stays on this computer, as it does by default."""
     from linkwright.wire.dds.settings import Range, read_settings
     from linkwright.wire.joining import middleware
-    from linkwright.wire.unfollowed import CYCLONE
+    from linkwright.wire.unsupported_settings import CYCLONE
 
     if middleware() == CYCLONE and read_settings().range in (Range.MACHINE, Range.LOCALHOST, Range.OFF):
         text = phrase(

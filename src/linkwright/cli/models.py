@@ -39,7 +39,7 @@ def run_list(arguments: argparse.Namespace) -> int:
                 "licence": entry.licence,
                 "address": entry.address,
                 "purpose": entry.purpose,
-                "path": str(models_folder() / entry.place) if is_installed(entry) else None,
+                "path": str(models_folder() / entry.installed_name) if is_installed(entry) else None,
             }
             for entry in model_table().values()
         ]
@@ -77,7 +77,7 @@ def run_get(arguments: argparse.Namespace) -> int:
     entry = model_entry(arguments.name)
     folder: Path = arguments.to or models_folder()
     if is_installed(entry, folder):
-        path = folder / entry.place
+        path = folder / entry.installed_name
         if not _verification_problems(entry, path):
             print(path)
             return FINE
@@ -150,10 +150,10 @@ def run_check(arguments: argparse.Namespace) -> int:
 
 
 def _verification_problems(entry: ModelEntry, place: Path) -> Sequence[Diagnostic]:
-    from linkwright.model_files import checked
+    from linkwright.model_files import verify
 
     try:
-        checked(entry, place)
+        verify(entry, place)
     except LinkwrightError as error:
         return error.diagnostics
     return ()

@@ -86,7 +86,7 @@ def _configure_send(parser: argparse.ArgumentParser) -> None:
 def _receive(arguments: argparse.Namespace) -> int:
     with multicast.open_receiver(arguments.group, arguments.port) as receiver:
         print("Waiting for UDP multicast datagram...", flush=True)
-        data, (host, port, *_) = receiver.recvfrom(multicast.LARGEST)
+        data, (host, port, *_) = receiver.recvfrom(multicast.MAX_DATAGRAM_BYTES)
     print(f"Received from {host}:{port}: '{data.decode(errors='replace')}'")
     return 0
 

@@ -15,12 +15,12 @@ class ProgressLine:
     """
 
     def __init__(self) -> None:
-        self.shown = sys.stderr.isatty()
+        self.is_shown = sys.stderr.isatty()
         self._has_text = False
 
     def show(self, text: Phrase) -> None:
         """Replace the text of the line."""
-        if self.shown:
+        if self.is_shown:
             sys.stderr.write(f"\r{localized(text)}\x1b[K")
             sys.stderr.flush()
             self._has_text = True

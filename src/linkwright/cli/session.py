@@ -64,7 +64,7 @@ class Session:
         visiting: whether a signal has to interrupt a visit of launch actions; always False.
     """
 
-    visiting = False
+    is_blocking = False
 
     def __init__(self, graph: Graph, node: Node) -> None:
         self.graph = graph
@@ -268,7 +268,7 @@ async def join_others(graph: Graph, spin_time: float | None, *, read_only: bool 
 
     if available():
         check_settings()  # report malformed settings as errors; joining would only log them
-    transport = join(graph, only_looks=read_only, must_join=True) if available() else None
+    transport = join(graph, discovers_only=read_only, must_join=True) if available() else None
     if transport is None:
         raise LinkwrightError(
             Diagnostic(

@@ -86,7 +86,7 @@ def run(arguments: argparse.Namespace) -> int:
     table = sweep.run(_runner(arguments, path), resume=arguments.resume, progress=progress.show)
     progress.end()
     missing = len(plan_runs(scenario)) - len(table)
-    _print_summary(table, time.monotonic() - start_time, progress.made)
+    _print_summary(table, time.monotonic() - start_time, progress.run_count)
     for written in (sweep.table, sweep.page):
         print(localized(phrase("Created file {file}", file=display_path(written))))
     if missing:
@@ -134,12 +134,12 @@ class _Progress:
     """The progress line of a sweep, with a count of the runs."""
 
     def __init__(self) -> None:
-        self.made = 0
+        self.run_count = 0
         self._line = ProgressLine()
 
     def show(self, done_count: int, count: int, failed: int) -> None:
         """Count one more run, and show the number of finished runs and the number of failed ones."""
-        self.made += 1
+        self.run_count += 1
         self._line.show(phrase("{done} of {count} runs, {failed} failed", done=done_count, count=count, failed=failed))
 
     def end(self) -> None:

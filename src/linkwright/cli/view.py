@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from linkwright.cli.model_arguments import add_second_model, names_file, requested_pair
-from linkwright.hosting.last_minutes import DEFAULT_HISTORY
+from linkwright.hosting.history_size import DEFAULT_HISTORY
 from linkwright.process.assignments import parse_assignments
 
 if TYPE_CHECKING:

@@ -34,15 +34,15 @@ class Model:
     revision: Revision | None = None
 
     def label(self) -> str:
-        """Return the name of the file for users; see `named`."""
-        return self.named(str(self.path))
+        """Return the name of the file for users; see `display_name`."""
+        return self.display_name(str(self.path))
 
     @property
     def title(self) -> str:
         """The name of the file without folders, such as ``HEAD:arm.urdf`` for a file of a commit."""
         return self.path.name if self.revision is None else f"{self.revision.name}:{self.path.name}"
 
-    def named(self, file: str) -> str:
+    def display_name(self, file: str) -> str:
         """Return the name of a file for users.
 
         Examples are ``HEAD:robots/arm.urdf``, and a path relative to the current folder.
@@ -90,7 +90,7 @@ class Model:
         return diagnostic.with_changes(span=self._span(diagnostic.span), notes=notes)
 
     def _span(self, span: Span | None) -> Span | None:
-        return None if span is None else span._replace(file=self.named(span.file))
+        return None if span is None else span._replace(file=self.display_name(span.file))
 
 
 @dataclass(frozen=True)
@@ -112,7 +112,7 @@ class Pair:
 
     def label(self, file: str) -> str:
         """Return the name of a file of either description for users."""
-        return self.old.named(file)
+        return self.old.display_name(file)
 
     def read_and_compare(self) -> Comparison:
         """Read both descriptions and return the differences between them.

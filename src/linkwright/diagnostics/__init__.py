@@ -8,7 +8,7 @@ from linkwright.diagnostics.diagnostic import (
     SourceText,
     Span,
     has_errors,
-    in_one_line,
+    join_messages,
 )
 from linkwright.diagnostics.extras import install_hint, missing_extra, package_hint
 from linkwright.diagnostics.phrase import (
@@ -47,9 +47,9 @@ __all__ = [
     "display_path",
     "foreign",
     "has_errors",
-    "in_one_line",
     "install_hint",
     "is_misspelt",
+    "join_messages",
     "joined",
     "missing_extra",
     "missing_file_hint",

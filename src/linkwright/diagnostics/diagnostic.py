@@ -227,7 +227,7 @@ class LinkwrightError(Exception):
         )
 
 
-def in_one_line(diagnostics: Iterable[Diagnostic]) -> Phrase:
+def join_messages(diagnostics: Iterable[Diagnostic]) -> Phrase:
     """Join the messages of several diagnostics into one line."""
     return joined((diagnostic.message for diagnostic in diagnostics), "; ")
 

@@ -50,10 +50,10 @@ def render(diagnostic: Diagnostic, *, colour: bool = False, lang: str = "en") ->
     head = f"{words[severity.value]}[{diagnostic.code}]"
     lines = [f"{paint(head, _COLOURS[severity] + ';1')}{paint(colon + printable(diagnostic.message), '1')}"]
     if diagnostic.span:
-        lines.append(f"  {paint('-->', '34')} {_place(diagnostic.span)}")
+        lines.append(f"  {paint('-->', '34')} {_location_text(diagnostic.span)}")
         lines += _excerpt(diagnostic, paint)
     for note in diagnostic.notes:
-        position = f" ({_place(note.span)})" if note.span else ""
+        position = f" ({_location_text(note.span)})" if note.span else ""
         lines.append(f"   {paint('=', '34')} {words['note']}{colon}{_indent(note.message)}{position}")
     if diagnostic.hint:
         lines.append(f"   {paint('=', '34')} {paint(words['hint'], '32')}{colon}{_indent(diagnostic.hint)}")
@@ -133,7 +133,7 @@ class _Painter:
         return f"\x1b[{code}m{text}\x1b[0m" if self._colour else text
 
 
-def _place(span: Span) -> str:
+def _location_text(span: Span) -> str:
     path = span.file if span.file.startswith("<") else display_path(span.file)
     return f"{printable(path)}:{span.line}:{span.column}"
 

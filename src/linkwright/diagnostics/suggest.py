@@ -173,21 +173,22 @@ def as_typed(path: str | os.PathLike[str]) -> str:
     return path_text if match is None else f"{match[1]}//{match[2]}"
 
 
-def missing_file_hint(path: Path, wanted: Callable[[str], bool] | None = None) -> Phrase:
+def missing_file_hint(path: Path, is_candidate: Callable[[str], bool] | None = None) -> Phrase:
     """Return a hint for a file that does not exist.
 
     It names the missing folder, or similar file names in the folder, or other files there.
 
     Args:
         path: the path of the missing file.
-        wanted: returns whether a file name in the folder can be suggested; None for names with the same extension.
+        is_candidate: returns whether a file name in the folder can be suggested; None for names with the same
+            extension.
     """
     if any(part in path.parts for part in _ADDRESSES):
         return phrase("files are not fetched from the network: download the file, and give its path")
     folder = path.parent
-    if wanted is None:
+    if is_candidate is None:
 
-        def wanted(name: str) -> bool:
+        def is_candidate(name: str) -> bool:
             return name.endswith(path.suffix)
 
     try:
@@ -201,7 +202,7 @@ def missing_file_hint(path: Path, wanted: Callable[[str], bool] | None = None) -
     suggestion = _did_you_mean(_similar_files(path.name, names))
     if suggestion:
         return suggestion
-    listed_names = [name for name in names if wanted(name)][:_MAX_LISTED]
+    listed_names = [name for name in names if is_candidate(name)][:_MAX_LISTED]
     if listed_names:
         return phrase("choose from {names}", names=joined(listed_names))
     return phrase("the current folder is '{current}'", current=os.getcwd())  # noqa: PTH109 - as above

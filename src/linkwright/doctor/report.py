@@ -103,7 +103,7 @@ def _platform_rows() -> list[tuple[str, str]]:
 
 def _middleware_name() -> str:
     from linkwright.wire.joining import available, middleware, unavailable_reason
-    from linkwright.wire.unfollowed import ZENOH
+    from linkwright.wire.unsupported_settings import ZENOH
 
     if not available():
         return f"none: {unavailable_reason()}"

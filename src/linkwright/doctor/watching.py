@@ -31,7 +31,7 @@ from linkwright.graph.names.rules import join
 from linkwright.graph.qos.profile import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.wire.joining import middleware
-from linkwright.wire.unfollowed import DISCOVERY_SERVERS, MIDDLEWARE, SECURITY, ZENOH
+from linkwright.wire.unsupported_settings import DISCOVERY_SERVERS, MIDDLEWARE, SECURITY, ZENOH
 
 if TYPE_CHECKING:
     from linkwright.graph.loop.future import Future

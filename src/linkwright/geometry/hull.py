@@ -56,7 +56,7 @@ class _Hull:
         self.planes: dict[int, tuple[Array, float]] = {}
         self.edges: dict[tuple[int, int], int] = {}
         self.outside: dict[int, Indices] = {}
-        self._next = 0
+        self._next_id = 0
         a, b, c, d = start
         self._add([(a, b, c), (a, d, b), (b, d, c), (c, d, a)], np.arange(len(points), dtype=np.int64))
 
@@ -116,8 +116,8 @@ class _Hull:
         lengths = np.linalg.norm(normals, axis=1, keepdims=True)
         normals = np.divide(normals, lengths, out=np.zeros_like(normals), where=lengths > 0)
         levels = np.einsum("ij,ij->i", normals, corners[:, 0])
-        face_ids = range(self._next, self._next + len(triangles))
-        self._next += len(triangles)
+        face_ids = range(self._next_id, self._next_id + len(triangles))
+        self._next_id += len(triangles)
         for face_id, triangle, normal, level in zip(face_ids, triangles, normals, levels, strict=True):
             self.faces[face_id] = triangle
             self.planes[face_id] = (normal, float(level))

@@ -13,7 +13,7 @@ from linkwright.graph.endpoints.publisher import Publisher
 from linkwright.graph.endpoints.service import Client, Service
 from linkwright.graph.endpoints.subscription import Subscription
 from linkwright.graph.faults import InvalidHandleError
-from linkwright.graph.introspection.graph_queries import GraphQueries, Namesakes, OnNamesakes
+from linkwright.graph.introspection.graph_queries import GraphQueries, OnNamesakes, SharedNameMonitor
 from linkwright.graph.log.console import print_to_console
 from linkwright.graph.log.logger import Logger, LogLevels, LogSink
 from linkwright.graph.loop.dispatcher import LoopDispatcher
@@ -62,7 +62,7 @@ class LocalGraph(GraphQueries):
         self._lock = threading.RLock()
         self._changed = threading.Condition()
         self._watchers: dict[Callable[[], object], None] = {}
-        self._namesakes = Namesakes(on_namesakes)
+        self._namesakes = SharedNameMonitor(on_namesakes)
         self._closed = False
         self._watches_lost = False
         loop = None if threads else asyncio._get_running_loop()

@@ -128,7 +128,7 @@ class Node(NodeParameters, NodeQueries):
                 ParameterServices(self, name, partial(Node.create_service, self))
             if STRICT in store.overrides:
                 description = "Let responses wait for the callback group of their client, as rclpy does."
-                handle.strict_callback_groups = self.__own(STRICT, False, description)
+                handle.strict_callback_groups = self.__node_flag(STRICT, False, description)
             if self.__describes_types(store):
                 TypeDescriptions(handle, partial(Node.create_service, self))
             SimulatedTime(handle, self, self.__clock)
@@ -143,9 +143,9 @@ class Node(NodeParameters, NodeQueries):
         """
         if TYPE_DESCRIPTIONS not in store.overrides and not has_type_descriptions_by_default():
             return False
-        return self.__own(TYPE_DESCRIPTIONS, True, "Start the ~/get_type_description service for this node.")
+        return self.__node_flag(TYPE_DESCRIPTIONS, True, "Start the ~/get_type_description service for this node.")
 
-    def __own(self, name: str, default: bool, description: str) -> bool:
+    def __node_flag(self, name: str, default: bool, description: str) -> bool:
         """Return the value of a read-only boolean parameter that configures the node itself.
 
         If the parameter is not declared, it is declared with the value `default`.

@@ -37,7 +37,7 @@ class SimulatedTime:
             parameters.declare_parameter(PARAMETER, False)
         value = parameters.get_parameter(PARAMETER).value
         if isinstance(value, bool):
-            self._follow(value)
+            self._switch_clock(value)
         else:
             handle.logger.error(f"Invalid type for parameter '{PARAMETER}' {value!r} should be bool")
         parameters.add_on_set_parameters_callback(self._check)
@@ -54,9 +54,9 @@ class SimulatedTime:
     def _on_change(self, parameters: list[Any]) -> None:
         for parameter in parameters:
             if parameter.name == PARAMETER:
-                self._follow(parameter.value)
+                self._switch_clock(parameter.value)
 
-    def _follow(self, use_simulated_time: bool) -> None:
+    def _switch_clock(self, use_simulated_time: bool) -> None:
         if use_simulated_time == (self._subscription is not None):
             return
         if use_simulated_time:

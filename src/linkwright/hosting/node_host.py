@@ -223,7 +223,7 @@ class NodeHost:
         If the description file of the node is not valid, the node is started when the file is fixed.
         """
         session = self._session
-        description = self._find_description(plan) if plan.waits else None
+        description = self._find_description(plan) if plan.waits_for_fix else None
         if description is None or session.ending:
             session.fail(plan)
             session.log.diagnostics(error.diagnostics)

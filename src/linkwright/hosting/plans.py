@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
-from linkwright.hosting.last_minutes import DEFAULT_HISTORY
+from linkwright.hosting.history_size import DEFAULT_HISTORY
 from linkwright.hosting.launch_log import LaunchLog, output_destinations
 
 if TYPE_CHECKING:
@@ -49,9 +49,9 @@ class HostedPlan:
             `linkwright.hosting.launch_log`.
         respawns: the maximum number of restarts after the node has finished; unlimited if negative.
         respawn_delay: the seconds to wait before a restart.
-        for_others: parameters, by node name, for other nodes that the node creates; None if there are none.
+        parameters_of_others: parameters, by node name, for other nodes that the node creates; None if there are none.
         environment: the environment variables when the plan was created.
-        waits: whether a node with an invalid description file is started when the file is fixed.
+        waits_for_fix: whether a node with an invalid description file is started when the file is fixed.
     """
 
     owner: Any
@@ -68,8 +68,8 @@ class HostedPlan:
     destinations: Mapping[int, frozenset[str]] = field(default_factory=lambda: output_destinations("screen"))
     respawns: int = 0
     respawn_delay: float = 0.0
-    waits: bool = True
-    for_others: ParameterRules | None = None
+    waits_for_fix: bool = True
+    parameters_of_others: ParameterRules | None = None
     environment: Mapping[str, str] = field(default_factory=lambda: dict(os.environ))
 
     @property
@@ -112,7 +112,7 @@ class HostedPlan:
             remappings=self.remappings,
             arguments=self.arguments,
             library=library,
-            parameters_of_others=self.for_others or ParameterRules(),
+            parameters_of_others=self.parameters_of_others or ParameterRules(),
             environment=self.environment,
         )
 

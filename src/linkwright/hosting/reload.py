@@ -236,7 +236,7 @@ class LiveReload:
             description = await loop.run_in_executor(None, self.descriptions.read, call)
         except LinkwrightError as error:
             return None, error.diagnostics
-        return self.descriptions.take(call, description)
+        return self.descriptions.store_result(call, description)
 
     def _apply(self, call: XacroCall, text: str, findings: tuple[Diagnostic, ...]) -> None:
         was_broken = self._is_broken(call)

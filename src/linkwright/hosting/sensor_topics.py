@@ -40,13 +40,15 @@ def _image_topic(sensor: str, kind: str, name: str) -> str:
         if topic_match is None:
             return "depth_image" if kind.startswith("depth") else "image"
         return f"{topic_match[1]}/image" if kind.startswith("rgbd") else topic_match[1]
-    image_topic = _first(_IMAGE_NAME, sensor, "image_raw")
-    topic_name = image_topic if image_topic.startswith("/") else f"{_first(_CAMERA_NAME, sensor, name)}/{image_topic}"
+    image_topic = _first_match(_IMAGE_NAME, sensor, "image_raw")
+    topic_name = (
+        image_topic if image_topic.startswith("/") else f"{_first_match(_CAMERA_NAME, sensor, name)}/{image_topic}"
+    )
     topic_name = dict(_REMAPPING.findall(sensor)).get(topic_name, topic_name)
-    return topic_name if topic_name.startswith("/") else f"{_first(_NAMESPACE, sensor, '')}/{topic_name}"
+    return topic_name if topic_name.startswith("/") else f"{_first_match(_NAMESPACE, sensor, '')}/{topic_name}"
 
 
-def _first(pattern: re.Pattern[str], text: str, default: str) -> str:
+def _first_match(pattern: re.Pattern[str], text: str, default: str) -> str:
     match = pattern.search(text)
     return match[1] if match else default
 

@@ -46,7 +46,7 @@ class Session(Protocol):
         """The event loop of the run, or None before it exists."""
 
     @property
-    def visiting(self) -> bool:
+    def is_blocking(self) -> bool:
         """Whether code is running that blocks the event loop. A KeyboardInterrupt may interrupt it."""
 
     def interrupt(self, reason: str) -> None:
@@ -136,7 +136,7 @@ class SignalWatch:
         if session is None or session.loop is None:
             raise KeyboardInterrupt
         session.loop.call_soon_threadsafe(self._extend_deadline, session)
-        if session.visiting:
+        if session.is_blocking:
             raise KeyboardInterrupt
         session.loop.call_soon_threadsafe(session.interrupt, interruption_text(signal_number))
 

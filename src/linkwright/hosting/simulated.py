@@ -180,7 +180,7 @@ class SimulatedView(ModelView):
         """
         description, text = self._world.description, self._world.text
         if text:
-            self._files.begin(self._call)
+            self._files.record_read_time(self._call)
             self._files.take_text(self._call, text, (self._call.path,) if description is None else description.files)
         if description is not None:
             self._files.store(self._call, description)
@@ -190,7 +190,7 @@ class SimulatedView(ModelView):
         return True
 
     def _plan_others(self) -> None:
-        self._plan(*_SIMULATOR_NODE, self._world.parameters, output="screen", waits=False)
+        self._plan(*_SIMULATOR_NODE, self._world.parameters, output="screen", waits_for_fix=False)
         if not self._world.headless:
             self._plan(*VIEWER, {"use_sim_time": True}, name="viewer", viewer_config=self._viewer_config)
 
@@ -205,7 +205,7 @@ class SimulatedView(ModelView):
         config = world_config(str(self._world.path), *self._world.pose[:2])
 
         def add(cls: str, topic: str, *, checked: bool = True) -> None:
-            display = config.make(cls, cls.rpartition("/")[2])
+            display = config.new_display(cls, cls.rpartition("/")[2])
             display.section.put(("Topic", "Value"), topic, string=True)
             display.section.put(("Topic", "Reliability Policy"), "Best Effort", string=True)
             config.insert(display)

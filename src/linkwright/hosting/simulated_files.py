@@ -41,13 +41,13 @@ class SimulatedDescriptions(Descriptions):
             return self._read_model(call)
         return super().read(call)
 
-    def take(self, call: XacroCall, description: Any) -> tuple[str | None, tuple[Diagnostic, ...]]:
+    def store_result(self, call: XacroCall, description: Any) -> tuple[str | None, tuple[Diagnostic, ...]]:
         """Store a robot, model or world, and return its text and findings.
 
         For a world, the text is the path of its file. The text is None if the description has no robot.
         """
         if isinstance(call, WorldCall):
-            return super().take(call, description)
+            return super().store_result(call, description)
         if is_world(call.path.name):
             from linkwright.sdf.writer import save
 
@@ -66,7 +66,7 @@ class SimulatedDescriptions(Descriptions):
     def _read_model(self, call: XacroCall) -> ConversionResult:
         from linkwright.descriptions.conversion import as_sdf
 
-        self.begin(call)
+        self.record_read_time(call)
         converted = as_sdf(call.path, self.finder, arguments=dict(call.arguments), folder=Path.cwd())
         errors = [diagnostic for diagnostic in converted.diagnostics if diagnostic.severity is Severity.ERROR]
         if errors or converted.sdf is None or not converted.sdf.models:

@@ -101,7 +101,7 @@ class ModelView:
         self.descriptions = descriptions or Descriptions(finder, reads_unsaved=True)
         self.loop: asyncio.AbstractEventLoop | None = None
         self.ending = False
-        self.visiting = False
+        self.is_blocking = False
         self._call = call
         self._text: str | None = None
         self._viewer: Viewer | None = None
@@ -195,7 +195,7 @@ class ModelView:
 
         Return whether the view can continue.
         """
-        self.visiting = True
+        self.is_blocking = True
         try:
             self._text = self.descriptions.expand(self._call)
             self.reload.report(self._call, self.descriptions.warnings_of(self._call))
@@ -213,7 +213,7 @@ class ModelView:
             self.interrupt("user interrupted with ctrl-c (SIGINT)")
             return False
         finally:
-            self.visiting = False
+            self.is_blocking = False
         parameters = {"robot_description": self._text, "publish_frequency": _PUBLISH_FREQUENCY_HZ}
         self._plan("robot_state_publisher", "robot_state_publisher", parameters)
         return True
@@ -258,7 +258,7 @@ class ModelView:
 
         if self._viewer is not None:
             feature = self._viewer.add_feature(ArgumentsFeature)
-            feature.ask(self._form or NOTHING_ASKED, self._set_arguments)
+            feature.show_form(self._form or NOTHING_ASKED, self._set_arguments)
 
     def _set_arguments(self, values: dict[str, str]) -> None:
         self._publish_again(XacroCall(self._call.path, tuple(values.items())))
@@ -280,7 +280,7 @@ class ModelView:
         viewer_config: Callable[[], RvizConfig] | None = None,
         viewer_started: Callable[[Viewer], object] | None = None,
         output: str = "log",
-        waits: bool = True,
+        waits_for_fix: bool = True,
     ) -> None:
         config_path = self.options.rviz
         if viewer_config is not None and config_path is not None:
@@ -296,7 +296,7 @@ class ModelView:
             viewer_config=viewer_config,
             viewer_started=viewer_started,
             destinations=output_destinations(output),
-            waits=waits,
+            waits_for_fix=waits_for_fix,
         )
         self.host.plan(plan)
 

@@ -145,7 +145,7 @@ class Descriptions:
         from linkwright.descriptions import examine
         from linkwright.xmltree import Overlay
 
-        self.begin(call)
+        self.record_read_time(call)
         try:
             xacro = None if call.path.suffix == ".sdf" else True  # SDF models are accepted too.
             description = examine(
@@ -162,7 +162,7 @@ class Descriptions:
             raise DescriptionError(call, description.diagnostics)
         return description
 
-    def begin(self, call: XacroCall) -> None:
+    def record_read_time(self, call: XacroCall) -> None:
         """Record the current time as the time at which the files of a description are read."""
         self._read_ns[call] = time.time_ns()
 
@@ -180,14 +180,14 @@ class Descriptions:
             self._meshes.pop(call, None)
         return text
 
-    def take(self, call: XacroCall, description: Any) -> tuple[str | None, tuple[Diagnostic, ...]]:
+    def store_result(self, call: XacroCall, description: Any) -> tuple[str | None, tuple[Diagnostic, ...]]:
         """Store the result of `read`, and return its text and findings.
 
         For a world, the text is the path of its file. The text is None if the description has no robot.
         """
         if isinstance(call, WorldCall):
             self._set_world(call, description)
-            return str(call.path), self._new(description.diagnostics)
+            return str(call.path), self._new_findings(description.diagnostics)
         text = self.store(call, description)
         return (None if description.robot is None else text), description.diagnostics
 
@@ -221,14 +221,16 @@ class Descriptions:
         return (*self._files.get(call, (call.path,)), *self._meshes.get(call, ()))
 
     def _read_world(self, call: WorldCall) -> ReadWorld:
-        self.begin(call)
+        self.record_read_time(call)
         world = call.read(str(call.path))
-        errors = [diagnostic for diagnostic in self._new(world.diagnostics) if diagnostic.severity is Severity.ERROR]
+        errors = [
+            diagnostic for diagnostic in self._new_findings(world.diagnostics) if diagnostic.severity is Severity.ERROR
+        ]
         if errors:
             raise DescriptionError(call, errors)
         return world
 
-    def _new(self, findings: tuple[Diagnostic, ...]) -> tuple[Diagnostic, ...]:
+    def _new_findings(self, findings: tuple[Diagnostic, ...]) -> tuple[Diagnostic, ...]:
         return tuple(finding for finding in findings if _finding_key(finding) not in self._known_findings)
 
 

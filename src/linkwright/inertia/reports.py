@@ -59,7 +59,7 @@ def as_text(
         detailed_links: the links whose computed ``<inertial>`` is shown after the table.
     """
     verdicts = _verdicts(robot, estimates)
-    sorted_estimates = sorted(estimates, key=lambda estimate: verdicts[estimate.link].place)
+    sorted_estimates = sorted(estimates, key=lambda estimate: verdicts[estimate.link].sort_key)
     sections = ["\n".join(_table([_row(estimate, verdicts[estimate.link]) for estimate in sorted_estimates])) + "\n"]
     sections += ["\n".join(_detail_lines(estimate)) + "\n" for estimate in estimates if estimate.link in detailed_links]
     if write_result is not None:

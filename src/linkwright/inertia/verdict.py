@@ -61,7 +61,7 @@ class Verdict:
     comparison: Comparison | None = None
 
     @property
-    def place(self) -> tuple[int, float]:
+    def sort_key(self) -> tuple[int, float]:
         """The sort key that puts the worst verdict first."""
         return _ORDER.index(self.standing), -self.badness
 

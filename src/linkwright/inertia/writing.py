@@ -57,8 +57,8 @@ def edits_of_link(robot: Robot, name: str, properties: MassProperties) -> tuple[
     Raises:
         NotWritableError: as for `edits_for`, or the text of the link defines other links, too.
     """
-    place = _place(robot.links[name])
-    if any(_place(other) == place for other in robot.links.values() if other.name != name):
+    place = _source_position(robot.links[name])
+    if any(_source_position(other) == place for other in robot.links.values() if other.name != name):
         raise NotWritableError(phrase("its text in the file defines several links"))
     return edits_for(robot.links[name], properties)
 
@@ -97,7 +97,7 @@ def write_edits(edit_functions: Mapping[str, Callable[[], tuple[SourceText, list
     )
 
 
-def _place(link: Link) -> tuple[str, int]:
+def _source_position(link: Link) -> tuple[str, int]:
     element = link.element
     return ("", id(link)) if element is None or element.source is None else (element.source.name, element.offset)
 

@@ -1,6 +1,6 @@
 """The inference of the elements that a description lacks for simulation, with reasons."""
 
 from linkwright.inference.infer import infer
-from linkwright.inference.model import Drive, DriveKind, Finding, Inference, Wheel
+from linkwright.inference.results import Drive, DriveKind, Finding, Inference, Wheel
 
 __all__ = ["Drive", "DriveKind", "Finding", "Inference", "Wheel", "infer"]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from copy import copy
 
-from linkwright.inference.model import Inference
+from linkwright.inference.results import Inference
 from linkwright.xmltree import Document, Element
 
 SINGLE = ("inertial", "axis")

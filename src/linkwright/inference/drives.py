@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from linkwright.diagnostics import Phrase, phrase, quoted_names
-from linkwright.inference.model import Drive, DriveKind, Wheel
+from linkwright.inference.results import Drive, DriveKind, Wheel
 from linkwright.inference.undercarriage import Survey, Undercarriage
 
 _MAX_OFFSET = 0.06
@@ -40,7 +40,7 @@ class Verdict:
 Pair = tuple[Wheel, Wheel]
 
 
-def judge(
+def judge_drive(
     survey: Survey,
     undercarriage: Undercarriage,
     requested_kind: DriveKind | None = None,

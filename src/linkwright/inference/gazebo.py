@@ -10,7 +10,7 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
-from linkwright.inference.model import Drive
+from linkwright.inference.results import Drive
 from linkwright.loading.extensions import extensions
 from linkwright.sdf.plugins import library_name, original_library
 from linkwright.urdf import Robot

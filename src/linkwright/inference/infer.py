@@ -7,9 +7,9 @@ from collections.abc import Iterator, Sequence
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, Severity, did_you_mean, phrase, quoted_names
 from linkwright.inertia import MeshLibrary
 from linkwright.inference import gazebo
-from linkwright.inference.drives import Verdict, judge
+from linkwright.inference.drives import Verdict, judge_drive
 from linkwright.inference.missing import missing_collisions, missing_masses
-from linkwright.inference.model import Drive, DriveKind, Finding, Inference, Wheel
+from linkwright.inference.results import Drive, DriveKind, Finding, Inference, Wheel
 from linkwright.inference.undercarriage import Survey, Undercarriage
 from linkwright.urdf import Joint, Robot
 from linkwright.xmltree import Element
@@ -71,7 +71,7 @@ class _InferenceBuilder:
         self._robot = survey.robot
         self._under = undercarriage
         self._verdict = verdict
-        self._own, self._idle = working_drive, idle_drive
+        self._working_drive, self._idle_drive = working_drive, idle_drive
         drive = verdict.drive
         self._drive = drive
         self._driven_wheels = (
@@ -123,7 +123,7 @@ class _InferenceBuilder:
 
     def _find_held_joints(self) -> tuple[str, ...]:
         """Return the joints that a controller must hold, because nothing else moves them."""
-        if self._own is not None and self._idle is None:
+        if self._working_drive is not None and self._idle_drive is None:
             return ()
         excluded = {wheel.joint for wheel in self._wheels.values()} | self._under.caster_joints
         excluded |= gazebo.controlled_joints(self._robot)
@@ -134,20 +134,21 @@ class _InferenceBuilder:
             joint.name
             for joint in self._robot.joints.values()
             if joint.type in _MOVING_TYPES and joint.mimic is None and joint.name not in excluded
-            if self._own is None or joint.name in commanded
+            if self._working_drive is None or joint.name in commanded
         )
 
     def _drive_findings(self, held_joints: tuple[str, ...], mass: float) -> Iterator[Finding]:
         """Yield the findings about the drive, the casters and the joints."""
         root = self._robot.element
-        if self._idle is not None:
+        if self._idle_drive is not None:
             message = phrase(
-                "'{what}', the drive that '{robot}' declares, has no effect here", **self._message_values(self._idle)
+                "'{what}', the drive that '{robot}' declares, has no effect here",
+                **self._message_values(self._idle_drive),
             )
-            yield Finding(_diagnostic_at(self._idle, "DRIVE205", message))
-        if self._own is not None:
-            message = phrase("'{robot}' declares its own drive, '{what}'", **self._message_values(self._own))
-            yield Finding(_diagnostic_at(self._own, "DRIVE202", message))
+            yield Finding(_diagnostic_at(self._idle_drive, "DRIVE205", message))
+        if self._working_drive is not None:
+            message = phrase("'{robot}' declares its own drive, '{what}'", **self._message_values(self._working_drive))
+            yield Finding(_diagnostic_at(self._working_drive, "DRIVE202", message))
             yield from self._holding_findings(held_joints)
             return
         drive = self._drive
@@ -272,7 +273,7 @@ def _choose_drive(
     if kind is None and not chosen_wheels and survey.robot.root == _WORLD_LINK:
         return Verdict(Drive("joints"), phrase("its root is 'world', which does not move"))
     if kind is not None or chosen_wheels or undercarriage.wheels or undercarriage.misaligned:
-        return judge(survey, undercarriage, kind, chosen_wheels)
+        return judge_drive(survey, undercarriage, kind, chosen_wheels)
     return _drive_without_wheels(survey, undercarriage)
 
 

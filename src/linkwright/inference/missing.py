@@ -19,7 +19,7 @@ from linkwright.inertia.blocks import inertial_parts
 from linkwright.inertia.inertial import has_mass
 from linkwright.inertia.verdict import grouped_digits
 from linkwright.inference.gazebo import number
-from linkwright.inference.model import Finding, Wheel
+from linkwright.inference.results import Finding, Wheel
 from linkwright.inference.shapes import Shape, vertices
 from linkwright.inference.undercarriage import Survey
 from linkwright.urdf import Box, Capsule, Cylinder, Inertial, Link, Mesh, Sphere

@@ -15,7 +15,7 @@ from math import sqrt
 from linkwright.geometry.shapes import Placement, rotated
 from linkwright.geometry.single import length, scaled
 from linkwright.inertia import MeshLibrary, estimate
-from linkwright.inference.model import Wheel
+from linkwright.inference.results import Wheel
 from linkwright.inference.shapes import Shape, lowest_z, round_shape, shapes_of
 from linkwright.lint.frames import placements
 from linkwright.urdf import Joint, Link, Mesh, Robot, parent_joints

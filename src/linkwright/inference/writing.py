@@ -16,7 +16,7 @@ from linkwright.inertia.source_edits import (
     written_link,
 )
 from linkwright.inertia.writing import write_edits
-from linkwright.inference.model import Finding, Inference
+from linkwright.inference.results import Finding, Inference
 from linkwright.lint.fix import is_literal, value_edit
 from linkwright.urdf import Joint, Link, Robot
 from linkwright.xmltree import Element, Text
@@ -74,7 +74,7 @@ class _Writer:
         self._joints = {id(joint.element): joint for joint in robot.joints.values()}
         elements = [link.element for link in robot.links.values()]
         elements += [joint.element for joint in robot.joints.values()]
-        self._uses_by_position = Counter(_place(element) for element in elements if element is not None)
+        self._uses_by_position = Counter(_source_position(element) for element in elements if element is not None)
 
     def edits(self, findings: list[Finding]) -> tuple[SourceText, list[Replacement]]:
         """Return the source text, and the edits for the findings of one owner.
@@ -84,7 +84,7 @@ class _Writer:
         """
         owner = findings[0].owner
         assert owner is not None, "findings without an owner add nothing"
-        if self._uses_by_position[_place(owner)] > 1:
+        if self._uses_by_position[_source_position(owner)] > 1:
             raise NotWritableError(phrase("its text in the file defines several links or joints"))
         if id(owner) in self._links:
             return self._link_edits(owner, findings)
@@ -154,7 +154,7 @@ def _source_text(element: Element) -> SourceText:
     return element.source
 
 
-def _place(element: Element) -> tuple[str, int]:
+def _source_position(element: Element) -> tuple[str, int]:
     return ("", id(element)) if element.source is None else (element.source.name, element.offset)
 
 

@@ -84,7 +84,7 @@ def cursor_at(text: str, offset: int) -> Cursor:
             return Cursor(Spot.ELSEWHERE, offset, tuple(tags))
         if offset <= token.start or (token.kind is Kind.TEXT and offset <= token.end):
             break
-        if token.kind is Kind.START and token.name and not token.is_whole:
+        if token.kind is Kind.START and token.name and not token.is_empty_element:
             tags.append(token.name)
             elements.append(token)
         elif token.kind is Kind.END and token.name in tags:

@@ -69,10 +69,10 @@ def definitions_in(text: str, file: Path) -> Iterator[NameDefinition]:
             continue
         given: dict[str, TokenAttribute] = {attribute.name: attribute for attribute in token.attributes()}
         name = given.get("name")
-        if name is not None and name.value and not (kind is NameKind.MATERIAL and token.is_whole):
+        if name is not None and name.value and not (kind is NameKind.MATERIAL and token.is_empty_element):
             detail, scope = given.get(_DETAILS.get(kind, "")), given.get("scope")
             owner = "" if not macros or (scope is not None and scope.value) else macros[-1]
             written = (detail.value or "") if detail else ""
             yield NameDefinition(kind, name.value, file, name.value_start, written, owner)
-        if kind is NameKind.MACRO and not token.is_whole:
+        if kind is NameKind.MACRO and not token.is_empty_element:
             macros.append("" if name is None else name.value or "")

@@ -77,7 +77,7 @@ def definitions_at(text: str, offset: int, names: Sequence[NameDefinition]) -> l
         return [name for name in names if name.kind is kind and name.name in (wanted, wanted.partition(".")[0])]
     value = cursor.attribute.value
     tag = cursor.tags[-1]
-    if cursor.attribute.name in ("link", "reference", "joint") or (tag == "material" and cursor.token.is_whole):
+    if cursor.attribute.name in ("link", "reference", "joint") or (tag == "material" and cursor.token.is_empty_element):
         kinds = (NameKind.LINK, NameKind.JOINT) if tag != "material" else (NameKind.MATERIAL,)
         return [name for name in names if name.kind in kinds and name.name == value]
     return []

@@ -113,7 +113,7 @@ def _in_xml(text: str, file: Path) -> Iterator[LaunchArgument]:
                 if pending is not None:
                     yield from _of_tag(*pending, file)
                 pending = token, []
-            if not token.is_whole:
+            if not token.is_empty_element:
                 inside.append(token.name)
         elif token.kind is Kind.END and token.name in inside:
             while inside.pop() != token.name:

@@ -131,7 +131,7 @@ def _in_xml(document: Document) -> LaunchNames:
             written = given["file"].value or ""
             include = LaunchInclude(_target(launch.path_of(written)), written)
             found.includes.append(include)
-        if not token.is_whole:
+        if not token.is_empty_element:
             includes.append(include)
     return found
 

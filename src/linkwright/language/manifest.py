@@ -72,7 +72,7 @@ def _single_children(text: str, offset: int) -> set[str]:
     around = []
     for element in Outline.of(text).around(offset):
         end = element.end if element.closing is None else element.closing.start
-        if element.tag.end <= offset <= end and not element.tag.is_whole:
+        if element.tag.end <= offset <= end and not element.tag.is_empty_element:
             around.append(element)
     rule = rule_at(PACKAGE, [element.tag.name for element in around])
     if rule is None or not around:

@@ -113,7 +113,7 @@ class _Scan:
         for token in tokens(self._text):
             if token.kind is Kind.START and token.name:
                 yield from self._start_tag(token)
-                if not token.is_whole:
+                if not token.is_empty_element:
                     self._tags.append(token.name)
             elif token.kind is Kind.END:
                 yield from self._called(token)
@@ -136,7 +136,7 @@ class _Scan:
         for attribute in given.values():
             yield from self.in_text(attribute.value or "", attribute.value_start)
         if tag == "xacro:macro":
-            yield from self._macro_definition(given, is_whole=token.is_whole)
+            yield from self._macro_definition(given, is_whole=token.is_empty_element)
         elif tag in ("xacro:property", "xacro:insert_block"):
             yield from self._property(given.get("name"), is_definition=tag == "xacro:property")
         elif tag == "xacro:arg":
@@ -193,7 +193,7 @@ class _Scan:
             kind = NameKind.LINK if tag == "link" else NameKind.JOINT
             uses = self._is_srdf or not _USERS_OF_JOINTS.isdisjoint(self._tags)
             yield from self._named(kind, name, is_definition=not uses)
-        elif tag == "material" and not token.is_whole:
+        elif tag == "material" and not token.is_empty_element:
             yield from self._named(NameKind.MATERIAL, name, is_definition=True)
             return
         for attribute in given.values():

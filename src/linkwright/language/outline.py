@@ -72,7 +72,7 @@ class Outline:
             elif token.kind is Kind.START and token.name:
                 element = OutlineElement(token, end=token.end)
                 (open_elements[-1].children if open_elements else outline.elements).append(element)
-                if not token.is_whole:
+                if not token.is_empty_element:
                     open_elements.append(element)
             elif token.kind is Kind.END and any(element.tag.name == token.name for element in open_elements):
                 while open_elements:

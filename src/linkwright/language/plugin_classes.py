@@ -89,7 +89,7 @@ def _classes_in(text: str, base: str, folder: Path, file: Path) -> Iterator[Plug
             tag = token.name
             if tag == "class":
                 current, description = token, ""
-                if token.is_whole:
+                if token.is_empty_element:
                     yield from _class_of(token, "", base, folder, file)
                     current = None
         elif token.kind is Kind.TEXT and tag == "description":

@@ -75,7 +75,7 @@ def written_elements(text: str) -> Sequence[WrittenElement]:
             elements.append(element)
             if current is not None:
                 current.children.append(element)
-            if token.is_whole:
+            if token.is_empty_element:
                 element.end = token.end
             else:
                 current = element

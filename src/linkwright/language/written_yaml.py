@@ -14,7 +14,7 @@ from typing import Any
 from linkwright.diagnostics import LinkwrightError
 from linkwright.language.definitions import NameDefinition, NameKind
 from linkwright.language.format import Document
-from linkwright.xacro.expressions import yamldata
+from linkwright.xacro.expressions import yaml_data
 from linkwright.xmltree.decoding import decode
 from linkwright.xmltree.reader import read_bytes
 
@@ -81,6 +81,6 @@ def _replaced(text: str, file: Path, document: Document, names: Sequence[NameDef
 def _content(file: Path, _: int) -> Any:
     """Return the content of a YAML file that was last changed at a time; None if it cannot be read."""
     try:
-        return yamldata.load(decode(read_bytes(file), str(file)), lambda _: 0.0)
-    except (OSError, LinkwrightError, yamldata.YamlError, ValueError):
+        return yaml_data.load(decode(read_bytes(file), str(file)), lambda _: 0.0)
+    except (OSError, LinkwrightError, yaml_data.YamlError, ValueError):
         return None

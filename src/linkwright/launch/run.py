@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from linkwright.diagnostics import LinkwrightError
-from linkwright.hosting.last_minutes import DEFAULT_HISTORY
+from linkwright.hosting.history_size import DEFAULT_HISTORY
 from linkwright.hosting.launch_log import LaunchLog
 from linkwright.hosting.signals import SignalWatch, own_environment, run_to_end
 from linkwright.hosting.xacro_calls import Descriptions, use_descriptions

@@ -139,7 +139,7 @@ def _apply_fixes(fixes: Iterable[tuple[str, Fix]], result: FixResult, texts: Map
     counts: dict[str, int] = {}
     old_texts: dict[str, str | None] = {}
     for code, fix in fixes:
-        if all(_fits(edit, accepted_edits.get(edit.source_file, ())) for edit in fix.edits):
+        if all(_is_separate(edit, accepted_edits.get(edit.source_file, ())) for edit in fix.edits):
             for edit in fix.edits:
                 accepted_edits.setdefault(edit.source_file, []).append(edit)
             counts[code] = counts.get(code, 0) + 1
@@ -157,7 +157,7 @@ def _apply_fixes(fixes: Iterable[tuple[str, Fix]], result: FixResult, texts: Map
     return new_texts
 
 
-def _fits(edit: Edit, others: Iterable[Edit]) -> bool:
+def _is_separate(edit: Edit, others: Iterable[Edit]) -> bool:
     return all(edit.end < other.start or other.end < edit.start for other in others)
 
 

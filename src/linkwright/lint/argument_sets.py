@@ -63,7 +63,7 @@ class _Run:
     @property
     def error_messages(self) -> frozenset[tuple[Key, str]]:
         """The key and the message of each error."""
-        keyed_messages = ((_place(diagnostic), str(diagnostic.message)) for diagnostic in self.result.diagnostics)
+        keyed_messages = ((_finding_key(diagnostic), str(diagnostic.message)) for diagnostic in self.result.diagnostics)
         return frozenset(pair for pair in keyed_messages if pair[0] in self.errors)
 
     def is_fine(self, common: frozenset[Key]) -> bool:
@@ -161,7 +161,7 @@ class SetCheck:
             diagnostics = tuple(diagnostic for diagnostic in result.diagnostics if diagnostic.code != UNUSED)
             result = replace(result, diagnostics=diagnostics)
         errors = frozenset(
-            _place(diagnostic)
+            _finding_key(diagnostic)
             for diagnostic in result.diagnostics
             if diagnostic.severity is Severity.ERROR and find_rule(diagnostic.code) is None
         )
@@ -238,7 +238,8 @@ class SetCheck:
         except LinkwrightError as error:
             diagnostics = error.diagnostics
         return all(
-            diagnostic.severity is not Severity.ERROR or _place(diagnostic) in common for diagnostic in diagnostics
+            diagnostic.severity is not Severity.ERROR or _finding_key(diagnostic) in common
+            for diagnostic in diagnostics
         )
 
     def _result_for_unknown_values(
@@ -253,7 +254,7 @@ class SetCheck:
             return self._result_without_values(default, sets)
         certain_errors = common.difference(*(run.hanging for run in runs))
         return self._without_uncertain_errors(
-            default, lambda error: _place(error) in certain_errors, names, _runtime_value_note(sets)
+            default, lambda error: _finding_key(error) in certain_errors, names, _runtime_value_note(sets)
         )
 
     def _result_without_values(self, default: _Run, sets: Sequence[ArgumentSet]) -> Checked:
@@ -269,7 +270,7 @@ class SetCheck:
             uncertain_errors = self._changed_errors(default, dict.fromkeys(undeclared_names, _ANY_VALUE))
             return self._without_uncertain_errors(
                 default,
-                lambda error: undeclared_argument(error) is None and _place(error) not in uncertain_errors,
+                lambda error: undeclared_argument(error) is None and _finding_key(error) not in uncertain_errors,
                 list(dict.fromkeys(undeclared_names)),
                 _runtime_value_note(sets),
             )
@@ -284,7 +285,7 @@ class SetCheck:
         uncertain_errors = frozenset[Key]().union(*changed_errors.values())
         return self._without_uncertain_errors(
             default,
-            lambda error: _place(error) not in uncertain_errors,
+            lambda error: _finding_key(error) not in uncertain_errors,
             list(changed_errors),
             _runtime_value_note(sets),
         )
@@ -300,7 +301,7 @@ class SetCheck:
         diagnostics = [
             diagnostic
             for diagnostic in default.result.diagnostics
-            if _place(diagnostic) not in default.errors or is_certain(diagnostic)
+            if _finding_key(diagnostic) not in default.errors or is_certain(diagnostic)
         ]
         hint = phrase(
             'give values in linkwright.toml: [arguments] "{file}" = {{ {name} = "..." }}',
@@ -336,7 +337,7 @@ def _takes_arguments(result: Checked) -> bool:
     return any("arg" in source.source.text for source in sources if source.source is not None)
 
 
-def _place(diagnostic: Diagnostic) -> Key:
+def _finding_key(diagnostic: Diagnostic) -> Key:
     return diagnostic.code, diagnostic.span, "" if diagnostic.span else diagnostic.message
 
 
@@ -347,7 +348,7 @@ def _with_numbered_keys(diagnostics: Iterable[Diagnostic]) -> Iterator[tuple[Key
     """
     counts: dict[Key, int] = {}
     for diagnostic in diagnostics:
-        key = _place(diagnostic)
+        key = _finding_key(diagnostic)
         counts[key] = counts.get(key, 0) + 1
         yield (*key[:2], (key[2], counts[key])), diagnostic
 

@@ -30,21 +30,21 @@ class UniqueFindings:
     """A collection of findings without duplicates, such as those of a file that two robots include."""
 
     def __init__(self) -> None:
-        self._found: dict[tuple[str, Span | None, str], Diagnostic] = {}
+        self._findings: dict[tuple[str, Span | None, str], Diagnostic] = {}
 
     def add(self, findings: Iterable[Diagnostic]) -> None:
         """Add the findings that are not in the collection yet, without their elements."""
         for diagnostic in findings:
-            key = (diagnostic.code, _place(diagnostic), diagnostic.message)
-            if key not in self._found:
-                self._found[key] = without_element(diagnostic)
+            key = (diagnostic.code, _location(diagnostic), diagnostic.message)
+            if key not in self._findings:
+                self._findings[key] = without_element(diagnostic)
 
     def all(self) -> list[Diagnostic]:
         """Return the findings in the order in which they were added."""
-        return list(self._found.values())
+        return list(self._findings.values())
 
 
-def _place(diagnostic: Diagnostic) -> Span | None:
+def _location(diagnostic: Diagnostic) -> Span | None:
     """Return the location of a finding with the resolved path of its file.
 
     The result is None for a finding without a location, and for missing packages.

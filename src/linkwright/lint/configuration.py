@@ -101,7 +101,7 @@ def _read_settings(file: Path, _stamp: int) -> tuple[Settings, tuple[Diagnostic,
     for key in prefix:
         table = table.get(key, {}) if isinstance(table, dict) else {}
     reader = _Reader(source, prefix)
-    return reader.settings(table, file.absolute().parent), tuple(reader.found)
+    return reader.settings(table, file.absolute().parent), tuple(reader.diagnostics)
 
 
 def _has_table(project: Path) -> bool:
@@ -132,7 +132,7 @@ class _Reader:
     def __init__(self, source: SourceText, prefix: tuple[str, ...]) -> None:
         self._source = source
         self._prefix = prefix
-        self.found: list[Diagnostic] = []
+        self.diagnostics: list[Diagnostic] = []
 
     def settings(self, table: Any, folder: Path) -> Settings:
         if not isinstance(table, dict):
@@ -257,7 +257,7 @@ class _Reader:
                     path,
                     hint,
                 )
-            elif not _fits(option, value):
+            elif not _has_option_type(option, value):
                 from linkwright.lint.explain import toml
 
                 self._report_invalid(
@@ -276,10 +276,10 @@ class _Reader:
 
     def _add(self, code: str, message: Phrase, path: tuple[str, ...], hint: Phrase, *, mark: str | None = None) -> None:
         span = _locate(self._source, (*self._prefix, *path), mark)
-        self.found.append(Diagnostic(code, message, span, hint=hint, source=self._source))
+        self.diagnostics.append(Diagnostic(code, message, span, hint=hint, source=self._source))
 
 
-def _fits(option: Option, value: object) -> bool:
+def _has_option_type(option: Option, value: object) -> bool:
     kind = type(option.default)
     if kind is float:
         return isinstance(value, (int, float)) and not isinstance(value, bool)

@@ -32,7 +32,7 @@ _NAME = lazy_pattern("[a-z0-9]+(-[a-z0-9]+)*")
 
 def all_rules() -> tuple[Rule, ...]:
     """Return an instance of each rule, in the order of the codes."""
-    return _found(whole=True)[0]
+    return _all_rules(include_packages=True)[0]
 
 
 def rules_of(scopes: Collection[Scope]) -> tuple[Rule, ...]:
@@ -40,17 +40,17 @@ def rules_of(scopes: Collection[Scope]) -> tuple[Rule, ...]:
 
     The modules of package rules are imported only if the scopes include packages.
     """
-    return tuple(rule for rule in _found(whole=Scope.PACKAGE in scopes)[0] if rule.scope in scopes)
+    return tuple(rule for rule in _all_rules(include_packages=Scope.PACKAGE in scopes)[0] if rule.scope in scopes)
 
 
 def unusable_rules() -> tuple[Diagnostic, ...]:
     """Return a warning (LINT301) for each entry point of another package whose rules cannot be used."""
-    return _found(whole=False)[1]
+    return _all_rules(include_packages=False)[1]
 
 
 def has_external_rules() -> bool:
     """Return whether another package adds rules. The findings of such rules may depend on anything."""
-    return any(is_external(rule) for rule in _found(whole=False)[0])
+    return any(is_external(rule) for rule in _all_rules(include_packages=False)[0])
 
 
 def is_external(rule: Rule) -> bool:
@@ -76,30 +76,36 @@ def failed_rule(rule: Rule, error: Exception) -> Diagnostic:
 def find_rule(code_or_name: str) -> Rule | None:
     """Return the rule with a code or name, ignoring case, or None if there is none."""
     key = code_or_name.strip().casefold()
-    rule = _index(whole=False).get(key)
+    rule = _index(include_packages=False).get(key)
     if rule is None and (key.startswith(_OWN_PREFIX.casefold()) or not _CODE.fullmatch(key.upper())):
-        return _index(whole=True).get(key)
+        return _index(include_packages=True).get(key)
     return rule
 
 
 @cache
-def _index(*, whole: bool) -> Mapping[str, Rule]:
-    return {key: rule for rule in _found(whole=whole)[0] for key in (rule.code.casefold(), rule.name)}
+def _index(*, include_packages: bool) -> Mapping[str, Rule]:
+    return {
+        key: rule
+        for rule in _all_rules(include_packages=include_packages)[0]
+        for key in (rule.code.casefold(), rule.name)
+    }
 
 
 @cache
-def _found(*, whole: bool) -> tuple[tuple[Rule, ...], tuple[Diagnostic, ...]]:
+def _all_rules(*, include_packages: bool) -> tuple[tuple[Rule, ...], tuple[Diagnostic, ...]]:
     """Return the rules, sorted by code, and the findings about rules that cannot be used.
 
-    Linkwright's rules about packages are left out unless `whole` is true, or another package adds rules. The names of
-    the added rules must differ from those of Linkwright's rules.
+    Linkwright's rules about packages are left out unless `include_packages` is true, or another package adds rules. The
+    names of the added rules must differ from those of Linkwright's rules.
     """
     rules: dict[str, Rule] = {}
     problems: list[Diagnostic] = []
     entries = extensions(GROUP).values()
-    whole = whole or not all(map(_is_ours, entries))
+    include_packages = include_packages or not all(map(_is_ours, entries))
     for entry in entries:
-        entry_rules = _rules_of(entry, {*rules, *(rule.name for rule in rules.values())}, include_packages=whole)
+        entry_rules = _rules_of(
+            entry, {*rules, *(rule.name for rule in rules.values())}, include_packages=include_packages
+        )
         if isinstance(entry_rules, Diagnostic):
             problems.append(entry_rules)
         else:
@@ -117,20 +123,22 @@ def _rules_of(entry: EntryPoint, used_names: set[str], *, include_packages: bool
     An exception in Linkwright's own rules is not caught.
     """
     if _is_ours(entry):
-        return _load(entry, used_names, is_ours=True, whole=include_packages)
+        return _load(entry, used_names, is_ours=True, include_packages=include_packages)
     try:
-        return _load(entry, used_names, is_ours=False, whole=True)
+        return _load(entry, used_names, is_ours=False, include_packages=True)
     except Exception as error:  # noqa: BLE001  # code of another package may raise any exception
         return _unusable_finding(entry, error)
 
 
-def _load(entry: EntryPoint, used_names: set[str], *, is_ours: bool, whole: bool) -> list[Rule]:
+def _load(entry: EntryPoint, used_names: set[str], *, is_ours: bool, include_packages: bool) -> list[Rule]:
     """Return the rules that an entry point provides, and add their codes and names to `used_names`.
 
     Raises:
         ValueError: If a code or name is taken or malformed.
     """
-    rules = [_instance(rule) for module in _modules(entry.load(), is_ours, whole) for rule in _classes(module)]
+    rules = [
+        _instance(rule) for module in _modules(entry.load(), is_ours, include_packages) for rule in _classes(module)
+    ]
     for rule in rules:
         if (
             not _CODE.fullmatch(rule.code)

@@ -22,7 +22,7 @@ def joints(subject: Subject) -> Iterator[tuple[Joint, Element]]:
             yield joint, joint.element
 
 
-def parts(subject: Subject, tag: str) -> Iterator[tuple[Joint, Element, Element]]:
+def joint_children(subject: Subject, tag: str) -> Iterator[tuple[Joint, Element, Element]]:
     """Yield each joint that has a child element with a tag, with its own element and the child.
 
     Only the first such child is yielded, because readers use only this one.
@@ -60,7 +60,7 @@ UNBOUNDED = 1000.0
 
 def limits(subject: Subject, *types: str) -> Iterator[tuple[Joint, Element]]:
     """Yield the joints of some types that have a ``<limit>``, each with this element."""
-    for joint, _, limit in parts(subject, "limit"):
+    for joint, _, limit in joint_children(subject, "limit"):
         if joint.type in types:
             yield joint, limit
 

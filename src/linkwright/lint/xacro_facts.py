@@ -74,7 +74,7 @@ class Use:
 
     element: Element
     attribute: str | None
-    found: Mentions
+    mentions: Mentions
     parents: tuple[Element, ...]
     order: int
 
@@ -297,7 +297,7 @@ class XacroFacts:
         return next(iter(self.files.values()))
 
     @cached_property
-    def own(self) -> Mapping[Path, FileFacts]:
+    def package_files(self) -> Mapping[Path, FileFacts]:
         """The facts about the files in the same package, or else in the same folder, by path."""
         package = self.package
         folder = (package.folder if package else self.path.parent).absolute()

@@ -122,7 +122,7 @@ def check_values(name: str, value: Any, kind: FieldType, cls: type) -> Any:
         and (set(map(type, value)) <= {cls} or all(isinstance(item, cls) for item in value))
         and (kind.string_bound is None or all(len(item) <= kind.string_bound for item in value))
     ):
-        raise AssertionError(f"The '{name}' field must be {_wanted(kind, cls)}")
+        raise AssertionError(f"The '{name}' field must be {_valid_value_text(kind, cls)}")
     return value
 
 
@@ -239,7 +239,7 @@ def _checked_numbers(name: str, value: Any, kind: FieldType, primitive: Primitiv
         and (set(map(type, value)) <= {primitive.python} or all(isinstance(item, primitive.python) for item in value))
         and _in_range(value, primitive)
     ):
-        raise AssertionError(f"The '{name}' field must be {_wanted(kind, primitive.python)}")
+        raise AssertionError(f"The '{name}' field must be {_valid_value_text(kind, primitive.python)}")
     return value if isinstance(value, (list, tuple)) else list(value)
 
 
@@ -267,7 +267,7 @@ def _from_numpy(name: str, value: NDArray[Any], kind: FieldType, primitive: Prim
         and _length_fits(value, kind)
         and (value.dtype == target_type or not are_integers or _in_range(value, primitive))
     ):
-        raise AssertionError(f"The '{name}' field must be {_wanted(kind, primitive.python)}")
+        raise AssertionError(f"The '{name}' field must be {_valid_value_text(kind, primitive.python)}")
     converted = array(code)
     converted.frombytes(np.ascontiguousarray(value, dtype=target_type).data.cast("B"))
     return converted
@@ -277,11 +277,11 @@ def _from_buffer(name: str, value: bytes | bytearray | memoryview, kind: FieldTy
     converted = array("B")
     converted.frombytes(value)
     if not _length_fits(converted, kind):
-        raise AssertionError(f"The '{name}' field must be {_wanted(kind, int)}")
+        raise AssertionError(f"The '{name}' field must be {_valid_value_text(kind, int)}")
     return converted
 
 
-def _wanted(kind: FieldType, python: type) -> str:
+def _valid_value_text(kind: FieldType, python: type) -> str:
     """Return the description of a valid value for an array or sequence, in rclpy's wording."""
     phrases = ["a set or sequence"]
     if kind.container is Container.ARRAY:

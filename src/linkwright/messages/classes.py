@@ -311,11 +311,11 @@ def _class_for(definition: Definition) -> Any:
         with _lock:
             interface_class = _classes.get(definition.type_name)
             if interface_class is None:
-                interface_class = _classes[definition.type_name] = _make(definition)
+                interface_class = _classes[definition.type_name] = _create_class(definition)
     return interface_class
 
 
-def _make(definition: Definition) -> type:
+def _create_class(definition: Definition) -> type:
     if isinstance(definition, Structure):
         return _create_message_class(definition)
     if isinstance(definition, Service):

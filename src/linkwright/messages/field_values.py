@@ -44,9 +44,9 @@ def set_fields(
     """
     setter = _Setter(expand_header=expand_header_auto, expand_time=expand_time_now)
     setter.fields(message, values, "")
-    if setter.found:
-        unknown = setter.found[0].code == "MSG301"
-        raise (UnknownFieldError if unknown else WrongValueError)(*setter.found)
+    if setter.diagnostics:
+        unknown = setter.diagnostics[0].code == "MSG301"
+        raise (UnknownFieldError if unknown else WrongValueError)(*setter.diagnostics)
     return setter.stamps
 
 
@@ -60,7 +60,7 @@ class _Setter:
     def __init__(self, *, expand_header: bool, expand_time: bool) -> None:
         self._expand_header = expand_header
         self._expand_time = expand_time
-        self.found: list[Diagnostic] = []
+        self.diagnostics: list[Diagnostic] = []
         self.stamps: list[StampSetter] = []
 
     def fields(self, message: Message, values: Any, path: str) -> None:
@@ -145,7 +145,7 @@ class _Setter:
         names = [field.name for field in definition_of(type(message)).fields]
         hint = did_you_mean(name, names) or phrase("its fields: {names}", names=joined(names) or phrase("none"))
         subject = phrase("{type} ('{path}')", type=message.TYPE_NAME, path=path) if path else message.TYPE_NAME
-        self.found.append(
+        self.diagnostics.append(
             Diagnostic(
                 "MSG301",
                 phrase("{called} has no field '{name}'", called=subject, name=name),
@@ -154,7 +154,7 @@ class _Setter:
         )
 
     def _report_invalid_value(self, message: Phrase, hint: Phrase) -> None:
-        self.found.append(Diagnostic("MSG302", message, hint=hint))
+        self.diagnostics.append(Diagnostic("MSG302", message, hint=hint))
 
 
 def _converted_value(primitive: Primitive, kind: FieldType, value: Any) -> Any:

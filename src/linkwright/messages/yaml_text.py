@@ -54,7 +54,7 @@ class _Writer:
     """
 
     def __init__(self, abridgement: Abridgement, lines: list[str]) -> None:
-        self._shown = abridgement
+        self._abridgement = abridgement
         self._lines = lines
 
     def message(self, message: Message, indent: str, path: tuple[str, ...]) -> None:
@@ -85,14 +85,14 @@ class _Writer:
 
     def _list(self, kind: FieldType, values: Any, indent: str, path: tuple[str, ...]) -> None:
         lines = self._lines
-        if self._shown.no_arr:
+        if self._abridgement.no_arr:
             lines.append(f" {_scalar(abbreviated(kind, values))}\n")
             return
         if not len(values):
             lines.append(" []\n")
             return
         lines.append("\n")
-        length = self._shown.truncate_length
+        length = self._abridgement.truncate_length
         shown_values = values if length is None else list(values)[:length]
         bullet = indent + "- "
         format_number = _number_text(kind)
@@ -121,7 +121,11 @@ class _Writer:
             lines.append(f"{bullet}{{}}\n")
 
     def _text(self, value: Any, path: tuple[str, ...]) -> str:
-        text = self._shown.cut(value.decode("latin-1")) if isinstance(value, bytes) else self._shown.text(value)
+        text = (
+            self._abridgement.cut(value.decode("latin-1"))
+            if isinstance(value, bytes)
+            else self._abridgement.text(value)
+        )
         if len(text) <= _MAX_CACHED_LENGTH and text.isprintable():
             return _scalar(text)
         return _block_scalar(text, path)

@@ -1,12 +1,11 @@
 """Third-party trained models, downloaded on request: the table, their locations, and their checksums."""
 
-from linkwright.model_files.installed import checked, find_model, is_installed, models_folder, remove
+from linkwright.model_files.installed import find_model, is_installed, models_folder, remove, verify
 from linkwright.model_files.installing import install
 from linkwright.model_files.table import ModelEntry, model_entry, model_table
 
 __all__ = [
     "ModelEntry",
-    "checked",
     "find_model",
     "install",
     "is_installed",
@@ -14,4 +13,5 @@ __all__ = [
     "model_table",
     "models_folder",
     "remove",
+    "verify",
 ]

@@ -30,7 +30,7 @@ def is_installed(entry: ModelEntry, folder: Path | None = None) -> bool:
         entry: the model.
         folder: the folder of models; `models_folder` if omitted.
     """
-    return ((folder or models_folder()) / entry.place).exists()
+    return ((folder or models_folder()) / entry.installed_name).exists()
 
 
 def find_model(entry: ModelEntry) -> Path:
@@ -45,7 +45,7 @@ def find_model(entry: ModelEntry) -> Path:
             "run `linkwright models get {name}`, about {megabytes} MB", name=entry.name, megabytes=entry.megabytes
         )
         raise LinkwrightError(Diagnostic("MODEL102", message, hint=hint))
-    return models_folder() / entry.place
+    return models_folder() / entry.installed_name
 
 
 def remove(entry: ModelEntry) -> Path:
@@ -75,7 +75,7 @@ def manual_download_hint(entry: ModelEntry) -> Phrase:
     )
 
 
-def checked(entry: ModelEntry, place: Path) -> None:
+def verify(entry: ModelEntry, place: Path) -> None:
     """Verify the checksums of a model.
 
     Args:

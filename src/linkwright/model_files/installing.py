@@ -12,7 +12,7 @@ from pathlib import Path
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 from linkwright.model_files.archives import unpack
 from linkwright.model_files.fetching import Progress, cannot_write, fetch
-from linkwright.model_files.installed import check_sum, checked, models_folder
+from linkwright.model_files.installed import check_sum, models_folder, verify
 from linkwright.model_files.table import ModelEntry
 
 
@@ -95,29 +95,29 @@ def _install_file(entry: ModelEntry, file: Path, target: Path, origin: str | Non
     with _draft(entry, target) as draft:
         if entry.folder:
             unpack(entry, file, draft, origin)
-            checked(entry, draft)
+            verify(entry, draft)
         else:
             _copy(file, draft)
-    return target / entry.place
+    return target / entry.installed_name
 
 
 def _install_folder(entry: ModelEntry, folder: Path, target: Path) -> Path:
     """Install an unpacked model."""
-    checked(entry, folder)
+    verify(entry, folder)
     with _draft(entry, target) as draft:
         for name in entry.files:
             with suppress(FileExistsError):
                 (draft / name).parent.mkdir(parents=True)
             _copy(folder / name, draft / name)
-    return target / entry.place
+    return target / entry.installed_name
 
 
 @contextmanager
 def _draft(entry: ModelEntry, target: Path) -> Iterator[Path]:
     """Provide a temporary path for the model. It is renamed on success and deleted on an error."""
-    installed_path = target / entry.place
-    draft = target / f".{entry.place}.draft-{os.urandom(4).hex()}"
-    previous = target / f".{entry.place}.former-{os.urandom(4).hex()}"
+    installed_path = target / entry.installed_name
+    draft = target / f".{entry.installed_name}.draft-{os.urandom(4).hex()}"
+    previous = target / f".{entry.installed_name}.former-{os.urandom(4).hex()}"
     try:
         yield draft
         with suppress(FileNotFoundError):

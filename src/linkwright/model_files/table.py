@@ -49,7 +49,7 @@ class ModelEntry:
         return self.address.rpartition("/")[2]
 
     @property
-    def place(self) -> str:
+    def installed_name(self) -> str:
         """The name of the installed folder or file."""
         return self.folder or self.file_name
 

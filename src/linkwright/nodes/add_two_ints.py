@@ -40,10 +40,10 @@ class AddTwoIntsClient(SingleNode):
         self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
         self.finished: asyncio.Future[int] = asyncio.get_running_loop().create_future()
         self._client = self._node.create_client(get_service(_TYPE), "add_two_ints")
-        self._timer = self._node.create_timer(0.05, self._look)
+        self._timer = self._node.create_timer(0.05, self._call_when_available)
         self._ticks = 0
 
-    def _look(self) -> None:
+    def _call_when_available(self) -> None:
         if self._client.service_is_ready():
             self._timer.cancel()
             request = self._client.srv_type.Request(a=2, b=3)

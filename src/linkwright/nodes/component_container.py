@@ -11,7 +11,7 @@ from linkwright.graph import Graph, Parameter
 from linkwright.graph.command_line.ros_arguments import parse
 from linkwright.graph.parameters.parameter import ParameterRules
 from linkwright.messages import get_service
-from linkwright.nodes.options import COMPONENTS, NodeOptions, RunningNode, SingleNode, create_node, starting
+from linkwright.nodes.options import COMPONENTS, NodeOptions, RunningNode, SingleNode, create_node, handle_start_errors
 
 
 class ComponentContainer(SingleNode):
@@ -40,7 +40,7 @@ class ComponentContainer(SingleNode):
         self._last_id = 0
         self.on_loaded: list[Callable[[RunningNode, NodeOptions], None]] = []
         self.loading: Callable[[], AbstractContextManager[object]] = nullcontext
-        with starting(self._node):
+        with handle_start_errors(self._node):
             for name, type_name, callback in (
                 ("load_node", "LoadNode", self._load),
                 ("unload_node", "UnloadNode", self._unload),

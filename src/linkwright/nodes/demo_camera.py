@@ -9,7 +9,7 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, joined, phrase
 from linkwright.graph import Graph
 from linkwright.graph.qos.profile import HistoryPolicy, QoSProfile, ReliabilityPolicy
 from linkwright.messages import get_message
-from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
 
 _BAND_HEIGHT = 1 / 3
 
@@ -25,7 +25,7 @@ class DemoCamera(SingleNode):
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
-        with starting(self._node):
+        with handle_start_errors(self._node):
             self._start()
 
     def _start(self) -> None:

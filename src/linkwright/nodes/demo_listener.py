@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from linkwright.graph import Graph, QoSProfile
 from linkwright.messages import String
-from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
 
 _DEPTH = 10
 
@@ -19,7 +19,7 @@ class Listener(SingleNode):
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
-        with starting(self._node):
+        with handle_start_errors(self._node):
             self._node.create_subscription(String, "chatter", self._receive, QoSProfile.of(_DEPTH))
 
     def _receive(self, message: String) -> None:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from linkwright.graph import Graph, QoSProfile
 from linkwright.messages import String
-from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
 
 _PERIOD_SECONDS = 1.0
 _DEPTH = 7
@@ -21,7 +21,7 @@ class Talker(SingleNode):
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
         self._count = 0
-        with starting(self._node):
+        with handle_start_errors(self._node):
             self._publisher = self._node.create_publisher(String, "chatter", QoSProfile.of(_DEPTH))
             self._node.create_timer(_PERIOD_SECONDS, self._talk)
 

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
 from linkwright.graph import SENSOR_DATA_QOS, Graph, QoSProfile
 from linkwright.messages import String
-from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
 
 _PERIOD_SECONDS = 1.0
 _DEPTH = 10
@@ -24,13 +24,13 @@ class _CountingNode(SingleNode, ABC):
         self.finished: asyncio.Future[int] = asyncio.get_running_loop().create_future()
         self._node, arguments = create_node(graph, options, self.DEFAULT_NAME)
         self._count = 0
-        with starting(self._node):
+        with handle_start_errors(self._node):
             settings = _read(self.DEFAULT_NAME, arguments)
             self._message_limit = settings.number_of_cycles
             self._begin(QoSProfile.of(_DEPTH) if settings.reliable else SENSOR_DATA_QOS)
-        self._node.get_logger().info(f"{'Reliable' if settings.reliable else 'Best effort'} {self._what}")
+        self._node.get_logger().info(f"{'Reliable' if settings.reliable else 'Best effort'} {self._role}")
 
-    _what: str
+    _role: str
 
     @abstractmethod
     def _begin(self, qos: QoSProfile) -> None: ...
@@ -45,7 +45,7 @@ class TalkerQos(_CountingNode):
     """The running talker_qos node."""
 
     DEFAULT_NAME = "talker_qos"
-    _what = "talker"
+    _role = "talker"
 
     def _begin(self, qos: QoSProfile) -> None:
         self._publisher = self._node.create_publisher(String, "chatter", qos)
@@ -62,7 +62,7 @@ class ListenerQos(_CountingNode):
     """The running listener_qos node."""
 
     DEFAULT_NAME = "listener_qos"
-    _what = "listener"
+    _role = "listener"
 
     def _begin(self, qos: QoSProfile) -> None:
         self._node.create_subscription(String, "chatter", self._receive, qos)

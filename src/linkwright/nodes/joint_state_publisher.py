@@ -40,7 +40,7 @@ from linkwright.nodes.joint_layout import (
     make_layout,
     settings_from,
 )
-from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
 from linkwright.urdf import Robot
 
 Array = NDArray[np.float64]
@@ -233,13 +233,13 @@ class JointStatePublisher(SingleNode):
         self._watchers: list[Watcher] = []
         self._robot: Robot | None = None
         self._sources: list[Subscription[JointState]] = []
-        with starting(self._node):
+        with handle_start_errors(self._node):
             declare_settings(self._node)
             self._settings = self._read_settings()
             self._joints = JointPositions(self._settings)
             robot = self._robot_from_arguments(arguments)
             self._publisher = self._node.create_publisher(JointState, "joint_states", DEFAULT_QOS)
-            self._soon = self._node.create_guard_condition(self._publish_now)
+            self._publish_trigger = self._node.create_guard_condition(self._publish_now)
             self._timer: Timer = self._node.create_timer(1.0 / self._settings.rate, self._on_timer)
             self._subscribe_to_sources()
             self._node.add_on_set_parameters_callback(self._check_parameters)
@@ -260,7 +260,7 @@ class JointStatePublisher(SingleNode):
 
     def publish_soon(self) -> None:
         """Publish in the next iteration of the event loop, once even after several calls."""
-        self._soon.trigger()
+        self._publish_trigger.trigger()
 
     def _robot_from_arguments(self, arguments: Sequence[str]) -> Robot | None:
         if not arguments:

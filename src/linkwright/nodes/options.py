@@ -198,11 +198,11 @@ def create_node_with_class(
         automatically_declare_parameters_from_overrides=any_parameters,
     )
     _set_log_levels(graph, node, ros_arguments)
-    return node, ros_arguments.others
+    return node, ros_arguments.non_ros_arguments
 
 
 @contextmanager
-def starting(node: Node) -> Iterator[None]:
+def handle_start_errors(node: Node) -> Iterator[None]:
     """Return a context that handles a LinkwrightError during the start of a node.
 
     The error is logged as FATAL, the node is destroyed, and the error is raised again.

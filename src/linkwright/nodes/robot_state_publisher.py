@@ -36,7 +36,7 @@ from linkwright.graph import (
 from linkwright.graph.parameters.qos_overrides import QoSOverridingOptions
 from linkwright.graph.qos.profile import QoSPolicyKind
 from linkwright.messages import FloatSequence, JointState, String, TFMessage, TransformBatch
-from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
 from linkwright.urdf import Joint, Robot
 
 Array = NDArray[np.float64]
@@ -304,7 +304,7 @@ class RobotStatePublisher(SingleNode):
         self._delayed: dict[JointGroup, _DelayedMessage] = {}
         self._last_callback_ns = 0
         self._has_warned_of_zero_stamp = False
-        with starting(self._node):
+        with handle_start_errors(self._node):
             self._start(arguments)
 
     def close(self) -> None:

@@ -69,7 +69,7 @@ def _convert_argument(argument: str, name: str, convert: Callable[[str], Any], h
 
 def words_of(options: NodeOptions) -> list[str]:
     """Return the command-line arguments of a node that are not ROS arguments."""
-    return parse(options.arguments).others
+    return parse(options.arguments).non_ros_arguments
 
 
 def positive(node: Node, name: str, value: float) -> float:

@@ -15,7 +15,7 @@ from linkwright.geometry.arrays import quaternion_from_rpy
 from linkwright.geometry.single import normalized
 from linkwright.graph import STATIC_TF_PUBLISHER_QOS, Graph
 from linkwright.messages import TFMessage, TransformBatch
-from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
 
 USAGE = (
     "static_transform_publisher [--x X] [--y Y] [--z Z] [--qx QX] [--qy QY] [--qz QZ] [--qw QW] "
@@ -93,7 +93,7 @@ class StaticTransformPublisher(SingleNode):
             options.output(HELP)
             self.finished.set_result(0)
             return
-        with starting(self._node):
+        with handle_start_errors(self._node):
             self._publish(parse_arguments(arguments))
 
     def _publish(self, transform: StaticTransform) -> None:

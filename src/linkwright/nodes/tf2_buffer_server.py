@@ -49,7 +49,7 @@ class Tf2BufferServer(SingleNode):
         self._buffer = BufferCore(Duration(seconds=seconds), logger=self._node.get_logger().get_child("tf2"))
         TransformListener(self._buffer, self._node)
         self._waiting: dict[ServerGoalHandle, int] = {}
-        self._check_timer = self._node.create_timer(_CHECK_SECONDS, self._look, autostart=False)
+        self._check_timer = self._node.create_timer(_CHECK_SECONDS, self._execute_ready_goals, autostart=False)
         self._action_type = get_action("tf2_msgs/action/LookupTransform")
         self._error_type = get_message("tf2_msgs/msg/TF2Error")
         ActionServer(
@@ -69,7 +69,7 @@ class Tf2BufferServer(SingleNode):
         self._waiting[handle] = deadline_ns
         self._check_timer.reset()
 
-    def _look(self) -> None:
+    def _execute_ready_goals(self) -> None:
         now_ns = self._now_ns()
         for handle, deadline_ns in tuple(self._waiting.items()):
             if handle.is_cancel_requested or now_ns >= deadline_ns or self._is_available(handle.request):

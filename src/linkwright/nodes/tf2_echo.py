@@ -15,7 +15,7 @@ from linkwright.graph import Graph, TransformException
 from linkwright.graph.time.values import Time
 from linkwright.graph.transforms.core import BufferCore
 from linkwright.graph.transforms.listener import TransformListener
-from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
 
 USAGE = """Usage: tf2_echo source_frame target_frame [echo_rate]
 
@@ -44,16 +44,16 @@ class Tf2Echo(SingleNode):
             self._output(USAGE)
             self.finished.set_result(1)
             return
-        with starting(self._node):
+        with handle_start_errors(self._node):
             rate = _parse_rate(arguments[2]) if len(arguments) == 3 else 1.0
         self._source, self._target = arguments[:2]
         self._waiting = True
         self._buffer = BufferCore(logger=self._node.get_logger().get_child("tf2"))
         TransformListener(self._buffer, self._node)
-        self._node.create_timer(1.0 / rate, self._look)
-        self._look()
+        self._node.create_timer(1.0 / rate, self._print_transform)
+        self._print_transform()
 
-    def _look(self) -> None:
+    def _print_transform(self) -> None:
         if self._waiting:
             is_possible, reason = self._buffer.can_transform_core(self._source, self._target, _LATEST)
             if not is_possible:

@@ -40,7 +40,7 @@ class Tf2Monitor(SingleNode):
             self._output(USAGE)
             self.finished.set_result(255)
             return
-        self._ends = (arguments[0], arguments[1]) if arguments else None
+        self._frames = (arguments[0], arguments[1]) if arguments else None
         self._chain: list[str] = []
         self._is_gathering = False
         self._update_count = 0
@@ -53,9 +53,9 @@ class Tf2Monitor(SingleNode):
         self._node.create_subscription(
             TFMessage, "/tf_static", lambda message: self._receive(message, static=True), STATIC_TF_SUBSCRIPTION_QOS
         )
-        if self._ends is not None:
-            self._output(f"Waiting for transform chain to become available between {' and '.join(self._ends)} ")
-        self._node.create_timer(_UPDATE_PERIOD_SECONDS, self._look)
+        if self._frames is not None:
+            self._output(f"Waiting for transform chain to become available between {' and '.join(self._frames)} ")
+        self._node.create_timer(_UPDATE_PERIOD_SECONDS, self._measure_and_print)
 
     def _receive(self, message: TFMessage, *, static: bool) -> None:
         now_ns = self._clock.now().nanoseconds
@@ -68,11 +68,11 @@ class Tf2Monitor(SingleNode):
         self._message_delays.append(total / max(1, len(message.transforms)))
         self._message_times.append(now_ns / 1e9)
 
-    def _look(self) -> None:
+    def _measure_and_print(self) -> None:
         if not self._is_gathering and not self._begin():
             return
-        if self._ends is not None:
-            self._measure(*self._ends)
+        if self._frames is not None:
+            self._measure(*self._frames)
         self._update_count += 1
         if self._update_count >= _UPDATES_PER_REPORT:
             self._update_count = 0
@@ -84,8 +84,8 @@ class Tf2Monitor(SingleNode):
         Return whether gathering started.
         """
         subject = "all frames"
-        if self._ends is not None:
-            first, second = self._ends
+        if self._frames is not None:
+            first, second = self._frames
             try:
                 self._chain = self._buffer.chain(second, _LATEST, first, _LATEST, second)
             except TransformException:
@@ -106,9 +106,9 @@ class Tf2Monitor(SingleNode):
 
     def _report(self) -> None:
         lines = ["", "", ""]
-        if self._ends is not None:
+        if self._frames is not None:
             lines += [
-                f"RESULTS: for {' to '.join(self._ends)}",
+                f"RESULTS: for {' to '.join(self._frames)}",
                 f"Chain is: {' -> '.join(self._chain)}",
                 f"Net delay     avg = {self._average_delay:g}: max = {self._max_delay:g}",
             ]
@@ -116,7 +116,7 @@ class Tf2Monitor(SingleNode):
             lines.append("RESULTS: for all Frames")
         lines += ["", "Frames:"]
         for frame, delays in sorted(self._delays.items()):
-            if self._ends is None or frame in self._chain:
+            if self._frames is None or frame in self._chain:
                 lines.append(f"Frame: {frame}, published by {AUTHORITY}, {_delay_text(delays, ', ')}")
         lines += ["", "All Broadcasters:"]
         if self._message_times:

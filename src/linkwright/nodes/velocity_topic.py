@@ -80,7 +80,7 @@ class VelocityTopic:
             self.close()
             return 0
         subscriber_types = [other.type_name for other in other_endpoints if other.kind is EndpointKind.SUBSCRIPTION]
-        kind = self._wanted(subscriber_types)
+        kind = self._choose_type(subscriber_types)
         if self._publisher is None or (may_change and self._publisher.type_name != kind):
             self.close()
             self._publisher = self._node.create_publisher(kind, self._topic, _DEPTH)
@@ -116,7 +116,7 @@ class VelocityTopic:
             self._node.destroy_publisher(self._publisher)
             self._publisher = None
 
-    def _wanted(self, subscriber_types: Sequence[str]) -> str:
+    def _choose_type(self, subscriber_types: Sequence[str]) -> str:
         if self._stamped is not None:
             return TWIST_STAMPED if self._stamped else TWIST
         return TWIST_STAMPED if TWIST_STAMPED in subscriber_types and TWIST not in subscriber_types else TWIST

@@ -14,7 +14,7 @@ from linkwright.files.whole_files import write_whole_file
 from linkwright.graph import Graph
 from linkwright.graph.transforms.listener import DEFAULT_STATIC_TF_TOPIC, DEFAULT_TF_TOPIC, TransformListener
 from linkwright.graph.transforms.waiting import Buffer
-from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
 
 
 class ViewFrames(SingleNode):
@@ -32,7 +32,7 @@ class ViewFrames(SingleNode):
         self._node, arguments = create_node(graph, options, self.DEFAULT_NAME)
         self._logger = self._node.get_logger()
         self.finished: asyncio.Future[int] = asyncio.get_running_loop().create_future()
-        with starting(self._node):
+        with handle_start_errors(self._node):
             self._settings = _parse_arguments(arguments)
         self._buffer = Buffer(node=self._node)
         TransformListener(

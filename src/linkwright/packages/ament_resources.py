@@ -46,7 +46,7 @@ def get_resource(resource_type: str, resource_name: str) -> tuple[str, str]:
         InvalidResourceTypeNameError: the type is invalid.
         InvalidResourceNameError: the name is invalid.
     """
-    prefix = _found(resource_type, resource_name)
+    prefix = _find_resource(resource_type, resource_name)
     if prefix is None:
         raise LookupError(f"Could not find the resource '{resource_name}' of type '{resource_type}'")
     marker = prefix / INDEX / resource_type / resource_name
@@ -60,7 +60,7 @@ def has_resource(resource_type: str, resource_name: str) -> str | bool:
         InvalidResourceTypeNameError: the type is invalid.
         InvalidResourceNameError: the name is invalid.
     """
-    prefix = _found(resource_type, resource_name)
+    prefix = _find_resource(resource_type, resource_name)
     return False if prefix is None else str(prefix)
 
 
@@ -89,7 +89,7 @@ def get_resource_types() -> set[str]:
     return types
 
 
-def _found(kind: str, name: str) -> Path | None:
+def _find_resource(kind: str, name: str) -> Path | None:
     _check_type(kind)
     if not name or any(separator in name for separator in _SEPARATORS):
         raise InvalidResourceNameError(f"Resource name '{name}' is empty or has a path separator in it")

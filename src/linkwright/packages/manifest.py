@@ -70,7 +70,7 @@ class SourceScan:
         self.root = root
         self.truncated = False
         self.unnamed: list[Path] = []
-        self._found: dict[str, Path] = {}
+        self._folders: dict[str, Path] = {}
         self._steps: Iterator[tuple[str, Path]] | None = self._walk()
 
     def find(self, name: str) -> Path | None:
@@ -78,11 +78,11 @@ class SourceScan:
 
         The search stops as soon as the package is found.
         """
-        if name in self._found:
-            return self._found[name]
+        if name in self._folders:
+            return self._folders[name]
         while self._advance():
-            if name in self._found:
-                return self._found[name]
+            if name in self._folders:
+                return self._folders[name]
         return None
 
     def packages(self) -> dict[str, Path]:
@@ -92,7 +92,7 @@ class SourceScan:
         """
         while self._advance():
             pass
-        return dict(self._found)
+        return dict(self._folders)
 
     def _advance(self) -> bool:
         if self._steps is None:
@@ -101,7 +101,7 @@ class SourceScan:
         if step is None:
             self._steps = None
             return False
-        self._found.setdefault(*step)
+        self._folders.setdefault(*step)
         return True
 
     def _walk(self) -> Iterator[tuple[str, Path]]:

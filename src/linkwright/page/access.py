@@ -245,26 +245,26 @@ class Admission:
     """
 
     def __init__(self, make_protocol: Callable[[], asyncio.Protocol]) -> None:
-        self._make = make_protocol
-        self._strangers: dict[asyncio.Protocol, LimitedConnection] = {}
+        self._make_protocol = make_protocol
+        self._unadmitted_connections: dict[asyncio.Protocol, LimitedConnection] = {}
         self._count = 0
 
     def __call__(self) -> asyncio.Protocol:
         """Return the protocol for the next connection."""
-        return LimitedConnection(self, self._make())
+        return LimitedConnection(self, self._make_protocol())
 
-    def asked(self, inner_protocol: object) -> None:
+    def request_received(self, inner_protocol: object) -> None:
         """Record that a connection has sent a request in time.
 
         It is then closed only if its slot is needed.
         """
-        connection = self._strangers.get(inner_protocol)  # type: ignore[call-overload]
+        connection = self._unadmitted_connections.get(inner_protocol)  # type: ignore[call-overload]
         if connection is not None:
             connection.cancel_deadline()
 
     def admit(self, inner_protocol: object) -> None:
         """Record that a connection has sent the token, so that no other connection replaces it."""
-        connection = self._strangers.pop(inner_protocol, None)  # type: ignore[call-overload]
+        connection = self._unadmitted_connections.pop(inner_protocol, None)  # type: ignore[call-overload]
         if connection is not None:
             connection.cancel_deadline()
 
@@ -274,18 +274,18 @@ class Admission:
         At the limit, the oldest connection that is not admitted is closed to make room.
         """
         if self._count >= MAX_CONNECTIONS:
-            oldest = next(iter(self._strangers.values()), None)
+            oldest = next(iter(self._unadmitted_connections.values()), None)
             if oldest is None:
                 return False
             oldest.end()
         self._count += 1
-        self._strangers[connection.served] = connection
+        self._unadmitted_connections[connection.served] = connection
         return True
 
     def closed(self, connection: LimitedConnection) -> None:
         """Release the slot of a connection."""
         self._count -= 1
-        self._strangers.pop(connection.served, None)
+        self._unadmitted_connections.pop(connection.served, None)
 
 
 _FORWARDED_EVENTS = ("data_received", "eof_received", "pause_writing", "resume_writing")

@@ -58,8 +58,8 @@ class LoopLag:
     def __init__(self, loop: asyncio.AbstractEventLoop) -> None:
         self._loop = loop
         self._lags: deque[float] = deque(maxlen=_MEASUREMENT_COUNT)
-        self._due = self._loop.time() + _MEASURE_PERIOD
-        self._timer = self._loop.call_at(self._due, self._look)
+        self._due_time = self._loop.time() + _MEASURE_PERIOD
+        self._timer = self._loop.call_at(self._due_time, self._measure)
 
     @property
     def mean(self) -> float:
@@ -70,17 +70,17 @@ class LoopLag:
         """Stop measuring."""
         self._timer.cancel()
 
-    def _look(self) -> None:
+    def _measure(self) -> None:
         now = self._loop.time()
-        self._lags.append(now - self._due)
-        self._due = now + _MEASURE_PERIOD
-        self._timer = self._loop.call_at(self._due, self._look)
+        self._lags.append(now - self._due_time)
+        self._due_time = now + _MEASURE_PERIOD
+        self._timer = self._loop.call_at(self._due_time, self._measure)
 
 
 MAX_PAGES = 32
 """The largest number of open pages, beyond which pages are refused."""
 
-_PATIENCE = 20
+_MAX_INVALID_MESSAGES = 20
 """The number of invalid messages after which a page is disconnected."""
 
 _LAG_FACTOR = 4
@@ -103,17 +103,23 @@ class Page:
 
     Args:
         socket: the page's socket.
-        own: the name of the page's own configuration; empty for a page that uses the shared configuration.
+        configuration_name: the name of the page's own configuration; empty for a page that uses the shared
+            configuration.
         is_here: whether the page is open on this machine or connected through a tunnel to it.
         language: the language of the page's user, one of `LANGUAGES`; None to send texts untranslated.
     """
 
     def __init__(
-        self, socket: WebSocketResponse, own: str = "", *, is_here: bool = False, language: str | None = None
+        self,
+        socket: WebSocketResponse,
+        configuration_name: str = "",
+        *,
+        is_here: bool = False,
+        language: str | None = None,
     ) -> None:
         self.outbox = Outbox()
         self.language = language
-        self.own = own
+        self.own = configuration_name
         self.is_here = is_here
         self.line = ConnectionMeter(asyncio.get_running_loop().time)
         self._socket = socket
@@ -195,7 +201,7 @@ class Page:
             self._end_completion(self._completion)
         byte_budget = self.line.room
         for key, (payload, previous_budget) in list(self._reduced.items()):
-            if payload.gone:
+            if payload.is_withdrawn:
                 del self._reduced[key]
             elif byte_budget >= 2 * previous_budget and key not in self.outbox and not self._is_completing(payload):
                 del self._reduced[key]
@@ -215,7 +221,9 @@ class Page:
         elif self._loop_lag is not None and not self._reduced:
             self._loop_lag.close()
             self._loop_lag = None
-        is_late = self._loop_lag is not None and self._loop_lag.mean * _LAG_FACTOR >= (self.line.took or math.inf)
+        is_late = self._loop_lag is not None and self._loop_lag.mean * _LAG_FACTOR >= (
+            self.line.acknowledgement_time or math.inf
+        )
         if is_late != self._has_reported_late:
             self._has_reported_late = is_late
             self.send(ProgramIsLate(is_late))
@@ -306,7 +314,7 @@ class Audience(PageGroup):
         super().__init__()
         self._opening = opening
         self._receivers = receivers
-        self._gone = on_page_closed
+        self._on_page_closed = on_page_closed
         self._logger = logger
         self._sockets: set[WebSocketResponse] = set()
         self._reserved_slots = 0
@@ -336,7 +344,7 @@ class Audience(PageGroup):
         finally:
             self.discard(page)
             self._sockets.discard(socket)
-            self._gone(page)
+            self._on_page_closed(page)
             page.close()
             writer.cancel()
             await asyncio.gather(writer, return_exceptions=True)
@@ -349,7 +357,7 @@ class Audience(PageGroup):
     async def _listen(self, page: Page, socket: WebSocketResponse) -> None:
         from linkwright.page.http_server import web
 
-        remaining_invalid = _PATIENCE
+        remaining_invalid = _MAX_INVALID_MESSAGES
         rate_limit = Pace(asyncio.get_running_loop().time)
         async for message in socket:
             if message.type not in (web.WSMsgType.TEXT, web.WSMsgType.BINARY):

@@ -261,7 +261,7 @@ class Download:
     name: str
     content_type: str
     data: bytes
-    made: float = field(default_factory=time.monotonic)
+    created_at: float = field(default_factory=time.monotonic)
 
 
 class Downloads:
@@ -274,17 +274,17 @@ class Downloads:
         self._files: dict[str, Download] = {}
         self._reusable_paths: dict[str, Path] = {}
 
-    def keep(self, path: Path) -> str:
+    def offer_repeatedly(self, path: Path) -> str:
         """Offer a file for any number of fetches, and return its address."""
         key = secrets.token_urlsafe(16)
         self._reusable_paths[key] = path
         return f"/export/{key}/{quote(path.name)}"
 
     def path(self, key: str) -> Path | None:
-        """Return the path of a file that `keep` offers under a key, or None."""
+        """Return the path of a file that `offer_repeatedly` offers under a key, or None."""
         return self._reusable_paths.get(key)
 
-    def put(self, file: Download) -> str:
+    def offer_once(self, file: Download) -> str:
         """Offer a file for one fetch, and return its address."""
         while len(self._files) >= _MAX_OFFERED:
             del self._files[next(iter(self._files))]
@@ -292,9 +292,9 @@ class Downloads:
         self._files[key] = file
         return f"/export/{key}/{quote(file.name)}"
 
-    def take(self, key: str) -> Download | None:
+    def withdraw(self, key: str) -> Download | None:
         """Withdraw and return the file that `put` offers under a key, or return None."""
         now = time.monotonic()
-        for old in [expired_key for expired_key, file in self._files.items() if now - file.made > _OFFER_SECONDS]:
+        for old in [expired_key for expired_key, file in self._files.items() if now - file.created_at > _OFFER_SECONDS]:
             del self._files[old]
         return self._files.pop(key, None)

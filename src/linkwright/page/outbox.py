@@ -31,12 +31,12 @@ class ScaledData:
         pack: returns the binary frame with the given content.
 
     Attributes:
-        gone: whether the content was replaced or removed, so that it must not be sent any more.
+        is_withdrawn: whether the content was replaced or removed, so that it must not be sent any more.
     """
 
     def __init__(self, key: str, content: DataContent, shrink: Shrink, pack: Pack) -> None:
         self.key = key
-        self.gone = False
+        self.is_withdrawn = False
         self._content = content
         self._shrink = shrink
         self._pack = pack
@@ -56,10 +56,10 @@ class ScaledData:
             return self.full_frame
         size = 1 << (room.bit_length() - 1)
         if size not in self._frames_by_size:
-            self._frames_by_size[size] = asyncio.ensure_future(asyncio.to_thread(self._made, size))
+            self._frames_by_size[size] = asyncio.ensure_future(asyncio.to_thread(self._pack_reduced, size))
         return await asyncio.shield(self._frames_by_size[size])
 
-    def _made(self, size: int) -> bytes:
+    def _pack_reduced(self, size: int) -> bytes:
         return self._pack(self._shrink(size))
 
 
@@ -82,7 +82,7 @@ class ChunkedFrame:
     @property
     def done(self) -> bool:
         """Whether all chunks were sent, or the content was replaced or removed."""
-        return self.payload.gone or self._sent_bytes >= len(self.payload.full_frame)
+        return self.payload.is_withdrawn or self._sent_bytes >= len(self.payload.full_frame)
 
     def since(self, seen: int) -> tuple[bytes | None, int]:
         """Return the next chunk, or None if there is none, and `seen` unchanged.
@@ -157,7 +157,7 @@ class Outbox:
         """Queue a payload, replacing a queued payload with the same key."""
         queue = self._urgent if key in _URGENT_KEYS else self._ordinary
         previous = queue.get(key)
-        if not (isinstance(previous, ScaledData) and isinstance(payload, ScaledData) and not previous.gone):
+        if not (isinstance(previous, ScaledData) and isinstance(payload, ScaledData) and not previous.is_withdrawn):
             queue.pop(key, None)
         queue[key] = payload
         self._has_payloads.set()
@@ -188,7 +188,7 @@ class Outbox:
         if isinstance(payload, (str, bytes)):
             return payload
         if isinstance(payload, ScaledData):
-            return None if payload.gone else payload
+            return None if payload.is_withdrawn else payload
         content, self._seen_numbers[payload.key] = payload.since(self._seen_numbers.get(payload.key, 0))
         return content
 
@@ -230,12 +230,13 @@ class ConnectionMeter:
 
     Attributes:
         rate: bytes per second; None until it is known.
-        took: the mean time in seconds between a large message and its acknowledgement; None until it is known.
+        acknowledgement_time: the mean time in seconds between a large message and its acknowledgement; None until it
+            is known.
     """
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
         self.rate: float | None = None
-        self.took: float | None = None
+        self.acknowledgement_time: float | None = None
         self._clock = clock
         self._number = 0
         self._has_acknowledged = False
@@ -294,7 +295,11 @@ class ConnectionMeter:
             acknowledged = self._in_transit.popleft()
             elapsed = now - acknowledged.sent
             self._shortest_time = min(self._shortest_time, elapsed)
-            self.took = elapsed if self.took is None else self.took + (elapsed - self.took) / _AVERAGED_COUNT
+            self.acknowledgement_time = (
+                elapsed
+                if self.acknowledgement_time is None
+                else self.acknowledgement_time + (elapsed - self.acknowledgement_time) / _AVERAGED_COUNT
+            )
             if 2 * acknowledged.size >= min(self.room, _INITIAL_BUDGET):
                 self._update_rate(acknowledged.size / max(elapsed - self._shortest_time, elapsed / 10, 1e-4))
 

@@ -194,7 +194,7 @@ class WebServer:
         self, request: web.Request, handler: Callable[[web.Request], Awaitable[web.StreamResponse]]
     ) -> web.StreamResponse:
         if self._admission is not None:
-            self._admission.asked(request.protocol)
+            self._admission.request_received(request.protocol)
         reason = self._gate.refusal(request.headers)
         if reason is not None:
             return _refusal(403, reason)
@@ -289,7 +289,7 @@ class WebServer:
         return await _file_response(request, path, content_type, "private, no-cache", packs=packs)
 
     async def _export(self, request: web.Request) -> web.StreamResponse:
-        file = self._downloads.take(request.match_info["key"])
+        file = self._downloads.withdraw(request.match_info["key"])
         recording = self._downloads.path(request.match_info["key"])
         if recording is not None:
             self._admit(request)
@@ -371,7 +371,7 @@ class WebServer:
 
 _UPLOADS: tuple[tuple[str, str, Callable[[Uploads, web.Request], Awaitable[web.Response]]], ...] = (
     ("POST", "/recordings", lambda uploads, request: uploads.announce(request)),
-    ("PUT", "/recordings/{key}/{number:[0-9]{1,4}}", lambda uploads, request: uploads.take(request)),
+    ("PUT", "/recordings/{key}/{number:[0-9]{1,4}}", lambda uploads, request: uploads.receive(request)),
     ("POST", "/recordings/{key}", lambda uploads, request: uploads.open(request)),
     ("DELETE", "/recordings/{key}", lambda uploads, request: uploads.cancel_upload(request)),
 )

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Protocol
 import msgspec
 
 from linkwright.bag.scratch import scratch_folder
-from linkwright.diagnostics import LinkwrightError, Phrase, foreign, in_one_line, phrase
+from linkwright.diagnostics import LinkwrightError, Phrase, foreign, join_messages, phrase
 from linkwright.diagnostics.translation import localized
 from linkwright.page.audience import requested_language
 from linkwright.page.http_server import web
@@ -123,7 +123,7 @@ class Uploads:
         try:
             return web.json_response({"recording": await self._guests.open(path, None)})
         except LinkwrightError as error:
-            return _refusal(request, in_one_line(error.diagnostics))
+            return _refusal(request, join_messages(error.diagnostics))
 
     # --- requests ----------------------------------------------------------------------------------------------
 
@@ -171,7 +171,7 @@ class Uploads:
         self._schedule_sweep()
         return web.json_response({"key": key})
 
-    async def take(self, request: web.Request) -> web.Response:
+    async def receive(self, request: web.Request) -> web.Response:
         """Receive one of the announced files."""
         upload = self._uploads.get(request.match_info["key"])
         number = int(request.match_info["number"])
@@ -204,7 +204,7 @@ class Uploads:
         try:
             recording_key = await self._guests.open(upload.target, upload.scratch)
         except LinkwrightError as error:
-            problem_text = localized(in_one_line(error.diagnostics), requested_language(request))
+            problem_text = localized(join_messages(error.diagnostics), requested_language(request))
             self._remove(request.match_info["key"])
             return _problem_response(problem_text)
         self._uploads.pop(request.match_info["key"], None)

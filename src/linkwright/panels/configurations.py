@@ -124,7 +124,7 @@ class ConfigurationFeature(PageFeature):
         message, manager = request.message, request.manager
         if not has_display(message.cls):
             raise ValueError(f"there are no displays of the class '{message.cls[:100]}'")
-        entry = manager.config.make(message.cls, _name(message.name))
+        entry = manager.config.new_display(message.cls, _name(message.name))
         group = manager.display(message.group) if message.group is not None else None
         topic = message.topic
         prepare: Callable[[ViewerDisplay], None] | None = None

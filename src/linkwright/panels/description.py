@@ -58,7 +58,7 @@ class ArgumentsFeature(PageFeature):
         """Return the form. It is empty if no arguments are requested."""
         return [self._form]
 
-    def ask(self, form: ArgumentForm, on_values: OnValues | None) -> None:
+    def show_form(self, form: ArgumentForm, on_values: OnValues | None) -> None:
         """Show a form to all pages.
 
         Args:
@@ -72,7 +72,7 @@ class ArgumentsFeature(PageFeature):
         """Close the form, and report the values of the requested arguments."""
         on_values, names = self._on_values, set(self._form.names)
         if on_values is not None:
-            self.ask(NOTHING_ASKED, None)
+            self.show_form(NOTHING_ASKED, None)
             on_values({name: value for name, value in message.values.items() if name in names})
 
 
@@ -180,7 +180,7 @@ class DescriptionFeature(PageFeature):
             for display in manager.robot_models():
                 shown.add(display.id)
                 before = self._descriptions.get(display.id)
-                known = self._look_at(display)
+                known = self._current_description(display)
                 if known is not None and known is not before:
                     manager.pages.publish(known.changes_since(before))
         for removed_id in self._descriptions.keys() - shown:
@@ -204,7 +204,7 @@ class DescriptionFeature(PageFeature):
 
     def configured(self, manager: VisualizationManager) -> list[ServerMessage]:
         """Return the revision of each description that pages can request."""
-        known = [self._look_at(display) for display in manager.robot_models()]
+        known = [self._current_description(display) for display in manager.robot_models()]
         return [
             DescriptionChanged(description.display, description.revision, [], [])
             for description in known
@@ -245,7 +245,7 @@ class DescriptionFeature(PageFeature):
     async def _answer(self, page: Page, request: _Request) -> None:
         robot_models = self.managers.of(page).robot_models()
         display = next((display for display in robot_models if display.id == request.display), None)
-        known = None if display is None else self._look_at(display)
+        known = None if display is None else self._current_description(display)
         texts_with_findings = dict(self._texts_with_findings)
 
         def answer() -> ServerMessage | None:
@@ -264,7 +264,7 @@ class DescriptionFeature(PageFeature):
         if response is not None:
             page.send(response)
 
-    def _look_at(self, display: RobotModelDisplay) -> KnownDescription | None:
+    def _current_description(self, display: RobotModelDisplay) -> KnownDescription | None:
         """Return the current description of a display, or None.
 
         If the description has changed, it has a new revision.
@@ -301,7 +301,7 @@ class DiagnosticsFeature(PageFeature):
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
-        self._found: Sequence[Diagnostic] = ()
+        self._diagnostics: Sequence[Diagnostic] = ()
         self._shown_diagnostics = Diagnostics([])
 
     def opening(self) -> list[ServerMessage]:
@@ -310,23 +310,25 @@ class DiagnosticsFeature(PageFeature):
 
     def diagnostics_changed(self, diagnostics: Sequence[Diagnostic]) -> None:
         """Replace the current findings with new findings. The list may be empty."""
-        self._found = diagnostics
-        self._shown_diagnostics = self._all()
+        self._diagnostics = diagnostics
+        self._shown_diagnostics = self._all_diagnostics()
         self.context.pages.publish(self._shown_diagnostics)
 
     def robot_changed(self) -> None:
         """Show an additional finding (VIEW207) while no visual of a robot can be drawn."""
-        shown = self._all()
+        shown = self._all_diagnostics()
         if shown != self._shown_diagnostics:
             self._shown_diagnostics = shown
             self.context.pages.publish(shown)
 
-    def _all(self) -> Diagnostics:
+    def _all_diagnostics(self) -> Diagnostics:
         models = [model for manager in self.managers.all() for model in manager.robot_models()]
         invisibility_findings = {
             model.text: finding for model in models if (finding := _invisibility_finding(model)) is not None
         }
-        return Diagnostics([item_of(diagnostic) for diagnostic in (*self._found, *invisibility_findings.values())])
+        return Diagnostics(
+            [item_of(diagnostic) for diagnostic in (*self._diagnostics, *invisibility_findings.values())]
+        )
 
 
 def _invisibility_finding(model: RobotModelDisplay) -> Diagnostic | None:

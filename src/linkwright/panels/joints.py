@@ -45,7 +45,7 @@ class JointsFeature(PageFeature):
         super().__init__(viewer)
         self._panel: JointPanel | None = None
         self._unsubscribe: Callable[[], None] | None = None
-        self._soon: asyncio.TimerHandle | None = None
+        self._send_timer: asyncio.TimerHandle | None = None
 
     def attach(self, panel: JointPanel | None) -> None:
         """Show the sliders of a node instead of the previous ones.
@@ -54,9 +54,9 @@ class JointsFeature(PageFeature):
         """
         if self._unsubscribe is not None:
             self._unsubscribe()
-        if self._soon is not None:
-            self._soon.cancel()
-            self._soon = None
+        if self._send_timer is not None:
+            self._send_timer.cancel()
+            self._send_timer = None
         self._panel = panel
         self._unsubscribe = None if panel is None else panel.subscribe(self._on_panel_change)
         for message in self.opening():
@@ -90,11 +90,11 @@ class JointsFeature(PageFeature):
     def _on_panel_change(self, kind: str) -> None:
         if self._panel is not None and kind == "sliders":
             self.context.pages.publish(self._joints_message(self._panel))
-        if self._soon is None:
-            self._soon = asyncio.get_running_loop().call_later(_SEND_DELAY, self._send_positions)
+        if self._send_timer is None:
+            self._send_timer = asyncio.get_running_loop().call_later(_SEND_DELAY, self._send_positions)
 
     def _send_positions(self) -> None:
-        self._soon = None
+        self._send_timer = None
         if self._panel is not None:
             self.context.pages.publish(JointPositions(self._panel.positions()))
 

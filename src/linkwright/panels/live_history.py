@@ -72,10 +72,10 @@ class LiveHistory:
         """The playback to the subscriptions, created when an earlier time is first shown."""
         from linkwright.bag.playback import Playback
 
-        made = Playback(self._handle, self.history, self, self._failed)
-        made.on_reset = self._reset
-        made.changed.append(self.changed)
-        return made
+        playback = Playback(self._handle, self.history, self, self._failed)
+        playback.on_reset = self._reset
+        playback.changed.append(self.changed)
+        return playback
 
     @property
     def has_playback(self) -> bool:
@@ -137,7 +137,9 @@ class LiveHistory:
             )
         return saved_topics
 
-    def part(self, topics: Mapping[str, SavedTopic], start_ns: int, end_ns: int, *, simulated: bool) -> list[Recorded]:
+    def messages_between(
+        self, topics: Mapping[str, SavedTopic], start_ns: int, end_ns: int, *, simulated: bool
+    ) -> list[Recorded]:
         """Return the stored messages between two times, and earlier ones for the state at the start.
 
         Args:
@@ -149,7 +151,7 @@ class LiveHistory:
         """
         from linkwright.bag.saving import last_reset_ns, to_simulated_time
 
-        messages = self.history.part(max(start_ns, self.history.start_ns), end_ns)
+        messages = self.history.messages_between(max(start_ns, self.history.start_ns), end_ns)
         if not simulated:
             return messages
         reset_ns = last_reset_ns(messages)
@@ -191,7 +193,7 @@ class LiveHistory:
 
     # --- the output of the playback ---------------------------------------------------------------------------
 
-    def wanted(self) -> frozenset[str]:
+    def subscribed_topics(self) -> frozenset[str]:
         """Return the topics of the viewer's subscriptions, except the clock.
 
         `publish_time` handles the clock.

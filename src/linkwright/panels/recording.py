@@ -16,7 +16,7 @@ from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, display_path, foreign, in_one_line, phrase
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, display_path, foreign, join_messages, phrase
 from linkwright.graph import Clock, Duration, JumpThreshold, Node
 from linkwright.page.audience import Page
 from linkwright.page.protocol.message import ServerMessage
@@ -181,7 +181,9 @@ class RecordingFeature(PageFeature):
         from linkwright.bag.saving import save_messages
 
         uses_simulated_time = bool(self.context.node.get_parameter("use_sim_time").value)
-        messages = await asyncio.to_thread(live.part, topics, start_ns, end_ns, simulated=uses_simulated_time)
+        messages = await asyncio.to_thread(
+            live.messages_between, topics, start_ns, end_ns, simulated=uses_simulated_time
+        )
         if not messages:
             self._report_errors([_finding(phrase("no recording was saved, because no messages arrived in that time"))])
             return
@@ -246,7 +248,7 @@ class RecordingFeature(PageFeature):
 
     def _add_file(self, path: Path, length: float, simulated: float | None = None) -> None:
         for file in sorted(path.glob("*.mcap")):
-            url = self.context.downloads.keep(file)
+            url = self.context.downloads.offer_repeatedly(file)
             recorded_file = RecordedFile(path.name, str(path), file.stat().st_size, length, url, simulated)
             self._files = [recorded_file, *self._files[: _MAX_FILES - 1]]
             self.context.node.get_logger().info(f"Recorded to '{display_path(path)}'")
@@ -265,16 +267,16 @@ class RecordingFeature(PageFeature):
         """Show errors in pages and in the terminal."""
         for diagnostic in diagnostics:
             self.context.report(diagnostic)
-        self._problem = in_one_line(diagnostics)
+        self._problem = join_messages(diagnostics)
 
     def _publish(self) -> None:
         self.context.pages.publish(self._state())
 
     def _schedule_publish(self) -> None:
         if self._timer is None:
-            self._timer = self._loop.call_later(_REPORT_PERIOD, self._look)
+            self._timer = self._loop.call_later(_REPORT_PERIOD, self._check_and_publish)
 
-    def _look(self) -> None:
+    def _check_and_publish(self) -> None:
         self._timer = None
         if self._running is not None and self._free_bytes() < self.min_free_bytes:
             message = phrase(

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from math import isfinite
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from linkwright.diagnostics import LinkwrightError, in_one_line
+from linkwright.diagnostics import LinkwrightError, join_messages
 from linkwright.graph import Duration, JumpThreshold, TimeJump
 from linkwright.page.audience import Page
 from linkwright.page.protocol.message import ServerMessage
@@ -213,7 +213,7 @@ class TimelineFeature(PageFeature):
         self._playback: Playback | None = None
         self._timeline: Timeline | None = None
         self._problem: str = ""
-        self._begun = False
+        self._is_started = False
         self._timer: asyncio.TimerHandle | None = None
         self._publish_timer: asyncio.TimerHandle | None = None
         self._live: LiveHistory | None = None
@@ -242,7 +242,7 @@ class TimelineFeature(PageFeature):
             live=False,
         )
         if findings := [*bag.findings, *missing_type_findings(bag)]:
-            self._problem = in_one_line(findings)
+            self._problem = join_messages(findings)
         self._playback = playback
         playback.on_reset = self._reset
         playback.changed.append(self._on_change)
@@ -250,7 +250,7 @@ class TimelineFeature(PageFeature):
         self.context.pages.publish(self._timeline)
         self._on_change()
 
-    def keep(self, most_bytes: int) -> LiveHistory:
+    def start_history(self, most_bytes: int) -> LiveHistory:
         """Start storing the messages of the last minutes, and return their history.
 
         Args:
@@ -263,7 +263,7 @@ class TimelineFeature(PageFeature):
 
     def failed(self, error: LinkwrightError) -> None:
         """Show the error that makes the rest of the recording unreadable."""
-        self._problem = in_one_line(error.diagnostics)
+        self._problem = join_messages(error.diagnostics)
         for diagnostic in error.diagnostics:
             self.context.report(diagnostic)
 
@@ -276,8 +276,8 @@ class TimelineFeature(PageFeature):
             return [Timeline("", extent.start, extent.end, [], live=True), extent, self._live_playhead(self._live)]
         if playback is None or self._timeline is None:
             return []
-        if not self._begun:
-            self._begun = True
+        if not self._is_started:
+            self._is_started = True
             playback.review()
             playback.play()
         return [self._timeline, self._playhead(playback)]

@@ -311,7 +311,7 @@ class ToolsFeature(PageFeature):
         """
         assert kind is not None
         message = get_message(kind)()
-        message.header.frame_id, header_pose = self.context.transforms.known(manager.fixed_frame, pose)
+        message.header.frame_id, header_pose = self.context.transforms.in_known_frame(manager.fixed_frame, pose)
         message.header.stamp = self.context.node.get_clock().now().to_msg()
         return message, header_pose.tolist()
 

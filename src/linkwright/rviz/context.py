@@ -46,12 +46,12 @@ class PublishedTopics:
             InvalidTopicNameError: the topic's name is not valid.
         """
         name = self._node.resolve_topic_name(topic)
-        self._look()
+        self._update_if_needed()
         return self._publishers.get(name, [])
 
     def topics_of_type(self, message: str) -> list[str]:
         """Return the names of the topics that are published with a message type, sorted."""
-        self._look()
+        self._update_if_needed()
         return self._topics.get(message, [])
 
     def close(self) -> None:
@@ -63,7 +63,7 @@ class PublishedTopics:
     def _on_graph_change(self) -> None:
         self._is_up_to_date = False
 
-    def _look(self) -> None:
+    def _update_if_needed(self) -> None:
         if not self._is_watching:
             self._is_watching = True
             self._node.graph.watch(self._on_graph_change)
@@ -82,7 +82,7 @@ class PublishedTopics:
         self._topics = {message: sorted(names) for message, names in topics.items()}
 
 
-_QUIET = 0.1
+_COLLECTION_SECONDS = 0.1
 """Seconds for which changes are collected before callbacks are called. A starting node creates dozens of endpoints."""
 
 
@@ -99,7 +99,7 @@ class GraphChanges:
         self._graph = graph
         self._listeners: dict[Callable[[], None], None] = {}
         self._loop = asyncio.get_running_loop()
-        self._due: asyncio.TimerHandle | None = None
+        self._notify_timer: asyncio.TimerHandle | None = None
 
     def watch(self, callback: Callable[[], None]) -> None:
         """Register a callback for graph changes, to be called on the event loop."""
@@ -112,20 +112,20 @@ class GraphChanges:
         self._listeners.pop(callback, None)
         if not self._listeners:
             self._graph.unwatch(self._on_graph_change)
-            if self._due is not None:
-                self._due.cancel()
-                self._due = None
+            if self._notify_timer is not None:
+                self._notify_timer.cancel()
+                self._notify_timer = None
 
     def _on_graph_change(self) -> None:
         with suppress(RuntimeError):  # the loop is closed, so that no callback can be called
             self._loop.call_soon_threadsafe(self._wait)
 
     def _wait(self) -> None:
-        if self._due is None and self._listeners:
-            self._due = self._loop.call_later(_QUIET, self._notify)
+        if self._notify_timer is None and self._listeners:
+            self._notify_timer = self._loop.call_later(_COLLECTION_SECONDS, self._notify)
 
     def _notify(self) -> None:
-        self._due = None
+        self._notify_timer = None
         for callback in tuple(self._listeners):
             if callback in self._listeners:
                 callback()

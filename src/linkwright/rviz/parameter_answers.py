@@ -35,7 +35,7 @@ async def wait_for_services(client: AsyncParameterClient) -> None:
         await asyncio.sleep(_POLL_INTERVAL)
 
 
-async def answer(client: AsyncParameterClient, future: Awaitable[Any]) -> Any:
+async def wait_for_response(client: AsyncParameterClient, future: Awaitable[Any]) -> Any:
     """Return the response to a request, given the future that a method of the client returned.
 
     Raises:

@@ -73,7 +73,7 @@ def content_of(world: World, index: MeshIndex) -> WorldContent:
 class _Builder:
     def __init__(self, index: MeshIndex) -> None:
         self._index = index
-        self._made = WorldContent()
+        self._content = WorldContent()
 
     def build(self, world: World) -> WorldContent:
         frames = Frames(world)
@@ -81,10 +81,10 @@ class _Builder:
             model_frames = frames.inside(model.name)
             for placed_link in links_of(model, model_frames, frames.pose(model.name), model.name):
                 self._link(placed_link)
-        return self._made
+        return self._content
 
     def _link(self, placed_link: PlacedLink) -> None:
-        link, frames, content = placed_link.link, placed_link.frames, self._made
+        link, frames, content = placed_link.link, placed_link.frames, self._content
 
         def pose(raw: RawPose) -> Transform:
             return frames.in_link(raw, link.name)
@@ -191,7 +191,7 @@ class _Builder:
 
     def _set_material(self, link: str, shape: Shape, visual: Visual) -> None:
         material = visual.material
-        color, image = _look(material) if material else (None, "")
+        color, image = _appearance(material) if material else (None, "")
         shape.repaints = color is not None or image != ""
         if color is None:
             color = _DEFAULT_COLOR
@@ -211,7 +211,7 @@ class _Builder:
         return located.url
 
     def _add_problem(self, link: str, text: str) -> None:
-        problems = self._made.problems.setdefault(link, [])
+        problems = self._content.problems.setdefault(link, [])
         if text not in problems:
             problems.append(text)
 
@@ -228,7 +228,7 @@ def _has_surface(workflow: Workflow) -> bool:
     return any(_maps(workflow)) or (workflow.roughness, workflow.metalness) != (default.roughness, default.metalness)
 
 
-def _look(material: Material) -> tuple[Sequence[float] | None, str]:
+def _appearance(material: Material) -> tuple[Sequence[float] | None, str]:
     """Return the colour of a material or None, and the address of its colour image or ``""``.
 
     Material scripts were read with the world. For a model from text, only Gazebo's own material names are known here.

@@ -65,16 +65,16 @@ class Frames:
         elements: tuple[Framed, ...] = (*links, *owner.frames, *owner.joints, *owner.models)
         for element in elements:
             elements_by_name.setdefault(element.name, element)
-        self.named = elements_by_name
+        self.elements_by_name = elements_by_name
         self._roots = frozenset({"", MODEL} if isinstance(owner, Model) else {"", WORLD})
         self._inner: dict[str, Frames] = {}
         self._poses: dict[str, Transform] = {}
 
     def __contains__(self, name: str) -> bool:
         head, colon, tail = name.partition(SEPARATOR)
-        if not colon or name in self.named:  # Link names in old files contain '::'.
-            return name in self._roots or name in self.named
-        return isinstance(self.named.get(head), Model) and tail in self.inside(head)
+        if not colon or name in self.elements_by_name:  # Link names in old files contain '::'.
+            return name in self._roots or name in self.elements_by_name
+        return isinstance(self.elements_by_name.get(head), Model) and tail in self.inside(head)
 
     def inside(self, name: str) -> Frames:
         """Return the frames of a nested model.
@@ -84,7 +84,7 @@ class Frames:
         """
         frames = self._inner.get(name)
         if frames is None:
-            model = self.named.get(name)
+            model = self.elements_by_name.get(name)
             if not isinstance(model, Model):
                 raise FrameError(name)
             frames = self._inner[name] = Frames(model)
@@ -161,7 +161,7 @@ class Frames:
                 return WORLD
             if name in ("", MODEL):
                 return self._canonical_link()
-            element = self.named.get(name)
+            element = self.elements_by_name.get(name)
             head, colon, tail = name.partition(SEPARATOR)
             if element is None and colon:
                 return f"{head}{SEPARATOR}{self.inside(head).link(tail)}"
@@ -195,7 +195,7 @@ class Frames:
         Raises:
             FrameError: the frame does not exist.
         """
-        element = self.named.get(name)
+        element = self.elements_by_name.get(name)
         head, colon, _ = name.partition(SEPARATOR)
         if element is None and colon:
             return head
@@ -208,7 +208,7 @@ class Frames:
 
     def _in_base(self, name: str) -> Transform:
         """Return the pose of a frame in the frame that `_base` returns."""
-        element = self.named.get(name)
+        element = self.elements_by_name.get(name)
         if element is None:
             head, _, tail = name.partition(SEPARATOR)
             return self.inside(head).pose(tail)

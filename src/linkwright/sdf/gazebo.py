@@ -135,8 +135,8 @@ class Extensions:
         """Return an SDF joint with the sensors, spring and force feedback of a joint."""
         joint_element = _element_at(joint.element, "joint", joint.name)
         joint_element.attributes["type"] = "fixed"
-        _put(joint_element, "parent", joint.parent, joint_element)
-        _put(joint_element, "child", joint.child, joint_element)
+        _set_text(joint_element, "parent", joint.parent, joint_element)
+        _set_text(joint_element, "child", joint.child, joint_element)
         for gazebo in self._by_name.get(joint.name, ()):
             if joint.name not in robot.links:
                 joint_element.children += map(_copied_element, _sdf_children(gazebo))
@@ -182,9 +182,9 @@ class Extensions:
                         sdf_element,
                     )
                     continue
-                _put(sdf_element, path, text, old_element)
+                _set_text(sdf_element, path, text, old_element)
                 if old_element.tag == "material":
-                    _put(sdf_element, "material/script/uri", _MATERIALS_URI, old_element)
+                    _set_text(sdf_element, "material/script/uri", _MATERIALS_URI, old_element)
 
 
 def _element_at(element: Element | None, tag: str, name: str) -> Element:
@@ -216,15 +216,15 @@ def _copied_element(element: Element) -> Element:
     return copy
 
 
-def _put(ancestor: Element, path: str, text: str, place: Element) -> None:
+def _set_text(ancestor: Element, path: str, text: str, source_element: Element) -> None:
     """Set the text of the descendant at a path of tags, and create missing elements.
 
-    New elements have the source position of `place`.
+    New elements have the source position of `source_element`.
     """
     for tag in path.split("/"):
         child = ancestor.first(tag)
         if child is None:
-            child = Element(tag, None, place.source, place.offset, place.origin)
+            child = Element(tag, None, source_element.source, source_element.offset, source_element.origin)
             ancestor.children.append(child)
         ancestor = child
     ancestor.children[:] = [Text(text)]

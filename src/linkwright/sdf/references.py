@@ -58,7 +58,7 @@ def _check_owner(owner: World | Model, frames: Frames) -> Iterator[Diagnostic]:
         yield from _joint(joint, frames)
     yield from _check_cycles((*owner.frames, *links, *owner.joints, *owner.models), frames)
     for model in owner.models:
-        if frames.named.get(model.name) is model:
+        if frames.elements_by_name.get(model.name) is model:
             yield from _check_owner(model, frames.inside(model.name))
 
 
@@ -115,7 +115,7 @@ def _check_cycles(elements: tuple[Frame | Link | Joint | Model, ...], frames: Fr
         message = phrase(
             ("the poses of these frames depend on each other in a cycle: {value}"), value=" -> ".join(cycle)
         )
-        first_element = frames.named.get(cycle[0])
+        first_element = frames.elements_by_name.get(cycle[0])
         yield _error(
             "SDF142",
             message,
@@ -138,22 +138,22 @@ def _is_known(name: str, frames: Frames) -> bool:
     if name in frames:
         return True
     head = name.partition(SEPARATOR)[0]
-    if head in frames.named and head != name:
-        nested_model = frames.named[head]
+    if head in frames.elements_by_name and head != name:
+        nested_model = frames.elements_by_name[head]
         return isinstance(nested_model, Model) and bool(nested_model.includes)
     return bool(frames.owner.includes)
 
 
 def _missing_frame(element: Element | None, attribute: str, name: str, frames: Frames) -> Diagnostic:
     message = phrase("'{attribute}' refers to '{name}', which does not exist", attribute=attribute, name=name)
-    hint = did_you_mean(name, frames.named) or phrase(
-        "choose from {names}", names=joined([*frames.named][:8] or [MODEL])
+    hint = did_you_mean(name, frames.elements_by_name) or phrase(
+        "choose from {names}", names=joined([*frames.elements_by_name][:8] or [MODEL])
     )
     return _error("SDF141", message, element, attribute, hint)
 
 
 def _link_candidates(frames: Frames) -> list[str]:
-    return [name for name, element in frames.named.items() if not isinstance(element, Joint)]
+    return [name for name, element in frames.elements_by_name.items() if not isinstance(element, Joint)]
 
 
 def _description(element: Element | None) -> Phrase:

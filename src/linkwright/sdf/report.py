@@ -75,7 +75,7 @@ class SdfReport(Findings):
         """
         is_text = attribute is rule.text
         text = element.text().strip() if is_text else element.attributes[attribute.name]
-        message, hint = _explain_value(_place(element, rule, attribute, owner), text, attribute, element)
+        message, hint = _explain_value(_describe_location(element, rule, attribute, owner), text, attribute, element)
         number = leading_number(text) if attribute.type in (NUMBER, INTEGER) else None
         if number is not None and isfinite(number):
             self.warning("SDF121", message, element, None if is_text else attribute.name, hint=hint)
@@ -210,7 +210,7 @@ def _with_missing_zeros(text: str, count: int) -> str:
     return f"{text} {'0 ' * (count - len(values))}" if 0 < len(values) < count else ""
 
 
-def _place(element: Element, rule: ElementRule, attribute: AttributeRule, owner: Element) -> Phrase:
+def _describe_location(element: Element, rule: ElementRule, attribute: AttributeRule, owner: Element) -> Phrase:
     """Return a description of a value's location for messages.
 
     Examples are ``<mass> of link 'arm'`` and ``'type' of joint 'elbow'``.

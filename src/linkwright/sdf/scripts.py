@@ -145,10 +145,10 @@ class _ScriptLibrary:
     def _visual(self, visual: Visual) -> Visual:
         if visual.material is None or visual.material.script is None:
             return visual
-        look = self._look(visual.material.script, visual)
+        look = self._find_look(visual.material.script, visual)
         return visual if look is None else replace(visual, material=with_look(visual.material, look))
 
-    def _look(self, script: MaterialScript, visual: Visual) -> Look | None:
+    def _find_look(self, script: MaterialScript, visual: Visual) -> Look | None:
         source = None if visual.element is None else visual.element.source
         folder = Path() if source is None else Path(source.name).parent
         paths = {uri: self._finder.file(uri.strip(), folder) for uri in script.uris if uri and uri.strip()}

@@ -181,7 +181,7 @@ class Simulation:
     def _on_jump(self, body: Any) -> None:
         """Record that a body of MuJoCo's model was placed where it may overlap with other bodies."""
         self._stepper.expect_overlaps()
-        self._sleep.stir(int(self.model.body_treeid[body]))
+        self._sleep.wake_tree(int(self.model.body_treeid[body]))
         self._is_current = False
 
     def set_altered(self) -> None:
@@ -281,8 +281,8 @@ class Simulation:
         self.model, self.data = model, data
         self._state: tuple[Array, Array] = data.qpos, data.qvel
         self._stepper = Stepper(model, data)
-        self._sleep.take(model, data, self.time, self.step)
-        self._solving.take(model, data, self.time, self.step)
+        self._sleep.set_model(model, data, self.time, self.step)
+        self._solving.set_model(model, data, self.time, self.step)
 
     def reset(self) -> None:
         """Restore the initial state, and restart time at 0."""
@@ -485,7 +485,7 @@ class Simulation:
         root, _ = self._root(name)
         rotation = self.link_pose(root)[3:]
         self.data.joint(f"{root}#free").qvel[:] = (*linear, *rotate(quaternion_inverse(rotation), angular))
-        self._sleep.stir(int(self.model.body_treeid[self.body(root)]))
+        self._sleep.wake_tree(int(self.model.body_treeid[self.body(root)]))
         self._is_current = False
 
     def _root(self, name: str) -> tuple[str, Transform]:

@@ -40,7 +40,7 @@ class Sleep:
         self._model: Any = None
         self._data: Any = None
 
-    def take(self, model: Any, data: Any, now: int, step: int) -> None:
+    def set_model(self, model: Any, data: Any, now: int, step: int) -> None:
         """Use another model and its data, and wake all bodies.
 
         Args:
@@ -58,13 +58,13 @@ class Sleep:
         if self._task is not None:
             self._task.cancelled, self._task = True, None
         if self._may_sleep.any():
-            self._task = self._schedule.add(round(self._seconds * 1e9), self._look, now)
+            self._task = self._schedule.add(round(self._seconds * 1e9), self._update_sleep, now)
             lengths: Array = np.array(model.dof_length)
             self._lengths = np.where(lengths > 0.0, lengths, 1.0)
             self._tree_indices: Any = model.dof_treeid
         self.wake()
 
-    def rouse(self) -> None:
+    def wake_briefly(self) -> None:
         """Wake all bodies.
 
         A body at rest can fall asleep again after MuJoCo's ten steps.
@@ -76,11 +76,11 @@ class Sleep:
 
     def wake(self) -> None:
         """Wake all bodies, and keep them awake until they have been at rest for a while."""
-        self.rouse()
+        self.wake_briefly()
         self._calm_checks[:] = 0
         self._set_policies()
 
-    def stir(self, tree: int) -> None:
+    def wake_tree(self, tree: int) -> None:
         """Wake a tree that was moved or set in motion.
 
         A tree of -1, for a static body without a tree, has no effect.
@@ -88,7 +88,7 @@ class Sleep:
         if tree >= 0:
             self._calm_checks[tree] = 0
             self._set_policies()
-            self.rouse()
+            self.wake_briefly()
 
     def keep_awake(self, tree: int) -> None:
         """Wake a tree, and prevent it from falling asleep again."""
@@ -100,7 +100,7 @@ class Sleep:
         allowed = self._may_sleep & (self._calm_checks >= _MIN_CALM_CHECKS)
         self._model.tree_sleep_policy[:] = np.where(allowed, policies.mjSLEEP_AUTO_ALLOWED, policies.mjSLEEP_NEVER)
 
-    def _look(self) -> None:
+    def _update_sleep(self) -> None:
         model, data = self._model, self._data
         if not data.ntree_awake:
             return

@@ -44,7 +44,7 @@ class Solving:
         self._model: Any = None
         self._data: Any = None
 
-    def take(self, model: Any, data: Any, now: int, step: int) -> None:
+    def set_model(self, model: Any, data: Any, now: int, step: int) -> None:
         """Use another model and its data, initially solved by islands.
 
         Args:
@@ -57,14 +57,14 @@ class Solving:
         if self._task is not None:
             self._task.cancelled, self._task = True, None
         if model.nu >= _MIN_MOTORS and model.ntree >= _MIN_TREES:
-            self._task = self._schedule.add(_CHECK_STEPS * step, self._look, now)
+            self._task = self._schedule.add(_CHECK_STEPS * step, self._update_solver, now)
 
     def restart(self) -> None:
         """Return to solving by islands, because the simulation restarts."""
         if self._remaining_checks:
             self._select(together=False)
 
-    def _look(self) -> None:
+    def _update_solver(self) -> None:
         if self._remaining_checks:
             self._remaining_checks -= 1
             if not self._remaining_checks:
@@ -84,6 +84,6 @@ class Solving:
             option.disableflags |= islands
         else:
             self._remaining_checks = 0
-            self._sleep.rouse()
+            self._sleep.wake_briefly()
             option.enableflags |= sleep
             option.disableflags &= ~islands

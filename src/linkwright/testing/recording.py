@@ -40,8 +40,8 @@ class Recording:
         self._node = node
         self._subscription: Subscription[Any] | None = None
         if msg_type is None:
-            graph.watch(self._look)
-            self._look()
+            graph.watch(self._subscribe_when_available)
+            self._subscribe_when_available()
         else:
             self._subscribe(msg_type)
 
@@ -73,7 +73,7 @@ class Recording:
     def __repr__(self) -> str:
         return f"<{len(self.messages)} messages of {self.topic}>"
 
-    def _look(self) -> None:
+    def _subscribe_when_available(self) -> None:
         if self._subscription is None:
             bus = self._graph.bus
             for endpoint in (*bus.publishers(self.topic), *bus.subscriptions(self.topic)):
@@ -81,7 +81,7 @@ class Recording:
                 return
 
     def _subscribe(self, msg_type: Any) -> None:
-        self._graph.unwatch(self._look)
+        self._graph.unwatch(self._subscribe_when_available)
         durabilities = [publisher.qos_profile.durability for publisher in self._graph.bus.publishers(self.topic)]
         are_stored = bool(durabilities) and all(
             durability_policy is DurabilityPolicy.TRANSIENT_LOCAL for durability_policy in durabilities

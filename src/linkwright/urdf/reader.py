@@ -105,10 +105,10 @@ def _resolve_visual(fields: dict[str, Any], materials: MaterialTable, owner: Ele
 class MaterialTable:
     """The materials defined so far, by name, and the references to undefined ones."""
 
-    __slots__ = ("_findings", "_undefined", "known")
+    __slots__ = ("_findings", "_undefined", "materials")
 
     def __init__(self, findings: UrdfReport) -> None:
-        self.known: dict[str, Material] = {}
+        self.materials: dict[str, Material] = {}
         self._findings = findings
         self._undefined: list[tuple[Material, Element]] = []
 
@@ -126,10 +126,10 @@ class MaterialTable:
                     hint=phrase('add <color rgba="0.8 0.8 0.8 1"/>'),
                 )
             material = replace(material, rgba=BLACK)
-        if material.name in self.known:
-            findings.duplicate("material", material.name, element, self.known[material.name].element)
+        if material.name in self.materials:
+            findings.duplicate("material", material.name, element, self.materials[material.name].element)
         else:
-            self.known[material.name] = material
+            self.materials[material.name] = material
 
     def resolve(self, material: Material, owner: Element) -> Material | None:
         """Return the material that applies to a visual's material element, or None if it is not yet defined.
@@ -139,12 +139,12 @@ class MaterialTable:
         is_definition = material.rgba is not None or material.texture is not None
         if not material.name:
             return material if is_definition else None
-        known = self.known.get(material.name)
+        known = self.materials.get(material.name)
         if known is None:
             if not is_definition:
                 self._undefined.append((material, owner))
                 return None
-            self.known[material.name] = material
+            self.materials[material.name] = material
             return material
         return known
 
@@ -156,11 +156,11 @@ class MaterialTable:
             color = element.first("color")
             if color is not None and "rgba" in color.attributes:
                 continue  # the malformed colour of this material is reported already
-            later_definition = self.known.get(material.name)
+            later_definition = self.materials.get(material.name)
             if later_definition is not None:
                 hint = phrase("a later link defines it: move the definition to robot level")
             else:
-                hint = did_you_mean(material.name, self.known) or phrase("define it at robot level")
+                hint = did_you_mean(material.name, self.materials) or phrase("define it at robot level")
             message = phrase("material '{name}' of {owner} is not defined", name=material.name, owner=owner_name(owner))
             self._findings.warning("URDF160", message, element, "name", hint=hint)
 
@@ -288,7 +288,7 @@ def _read_robot(root: Element, findings: UrdfReport) -> Robot | None:
     _report_leftover_xacro(root, extensions, findings)
     root_name = find_root(links, all_joints, findings)
     _check_mimics(joints, findings)
-    return Robot(name, root_name, links, joints, materials.known, findings.version, tuple(extensions), root)
+    return Robot(name, root_name, links, joints, materials.materials, findings.version, tuple(extensions), root)
 
 
 def _index_by_name(kind: str, parts: Iterable[PartT], findings: UrdfReport) -> dict[str, PartT]:

@@ -44,14 +44,14 @@ class Findings:
         error_count: the number of errors among the findings.
     """
 
-    __slots__ = ("_found", "count", "error_count", "rejected", "version")
+    __slots__ = ("_diagnostics", "count", "error_count", "rejected", "version")
 
     def __init__(self, version: Version = (1, 0)) -> None:
         self.version = version
         self.rejected = False
         self.count = 0
         self.error_count = 0
-        self._found: list[Diagnostic] = []
+        self._diagnostics: list[Diagnostic] = []
 
     def reject(
         self,
@@ -108,13 +108,13 @@ class Findings:
 
     def first_error(self) -> Diagnostic:
         """Return the first of at least one error."""
-        return next(finding for finding in self._found if finding.severity is Severity.ERROR)
+        return next(finding for finding in self._diagnostics if finding.severity is Severity.ERROR)
 
     def annotate(self, finding: Diagnostic, note: Note) -> None:
         """Add a note to the latest recorded finding that is equal to `finding`."""
-        for index in range(len(self._found) - 1, -1, -1):
-            if self._found[index] == finding:
-                self._found[index] = finding.with_changes(notes=(*finding.notes, note))
+        for index in range(len(self._diagnostics) - 1, -1, -1):
+            if self._diagnostics[index] == finding:
+                self._diagnostics[index] = finding.with_changes(notes=(*finding.notes, note))
                 return
 
     def in_order(self) -> tuple[Diagnostic, ...]:
@@ -127,7 +127,7 @@ class Findings:
                 return len(files), 0, 0
             return files.setdefault(span.file, len(files)), span.line, span.column
 
-        return tuple(sorted(self._found, key=place)) if len(self._found) > 1 else tuple(self._found)
+        return tuple(sorted(self._diagnostics, key=place)) if len(self._diagnostics) > 1 else tuple(self._diagnostics)
 
     def _add(
         self,
@@ -148,7 +148,7 @@ class Findings:
             from linkwright.xacro.faults import origin_of
 
             trail = origin_of(element).trail
-        self._found.append(Diagnostic(code, message, span, severity, (*notes, *trail), hint, element.source))
+        self._diagnostics.append(Diagnostic(code, message, span, severity, (*notes, *trail), hint, element.source))
 
 
 BLACK = (0.0, 0.0, 0.0, 1.0)

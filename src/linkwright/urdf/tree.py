@@ -104,7 +104,7 @@ def _links_exist(links: Mapping[str, Link], joints: Sequence[Joint], findings: F
 
 def _report_roots(roots: Sequence[str], links: Mapping[str, Link], findings: Findings) -> None:
     names_text = quoted_names(roots, " and ") if len(roots) < 6 else phrase("{list}, ...", list=quoted_names(roots[:5]))
-    notes = [Note(phrase("'{name}' has no parent", name=name), _place(links[name].element)) for name in roots[:5]]
+    notes = [Note(phrase("'{name}' has no parent", name=name), _span_of(links[name].element)) for name in roots[:5]]
     element = links[roots[1]].element
     assert element is not None
     findings.reject(
@@ -162,7 +162,7 @@ def _check_parents(joints: Sequence[Joint], findings: Findings) -> None:
             child_element,
             "link",
             hint=phrase("a link has one parent: remove one of the joints, or add a link for it"),
-            notes=(Note(phrase("'{name}' is defined here", name=first.name), _place(first.element)),),
+            notes=(Note(phrase("'{name}' is defined here", name=first.name), _span_of(first.element)),),
         )
 
 
@@ -223,5 +223,5 @@ def _report_loop(loop: Sequence[str], joints: Sequence[Joint], consequence: str,
     )
 
 
-def _place(element: Element | None) -> Span | None:
+def _span_of(element: Element | None) -> Span | None:
     return None if element is None else element.span()

@@ -36,7 +36,7 @@ class _Guest:
     graph: Graph
     viewer: Viewer
     scratch: TemporaryDirectory[str] | None
-    left: float
+    last_page_time: float
 
 
 class GuestRecordings:
@@ -68,7 +68,7 @@ class GuestRecordings:
         from linkwright.viewer.recorded_robot import published, robot_of
         from linkwright.viewer.recording_config import recording_config
 
-        await self._close_idlest()
+        await self._close_longest_idle()
         if len(self._guests) >= _MAX_GUESTS:
             raise LinkwrightError(
                 Diagnostic(
@@ -118,28 +118,30 @@ class GuestRecordings:
         guests, self._guests = self._guests, {}
         await asyncio.gather(*(_close_guest(guest) for guest in guests.values()), *self._closing_tasks)
 
-    async def _close_idlest(self) -> None:
+    async def _close_longest_idle(self) -> None:
         """If the limit is reached, close the recording that has had no pages for the longest time."""
         if len(self._guests) < _MAX_GUESTS:
             return
         latest_time = asyncio.get_running_loop().time() - _MIN_IDLE_TIME
-        last_page_times = {key: guest.left for key, guest in self._guests.items() if not len(guest.viewer.audience)}
+        last_page_times = {
+            key: guest.last_page_time for key, guest in self._guests.items() if not len(guest.viewer.audience)
+        }
         idlest_key = min(last_page_times, key=last_page_times.__getitem__, default=None)
         if idlest_key is not None and last_page_times[idlest_key] < latest_time:
             await _close_guest(self._guests.pop(idlest_key))
 
     def _schedule_check(self) -> None:
         if self._check_timer is None:
-            self._check_timer = asyncio.get_running_loop().call_later(_CHECK_PERIOD, self._look)
+            self._check_timer = asyncio.get_running_loop().call_later(_CHECK_PERIOD, self._close_idle)
 
-    def _look(self) -> None:
+    def _close_idle(self) -> None:
         """Close the recordings whose last page was closed a while ago."""
         self._check_timer = None
         loop = asyncio.get_running_loop()
         for key, guest in list(self._guests.items()):
             if len(guest.viewer.audience):
-                guest.left = loop.time()
-            elif loop.time() - guest.left > PATIENCE:
+                guest.last_page_time = loop.time()
+            elif loop.time() - guest.last_page_time > PATIENCE:
                 del self._guests[key]
                 task = loop.create_task(_close_guest(guest))
                 self._closing_tasks.add(task)

@@ -87,12 +87,12 @@ class RecordingWithTransforms:
         self._fixed = node.create_publisher(TFMessage, STATIC_TRANSFORMS, STATIC_TF_PUBLISHER_QOS)
         node.get_logger().info("The recording has no /tf: the robot's transforms are computed from its joint states")
 
-    def wanted(self) -> frozenset[str]:
+    def subscribed_topics(self) -> frozenset[str]:
         """Return the topics of the recording that have subscriptions.
 
         If the transforms have subscriptions, the topics that they are computed from are included.
         """
-        topics = self._recording.wanted()
+        topics = self._recording.subscribed_topics()
         if self._tf_publisher.get_subscription_count():
             topics |= {topic for topic in (self._description, self._joint_states_topic) if topic is not None}
         return topics
@@ -110,13 +110,13 @@ class RecordingWithTransforms:
         if topic == self._description:
             self._fixed.publish(TFMessage(batch=self._transforms.fixed(stamp_ns)))
             if self._joint_states_topic is None:
-                self._place(stamp_ns)
+                self._publish_transforms(stamp_ns)
         elif topic == self._joint_states_topic:
             joint_states = deserialize(data, JointState)
             self._positions.update(zip(joint_states.name, joint_states.position, strict=False))
-            self._place(joint_states.header.stamp.nanoseconds or stamp_ns)
+            self._publish_transforms(joint_states.header.stamp.nanoseconds or stamp_ns)
 
-    def _place(self, stamp_ns: int) -> None:
+    def _publish_transforms(self, stamp_ns: int) -> None:
         batch = self._transforms.recipe(tuple(self._positions)).batch(list(self._positions.values()), stamp_ns)
         if len(batch):
             self._tf_publisher.publish(TFMessage(batch=batch))

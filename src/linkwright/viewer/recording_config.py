@@ -59,7 +59,7 @@ def recording_config(bag: BagReader, robot: Robot | None = None) -> RvizConfig:
     base_frame = next((name for name in _base_frames(robot) if name in children), None)
     if base_frame is not None and root in _WORLD_FIXED_FRAMES and not has_world:
         size = None if robot is None else size_of(robot)
-        config.follow(
+        config.follow_frame(
             base_frame, _MIN_DISTANCE if size is None else max(_MIN_DISTANCE, _DISTANCE_FACTOR * size.distance)
         )
     for display in list(config.displays):
@@ -73,7 +73,7 @@ def recording_config(bag: BagReader, robot: Robot | None = None) -> RvizConfig:
         if has_world and display_kind in ("RobotModel", "TF"):
             display.checked = False
     if has_world:
-        world_display = config.make(WORLD_DISPLAY, "World")
+        world_display = config.new_display(WORLD_DISPLAY, "World")
         config.insert(world_display)
         world_display.checked = True
     enabled_counts: Counter[str] = Counter()
@@ -98,7 +98,7 @@ def _has_world(bag: BagReader) -> bool:
 
 
 def _add_display(config: RvizConfig, kind: str, topic: BagTopic, *, checked: bool) -> None:
-    display = config.make(f"rviz_default_plugins/{kind}", topic.name.strip("/"))
+    display = config.new_display(f"rviz_default_plugins/{kind}", topic.name.strip("/"))
     offered_profiles = topic.offered_qos
     display.section.put(("Topic", "Value"), topic.name, string=True)
     if any(offer.reliability is ReliabilityPolicy.BEST_EFFORT for offer in offered_profiles):

@@ -133,9 +133,9 @@ class Viewer:
         """
         try:
             if self._host_viewer is None:
-                await self._listen()
+                await self._open_server()
             if self._history:
-                self.live = self._timeline.keep(self._history)
+                self.live = self._timeline.start_history(self._history)
             self.managers.shared.start()
             self._is_started = True
             for feature in self._features:
@@ -147,7 +147,7 @@ class Viewer:
             await self._server.close()
             raise
 
-    async def _listen(self) -> None:
+    async def _open_server(self) -> None:
         if not self._server.url:
             await self._server.open()
         if self._server.is_open_to_others:
@@ -293,7 +293,7 @@ class Viewer:
     def _page_closed(self, page: Page) -> None:
         for feature in self._features:
             feature.page_closed(page)
-        self.managers.leave(page)
+        self.managers.on_page_closed(page)
 
     # --- events of managers ------------------------------------------------------------------------------------
 

@@ -36,6 +36,6 @@ class Detections:
         return self.names[int(self.classes[index])]
 
     @classmethod
-    def none(cls, names: tuple[str, ...]) -> Detections:
+    def empty(cls, names: tuple[str, ...]) -> Detections:
         """Return the detections of an image without objects."""
         return cls(np.zeros((0, 4), np.float32), np.zeros(0, np.float32), np.zeros(0, np.int32), names)

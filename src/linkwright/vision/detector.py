@@ -19,13 +19,13 @@ class Limits:
     Attributes:
         threshold: the minimum score.
         iou: the overlap of two boxes of one class above which the less certain one is dropped.
-        most: the maximum number of detections per image.
+        max_detections: the maximum number of detections per image.
         classes: the names of the classes to detect; None for all.
     """
 
     threshold: float = 0.5
     iou: float = 0.5
-    most: int = 300
+    max_detections: int = 300
     classes: frozenset[str] | None = None
 
 

@@ -33,7 +33,7 @@ class GroundTruth:
     classes: NDArray[np.int32]
     ignored: NDArray[np.bool_]
 
-    def where(self, mask: NDArray[np.bool_]) -> GroundTruth:
+    def selected(self, mask: NDArray[np.bool_]) -> GroundTruth:
         """Return the objects that a mask selects."""
         return GroundTruth(self.boxes[mask], self.classes[mask], self.ignored[mask])
 
@@ -147,7 +147,7 @@ def evaluate(names: Sequence[str], truth: Sequence[GroundTruth], predictions: Se
     )
 
 
-def best_f1_threshold(names: Sequence[str], truth: Sequence[GroundTruth], found: Sequence[Detections]) -> float:
+def best_f1_threshold(names: Sequence[str], truth: Sequence[GroundTruth], predictions: Sequence[Detections]) -> float:
     """Return the score threshold at which F1 over all classes is greatest.
 
     The arguments have the meaning that they have in `evaluate`.
@@ -159,10 +159,10 @@ def best_f1_threshold(names: Sequence[str], truth: Sequence[GroundTruth], found:
     scores: list[NDArray[np.float32]] = [np.zeros(0, np.float32)]
     correct: list[NDArray[np.bool_]] = [np.zeros(0, bool)]
     object_count = 0
-    for objects, image_predictions in zip(truth, found, strict=True):
+    for objects, image_predictions in zip(truth, predictions, strict=True):
         detections, counted_objects = (
             _renumber_classes(class_numbers, image_predictions),
-            objects.where(~objects.ignored),
+            objects.selected(~objects.ignored),
         )
         overlaps = intersection_over_union(detections.boxes, counted_objects.boxes) * (
             detections.classes[:, None] == counted_objects.classes[None]
@@ -190,7 +190,7 @@ class _SortedDetections:
     scores: NDArray[np.float32]
     classes: NDArray[np.int32]
 
-    def where(self, mask: NDArray[np.bool_]) -> _SortedDetections:
+    def selected(self, mask: NDArray[np.bool_]) -> _SortedDetections:
         return _SortedDetections(self.boxes[mask], self.scores[mask], self.classes[mask])
 
 
@@ -199,7 +199,7 @@ def _renumber_classes(class_numbers: dict[str, int], detections: Detections) -> 
     order = np.argsort(-detections.scores, kind="stable")
     classes: NDArray[np.int32] = numbers[detections.classes[order]] if len(detections) else np.zeros(0, np.int32)
     sorted_detections = _SortedDetections(detections.boxes[order], detections.scores[order], classes)
-    return sorted_detections.where(classes >= 0)
+    return sorted_detections.selected(classes >= 0)
 
 
 def _average_precisions(
@@ -213,10 +213,10 @@ def _average_precisions(
     correct: list[NDArray[np.bool_]] = []
     wrong: list[NDArray[np.bool_]] = []
     for objects, detections in zip(truth, predictions, strict=True):
-        of_class = detections.where(detections.classes == place)
+        of_class = detections.selected(detections.classes == place)
         boxes = of_class.boxes[:MOST]
         scores.append(of_class.scores[:MOST])
-        objects_of_class = objects.where(objects.classes == place)
+        objects_of_class = objects.selected(objects.classes == place)
         overlaps = intersection_over_union(boxes, objects_of_class.boxes[~objects_of_class.ignored])
         ignored_shares = _ignored_shares(boxes, objects_of_class.boxes[objects_of_class.ignored])
         correct.append(np.stack([_match_objects(overlaps, min_overlap) >= 0 for min_overlap in OVERLAPS]))
@@ -281,9 +281,9 @@ def _confusion_matrix(
 ) -> NDArray[np.int64]:
     table: NDArray[np.int64] = np.zeros((classes + 1, classes + 1), np.int64)
     for objects, detections in zip(truth, predictions, strict=True):
-        certain = detections.where(detections.scores >= _CONFUSION_SCORE)
-        ignored_objects = objects.where(objects.ignored)
-        objects = objects.where(~objects.ignored)
+        certain = detections.selected(detections.scores >= _CONFUSION_SCORE)
+        ignored_objects = objects.selected(objects.ignored)
+        objects = objects.selected(~objects.ignored)
         overlaps = intersection_over_union(certain.boxes, objects.boxes)
         # Match objects of the same class first: a correct detection that overlaps another object, too, is right.
         same_class_overlaps = overlaps * (certain.classes[:, None] == objects.classes[None])
@@ -314,8 +314,8 @@ def _recall_by_size(
     lengths: list[float] = []
     is_found: list[bool] = []
     for objects, detections in zip(truth, predictions, strict=True):
-        certain = detections.where(detections.scores >= _CONFUSION_SCORE)
-        objects = objects.where(~objects.ignored)
+        certain = detections.selected(detections.scores >= _CONFUSION_SCORE)
+        objects = objects.selected(~objects.ignored)
         same_class_overlaps = intersection_over_union(certain.boxes, objects.boxes) * (
             certain.classes[:, None] == objects.classes[None]
         )

@@ -56,7 +56,7 @@ class BackgroundTransport(ABC):
         outside: the tables of remote nodes and endpoints.
         departures: decides whether remote publishers that disappeared were lost.
         logger: logs problems.
-        only_looks: whether the transport only discovers remote nodes and endpoints. The nodes and endpoints of this
+        discovers_only: whether the transport only discovers remote nodes and endpoints. The nodes and endpoints of this
             graph are then not announced, which saves creating them on the network.
         must_join: whether the caller of `join` needs the network, and raises `problem` itself. The problem is then not
             logged.
@@ -69,13 +69,13 @@ class BackgroundTransport(ABC):
         departures: DepartureMonitor,
         logger: Logger,
         *,
-        only_looks: bool = False,
+        discovers_only: bool = False,
         must_join: bool = False,
     ) -> None:
         self.domain_id = domain_id
         self._outside = outside
         self._departed = departures
-        self._only_looks = only_looks
+        self._discovers_only = discovers_only
         self._must_join = must_join
         self._logger = logger
         self._engine: Engine | None = None
@@ -172,7 +172,7 @@ class BackgroundTransport(ABC):
 
     def open_publisher(self, publisher: Publisher[Any]) -> None:
         """Mirror a publisher."""
-        if self._engine is not None and not self._only_looks:
+        if self._engine is not None and not self._discovers_only:
             publisher.hold_for_outside(self.wait_until_ready)
         self._mirror(lambda engine: engine.open_publisher(publisher))
 
@@ -282,7 +282,7 @@ class BackgroundTransport(ABC):
 
     def _mirror(self, work: Callable[[Engine], None]) -> None:
         """Queue work on an endpoint or node of this process, unless the transport only discovers."""
-        if not self._only_looks:
+        if not self._discovers_only:
             self._do(work)
 
     def _do(self, work: Callable[[Engine], None]) -> None:
@@ -354,7 +354,7 @@ AnyTransport = TypeVar("AnyTransport", bound=BackgroundTransport)
 class TransportOptions(TypedDict, total=False):
     """The options with which a transport is created."""
 
-    only_looks: bool
+    discovers_only: bool
     """Whether the graph discovers other processes without announcing itself to them."""
 
     must_join: bool
@@ -398,8 +398,8 @@ def join_with(
         return None
     try:
         settings = read_settings(environment, domain_id=options.get("domain_id"))
-        only_looks, must_join = options.get("only_looks", False), options.get("must_join", False)
-        transport = make_transport(settings, logger, only_looks=only_looks, must_join=must_join)
+        discovers_only, must_join = options.get("discovers_only", False), options.get("must_join", False)
+        transport = make_transport(settings, logger, discovers_only=discovers_only, must_join=must_join)
     except LinkwrightError as error:
         log_join_failure(logger, error)
         return None

@@ -14,7 +14,7 @@ from typing import Any, ClassVar, TypeAlias
 from linkwright.graph.faults import ExternalShutdownException
 from linkwright.graph.log.logger import Logger
 from linkwright.graph.names.rules import NodeIdentity
-from linkwright.wire.living_threads import guarded
+from linkwright.wire.guarded_calls import guarded
 
 _MAX_WORK_S = 0.02
 """Seconds after which the engine interrupts work on endpoints of this process to handle changes outside."""

@@ -16,7 +16,13 @@ from linkwright.diagnostics import Phrase, install_hint, phrase, render
 from linkwright.wire import dds, zenoh
 from linkwright.wire.background import log_no_transport
 from linkwright.wire.switch import is_switched_off
-from linkwright.wire.unfollowed import CYCLONE, MIDDLEWARE, ZENOH, new_unsupported_settings, refuse_enforced_security
+from linkwright.wire.unsupported_settings import (
+    CYCLONE,
+    MIDDLEWARE,
+    ZENOH,
+    new_unsupported_settings,
+    refuse_enforced_security,
+)
 from linkwright.wire.zenoh.joining import is_installed as zenoh_is_installed
 
 if TYPE_CHECKING:

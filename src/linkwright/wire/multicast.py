@@ -12,7 +12,7 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, foreign, p
 
 GROUP = "225.0.0.1"
 PORT = 49150
-LARGEST = 4096
+MAX_DATAGRAM_BYTES = 4096
 """The maximum number of bytes of a datagram that are read."""
 
 

@@ -54,7 +54,7 @@ class CommentSweeper:
             followed: whether other nodes follow the tag.
 
         Returns:
-            Whether the caller must call `mark` after expanding the tag.
+            Whether the caller must call `move_marker` after expanding the tag.
         """
         index = len(siblings) - 1
         while index >= 0:
@@ -68,7 +68,7 @@ class CommentSweeper:
                 return followed
         return False
 
-    def mark(self, siblings: list[Node]) -> None:
+    def move_marker(self, siblings: list[Node]) -> None:
         """Move the marker to the end of a list of siblings."""
         marked_siblings = self._marker_siblings
         if marked_siblings is not None:
@@ -368,7 +368,7 @@ class Expander:
         """Remove the comments above a tag that produces no output."""
         output = site.parent.children
         if self.sweeper.sweep(output, followed=site.has_followers):
-            self.sweeper.mark(output)
+            self.sweeper.move_marker(output)
 
     def splice(self, container: Element, site: Site) -> None:
         """Replace a tag with the content of a container.
@@ -456,9 +456,9 @@ class Expander:
         Raises:
             LinkwrightError: if there are too many errors, or if this error ends every walk.
         """
-        self.keep(self._diagnostic(fault))
+        self.record_error(self._diagnostic(fault))
 
-    def keep(self, diagnostic: Diagnostic) -> None:
+    def record_error(self, diagnostic: Diagnostic) -> None:
         """Record the diagnostic of an error after which the walk can continue.
 
         Raises:

@@ -158,15 +158,15 @@ class Fault(Exception):  # noqa: N818 - it becomes a diagnostic, and is not part
         """
         start = None if self.start is None else self.start + shift
         end = None if self.end is None else self.end + shift
-        self._place(element.source, attribute_span(element, name, start, end))
+        self._add_location(element.source, attribute_span(element, name, start, end))
 
     def place_in_text(self, text: Text) -> None:
         """Set the location to character data, or add a note if the location is already set."""
-        self._place(text.source, text_part(text, self.start, self.end))
+        self._add_location(text.source, text_part(text, self.start, self.end))
 
     def place_at(self, element: Element) -> None:
         """Set the location to an element, for an evaluated text without a source."""
-        self._place(element.source, element.span())
+        self._add_location(element.source, element.span())
 
     def elsewhere(self) -> InactiveDefinition | None:
         """Return a definition of the missing property that is not in effect here, or None.
@@ -186,7 +186,7 @@ class Fault(Exception):  # noqa: N818 - it becomes a diagnostic, and is not part
             return unprefixed
         return definition
 
-    def _place(self, source: SourceText | None, span: Span | None) -> None:
+    def _add_location(self, source: SourceText | None, span: Span | None) -> None:
         if self.span is None:
             self.source, self.span = source, span
         elif span is not None:

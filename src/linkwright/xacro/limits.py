@@ -92,7 +92,16 @@ class Budget:
             and raises `too_many_elements` if it becomes negative.
     """
 
-    __slots__ = ("_call_depth", "_characters", "_ends", "_limits", "_look_at", "_macros", "_steps", "elements")
+    __slots__ = (
+        "_call_depth",
+        "_characters",
+        "_clock_check_at",
+        "_end_time",
+        "_limits",
+        "_macros",
+        "_steps",
+        "elements",
+    )
 
     def __init__(self, limits: Limits) -> None:
         self._limits = limits
@@ -101,8 +110,8 @@ class Budget:
         self._characters = limits.characters
         self._call_depth = 0
         self._macros = 0
-        self._look_at = limits.steps  # the number of remaining steps at which the clock is read next
-        self._ends = thread_time() + limits.seconds
+        self._clock_check_at = limits.steps  # the number of remaining steps at which the clock is read next
+        self._end_time = thread_time() + limits.seconds
 
     def too_many_elements(self) -> Fault:
         """Return the error for an expansion that exceeds the element limit (XAC602)."""
@@ -146,13 +155,13 @@ class Budget:
             Fault: XAC603 if there were too many steps, or XAC606 if the expansion took too long.
         """
         self._steps -= count
-        if self._steps < self._look_at:
+        if self._steps < self._clock_check_at:
             if self._steps < 0:
                 message = phrase("the expressions take more than {steps:,} steps", steps=self._limits.steps)
                 raise Fault(
                     "XAC603", message, hint=phrase("look for a comprehension or function over a long list or range")
                 )
-            self._look_at = max(0, self._steps - _STEPS_PER_CLOCK_CHECK)
+            self._clock_check_at = max(0, self._steps - _STEPS_PER_CLOCK_CHECK)
             self._check_clock()
 
     def enter_lambda(self) -> None:
@@ -172,6 +181,6 @@ class Budget:
         self._call_depth -= 1
 
     def _check_clock(self) -> None:
-        if thread_time() > self._ends:
+        if thread_time() > self._end_time:
             message = phrase("the expansion takes more than {seconds:g} seconds", seconds=self._limits.seconds)
             raise Fault("XAC606", message, hint=phrase("look for macros or comprehensions that multiply"))

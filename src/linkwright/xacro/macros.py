@@ -105,16 +105,16 @@ class Macro:
     Attributes:
         name: the name of the macro.
         parameters: the parameters, in the order of their declaration.
-        known: the names of the parameters.
+        parameter_names: the names of the parameters.
         body: the element that contains the body.
     """
 
-    __slots__ = ("body", "known", "name", "parameters")
+    __slots__ = ("body", "name", "parameter_names", "parameters")
 
     def __init__(self, name: str, parameters: tuple[Parameter, ...], body: Element) -> None:
         self.name = name
         self.parameters = parameters
-        self.known = frozenset(parameter.name for parameter in parameters)
+        self.parameter_names = frozenset(parameter.name for parameter in parameters)
         self.body = body
 
 

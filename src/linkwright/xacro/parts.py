@@ -129,7 +129,7 @@ class _PartsExpander(Expander):
         self._failures += 1
         diagnostic = self._diagnostic(fault)
         if self.trusted or diagnostic.code in _SELF_CONTAINED_CODES or is_final(diagnostic):
-            self.keep(diagnostic)
+            self.record_error(diagnostic)
 
     def _text(self, node: Text, scope: Scope) -> Text:
         failures_before = self._failures
@@ -163,7 +163,7 @@ class _PartsExpander(Expander):
             if self._may_define_names(site.node):
                 self._stop_trusting()
             for diagnostic in reported_diagnostics:
-                self.keep(diagnostic)
+                self.record_error(diagnostic)
 
         return expand
 

@@ -25,7 +25,7 @@ from linkwright.xacro.expressions.expression import compile_expression
 from linkwright.xacro.expressions.sandbox import Module
 from linkwright.xacro.expressions.scope import Namespace, Scope
 from linkwright.xacro.expressions.template import compile_template, package_fault, templates
-from linkwright.xacro.expressions.yamldata import YamlDict, YamlError
+from linkwright.xacro.expressions.yaml_data import YamlDict, YamlError
 from linkwright.xacro.faults import Fault, Frame, attribute_span, text_part, trail, xml_hint
 from linkwright.xacro.limits import Budget, Limits
 from linkwright.xacro.plan import plan_document
@@ -263,7 +263,7 @@ class Session:
         Raises:
             Fault: XAC506 if the file cannot be read or is not YAML.
         """
-        from linkwright.xacro.expressions import yamldata
+        from linkwright.xacro.expressions import yaml_data
 
         path = self.absolute(name)
         self.depends_on(path)
@@ -278,7 +278,7 @@ class Session:
             )
             raise fault from None
         try:
-            return yamldata.load(text, self._unit_value)
+            return yaml_data.load(text, self._unit_value)
         except YamlError as error:
             raise _yaml_fault(path, text, error) from None
         finally:

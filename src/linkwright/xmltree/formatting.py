@@ -131,7 +131,7 @@ def _nodes(text: str) -> list[_Node]:
             continue
         node = _Node(token)
         (parents[-1].children if parents else top_nodes).append(node)
-        if token.kind is Kind.START and not token.is_whole:
+        if token.kind is Kind.START and not token.is_empty_element:
             parents.append(node)
     return top_nodes
 
@@ -274,7 +274,7 @@ class _Layout:
         return f"<{tag.name}{written}{self._ending(tag)}"
 
     def _ending(self, tag: Token) -> str:
-        return self._empty_tag_end if tag.is_whole else ">"
+        return self._empty_tag_end if tag.is_empty_element else ">"
 
     @staticmethod
     def _rows(tag: Token, attributes: Sequence[TokenAttribute]) -> list[list[TokenAttribute]]:

@@ -36,13 +36,13 @@ class StartTag:
         start: the character offset of the tag's ``<``.
         insertion_offset: the character offset after the last attribute, where another attribute can be inserted.
         end: the character offset after the tag's ``>``.
-        is_whole: whether the tag is an empty-element tag, ``<a/>``.
+        is_empty_element: whether the tag is an empty-element tag, ``<a/>``.
     """
 
     start: int
     insertion_offset: int
     end: int
-    is_whole: bool
+    is_empty_element: bool
 
 
 def apply(text: str, edits: Iterable[Replacement]) -> str:
@@ -99,7 +99,7 @@ def element_range(element: Element) -> tuple[int, int] | None:
     if element.source is None or tag is None:
         return None
     text, end = element.source.text, tag.end
-    depth = 0 if tag.is_whole else 1
+    depth = 0 if tag.is_empty_element else 1
     while depth:
         markup = _MARKUP.search(text, end)
         if markup is None:
@@ -174,7 +174,7 @@ def insertion(
         if child_indent.startswith(owner_indent) and child_indent != owner_indent
         else _INDENT
     )
-    if tag.is_whole:
+    if tag.is_empty_element:
         lines = newline.join(child_indent + block(element, child_indent, step, newline) for element in new_elements)
         return Replacement(tag.insertion_offset, end, f">{newline}{lines}{newline}{owner_indent}</{owner.tag}>")
     after_range = element_range(after) if after is not None else None

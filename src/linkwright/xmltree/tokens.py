@@ -93,7 +93,7 @@ class Token(NamedTuple):
         return self.start + len(self.text)
 
     @property
-    def is_whole(self) -> bool:
+    def is_empty_element(self) -> bool:
         """Whether the token is an empty element, such as ``<a/>``."""
         return self.kind is Kind.START and self.text.endswith("/>")
 

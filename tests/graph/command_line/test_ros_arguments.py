@@ -16,12 +16,12 @@ def test_ros_arguments_are_told_from_others(tmp_path):
         *("--ros-args", "-r", "c:=d"),
     ]
     ros = parse(words)
-    assert ros.others == ["robot.urdf", "-r", "last"]
+    assert ros.non_ros_arguments == ["robot.urdf", "-r", "last"]
     assert ros.remappings_for("node") == [("a", "b"), ("__ns", "/x"), ("c", "d")]
     assert ros.parameters_for("/node") == {"delta": 0.5, "s": ["a", "b"], "rate": 30, "zeros.a": 1.0}
     assert ros.parameters_for("/x/node") == {"delta": 0.5, "s": ["a", "b"]}
     assert (ros.log_level, ros.log_levels) == (None, {"node": LogLevel.DEBUG})
-    assert remove_ros_arguments(words) == ros.others
+    assert remove_ros_arguments(words) == ros.non_ros_arguments
 
 
 def test_rules_may_be_for_one_node():

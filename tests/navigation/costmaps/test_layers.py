@@ -106,7 +106,7 @@ def test_a_part_that_is_updated_is_as_if_all_of_it_were():
     eye = Eye(layers=[InflationLayer(Inflation(inflation_radius=0.5))])
     eye.see((2.55, 3.05), (1.05, 2.05))
     parts = eye.see((2.55, 3.05)).copy()
-    eye.costmap.touch()
+    eye.costmap.invalidate()
     assert np.array_equal(parts, eye.update())
 
 
@@ -148,7 +148,7 @@ def test_rays_clear_no_more_than_they_pass():
 def test_what_is_too_far_is_not_marked_and_not_cleared():
     eye = Eye(obstacle_max_range=1.0, raytrace_max_range=0.5)
     eye.layer.layer_grid.cells[:] = LETHAL
-    eye.costmap.touch()
+    eye.costmap.invalidate()
     cells = eye.see((3.55, 2.05))
     assert np.flatnonzero(cells[20] == FREE).tolist() == [20, 21, 22, 23, 24, 25]
     eye = Eye(obstacle_max_range=1.0)
@@ -165,7 +165,7 @@ def test_what_is_too_near_is_not_marked_and_not_cleared():
 def test_points_at_heights_that_do_not_count_neither_mark_nor_clear():
     eye = Eye(max_obstacle_height=1.0)
     eye.layer.layer_grid.cells[20, 22] = LETHAL
-    eye.costmap.touch()
+    eye.costmap.invalidate()
     cells = eye.see((2.55, 2.05, 1.5), (np.nan, 2.05, 0.2))
     assert np.argwhere(cells).tolist() == [[20, 22]]
 
@@ -184,7 +184,7 @@ def test_points_count_as_long_as_they_persist():
     eye.layer.layer_grid.cells[:] = FREE
     assert eye.update()[20, [25, 30]].tolist() == [LETHAL, LETHAL]
     eye.layer.layer_grid.cells[:] = FREE
-    eye.costmap.touch()
+    eye.costmap.invalidate()
     assert eye.see()[20, [25, 30]].tolist() == [FREE, LETHAL]
 
 

@@ -67,19 +67,19 @@ def test_likelihoods_are_those_of_the_formula() -> None:
 def test_beams_that_met_nothing_say_nothing_and_those_that_leave_the_map_are_far() -> None:
     beams = Beams((0.0, 0.0), np.array([[12.0, 0.0]]), np.array([12.0]), 12.0)
     assert room().likelihoods("likelihood_field", np.array([[2.0, 2.0, 0.0]]), beams).tolist() == [1.0]
-    assert room().fit((2.0, 2.0, 0.0), beams) is None
-    assert room().fit((500.0, -300.0, 0.0), beams_in_room(2.0, 2.0, 0.0)) == 0.0
-    assert room().fit((2.0, 2.0, 0.0), beams_in_room(2.0, 2.0, 0.0)) == 1.0
+    assert room().matching_share((2.0, 2.0, 0.0), beams) is None
+    assert room().matching_share((500.0, -300.0, 0.0), beams_in_room(2.0, 2.0, 0.0)) == 0.0
+    assert room().matching_share((2.0, 2.0, 0.0), beams_in_room(2.0, 2.0, 0.0)) == 1.0
 
 
 def test_beams_that_few_particles_explain_are_skipped() -> None:
     beams = beams_in_room(2.0, 1.5, 0.0)
-    beams.ends[:6] *= 0.4  # somebody stands there
+    beams.end_points[:6] *= 0.4  # somebody stands there
     poses = np.array([(2.0, 1.5, 0.0), (2.1, 1.5, 0.0), (1.4, 1.5, 0.0)])
     likelihoods = room()
     plain = likelihoods.likelihoods("likelihood_field_prob", poses, beams)
     skipped = likelihoods.likelihoods("likelihood_field_prob", poses, beams, BeamSkipping())
-    without = Beams((0.0, 0.0), beams.ends[6:], beams.ranges[6:], 12.0)
+    without = Beams((0.0, 0.0), beams.end_points[6:], beams.ranges[6:], 12.0)
     assert skipped == pytest.approx(likelihoods.likelihoods("likelihood_field_prob", poses, without), rel=1e-5)
     assert plain[2] > 1.5 * skipped[2]
 
@@ -103,14 +103,14 @@ def _scan(ranges: list[float]) -> object:
 def test_beams_are_those_of_the_scan_in_the_frame_of_the_robot() -> None:
     pose: Transform = (0.5, 0.0, 0.3, *quaternion_from_rpy((0.0, 0.0, pi / 2)))
     beams = beams_of_scan(_scan([1.0, 2.0, 3.0]), pose, 60)
-    assert beams.ends == pytest.approx(np.array([[1.5, 0.0], [0.5, 2.0], [-2.5, 0.0]]))
+    assert beams.end_points == pytest.approx(np.array([[1.5, 0.0], [0.5, 2.0], [-2.5, 0.0]]))
     assert beams.angles == pytest.approx([0.0, pi / 2, pi])
 
 
 def test_a_laser_that_hangs_upside_down_sees_the_other_way_round() -> None:
     upside_down: Transform = (0.0, 0.0, 0.3, *quaternion_from_rpy((pi, 0.0, 0.0)))
     beams = beams_of_scan(_scan([1.0, 2.0, 3.0]), upside_down, 60)
-    assert beams.ends == pytest.approx(np.array([[0.0, 1.0], [2.0, 0.0], [0.0, -3.0]]), abs=1e-12)
+    assert beams.end_points == pytest.approx(np.array([[0.0, 1.0], [2.0, 0.0], [0.0, -3.0]]), abs=1e-12)
 
 
 def test_beams_that_are_none_or_too_short_or_too_long() -> None:

@@ -130,7 +130,7 @@ def test_the_format_is_known_by_the_ending(name, known):
 async def test_what_else_is_shown_goes_along():
     """Markers and the like, as they are now."""
     config = RvizConfig.for_model("base")
-    config.insert(config.make("rviz_default_plugins/Marker", "Marker"))
+    config.insert(config.new_display("rviz_default_plugins/Marker", "Marker"))
     async with world(config) as w:
         w.describe(ARM)
         w.move_arm()

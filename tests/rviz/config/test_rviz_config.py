@@ -235,7 +235,7 @@ def test_line_ends_and_the_byte_order_mark_survive_an_edit(tmp_path):
 def test_a_configuration_without_displays_is_one(tmp_path):
     config = RvizConfig.parse("Panels: []\n")
     assert (config.displays, config.text()) == ([], "Panels: []\n")
-    config.insert(config.make("rviz_default_plugins/Grid", "Grid"))
+    config.insert(config.new_display("rviz_default_plugins/Grid", "Grid"))
     assert yaml.safe_load(config.text()) == {
         "Panels": [],
         "Visualization Manager": {
@@ -283,7 +283,7 @@ def test_displays_come_go_and_move():
 def test_a_first_display_that_is_taken_back_leaves_the_file_as_it_was(text):
     config = RvizConfig.parse(text)
     before, count = config.arrangement(), len(list(config.walk()))
-    config.insert(config.make("rviz_default_plugins/Axes", "Axes"), config.displays[0] if count else None)
+    config.insert(config.new_display("rviz_default_plugins/Axes", "Axes"), config.displays[0] if count else None)
     after, changed = config.arrangement(), config.text()
     assert len(list(RvizConfig.parse(changed).walk())) == count + 1
     for _ in range(2):

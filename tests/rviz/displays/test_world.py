@@ -148,7 +148,7 @@ async def test_a_world_without_transforms_is_at_its_own_frame_and_nothing_warns(
         await opened.until("display_status", display="global", level="ok")
         assert made.status("World")["Frame"] == ("ok", "The world is placed at the frame 'world'")
         made.move({("odom", "base"): (3, 0, 0.5, *IDENTITY[3:])})
-        own = made.viewer.context.transforms.own
+        own = made.viewer.context.transforms.placed_frame
         await eventually(lambda: (frame := own("world")) is not None and frame.parent == "odom")
 
 
@@ -164,16 +164,16 @@ async def test_with_the_fixed_frame_world_the_frames_of_tf_are_placed_in_the_wor
         text = "tf has no frame 'world': the frames of tf are placed so that 'base' has the same pose in both"
         await eventually(lambda: made.status("World")["Frame"] == ("ok", text))
         transforms = made.viewer.context.transforms
-        await eventually(lambda: transforms.own("world").parent == "odom")
+        await eventually(lambda: transforms.placed_frame("world").parent == "odom")
         assert transforms.pose("world", "base", 0) == pytest.approx([1, 2, 0.5, 0, 0, 0, 1])
         assert transforms.pose("world", "odom", 0) == pytest.approx([-2, 2, 0, 0, 0, 0, 1])
-        frame, known = transforms.known("world", IDENTITY)
+        frame, known = transforms.in_known_frame("world", IDENTITY)
         assert (frame, known) == ("odom", pytest.approx([2, -2, 0, 0, 0, 0, 1]))
         await eventually(lambda: "base" in made.viewer.manager.frames.placed)
 
         made.move({("map", "world"): IDENTITY}, static=True)
         await eventually(lambda: made.status("World")["Frame"] == ("ok", "The world is placed at the frame 'world'"))
-        assert transforms.own("world") is None
+        assert transforms.placed_frame("world") is None
 
 
 async def test_a_frame_world_of_tf_is_the_world():

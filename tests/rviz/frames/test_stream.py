@@ -161,7 +161,7 @@ async def test_the_fixed_frame_may_be_one_that_a_display_places(rig):
     rig.move(1.0)
     await rig.settle()
     assert rig.said[-1].placed == {"world"}
-    rig.history.place("display", PlacedFrame("world", "base", np.array([0.0, 2.0, *IDENTITY[2:]])))
+    rig.history.set_placed_frame("display", PlacedFrame("world", "base", np.array([0.0, 2.0, *IDENTITY[2:]])))
     await asyncio.sleep(0.1)
     assert rig.pose("tip") == [1, 2, 0, 0, 0, 0, 1]
     assert rig.said[-1].placed == {"world", "base", "tip"}

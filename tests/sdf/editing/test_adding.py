@@ -83,7 +83,7 @@ def test_a_model_is_included_by_its_address_with_a_free_name(tmp_path):
     assert name == "box_2"
     lines = ("<uri>model://crate</uri>", "<name>box_2</name>", "<pose>1 2 3 0 0 0.5</pose>")
     assert "    <include>\n      " + "\n      ".join(lines) + "\n    </include>\n" in text.text
-    assert text.entities[name].place[:3] == (1, 2, 3)
+    assert text.entities[name].world_pose[:3] == (1, 2, 3)
     text, name = add_include(text, "model://sun", POSE)
     assert (name, text.entities[name].kind) == ("sun", "light")
     with pytest.raises(EditError, match="there is no model 'nothing' on the search path"):

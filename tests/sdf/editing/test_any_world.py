@@ -63,9 +63,9 @@ def test_what_is_moved_is_there_and_all_else_where_it_was(text, pose, name):
         f"<sdf version='1.9'><world name='w'><model name='m'><pose>{' '.join(map(length, pose))}</pose>"
         "<link name='l'/></model></world></sdf>"
     )
-    assert close(after.entities[name].place, wanted.entities["m"].place, 1e-5)
+    assert close(after.entities[name].world_pose, wanted.entities["m"].world_pose, 1e-5)
     for other in {"a", "b&c", "d"} - {name}:
-        assert after.entities[other].place == before.entities[other].place
+        assert after.entities[other].world_pose == before.entities[other].world_pose
     element = before.entities[name].element
     start = element.offset
     behind = len(text) - text.index("</model>", start)
@@ -96,9 +96,9 @@ def test_copies_deleted_give_the_same_text(text, offset):
     copied, names = copy(before, ["a", "b&c", "d"], offset)
     assert names == ["a_2", "b&c_2", "d_2"]
     for name, new in zip(["a", "b&c", "d"], names, strict=True):
-        there = before.entities[name].place
+        there = before.entities[name].world_pose
         moved = (*(a + b for a, b in zip(there[:3], offset, strict=True)), *there[3:])
-        assert close(copied.entities[new].place, moved, 1e-5)
+        assert close(copied.entities[new].world_pose, moved, 1e-5)
         assert before.entities[name].element.text() == copied.entities[name].element.text()
     assert "".join(delete(copied, names).text.split()) == "".join(text.split())
 

@@ -31,7 +31,7 @@ def test_what_stands_in_a_world_is_told():
     assert things["box"].shape.kind == "box"
     assert things["box"].shape.size == (0.5, 0.5, 0.5)
     assert things["box"].shape.colour == (0.9, 0.4, 0.1, 1.0)
-    assert things["lamp"].place[:3] == (0, 0, 3)
+    assert things["lamp"].world_pose[:3] == (0, 0, 3)
 
 
 def test_of_a_pose_only_the_numbers_change_that_are_others():
@@ -69,7 +69,7 @@ def test_a_pose_keeps_its_form(written, result):
     text = inside(f'<model name="m">{written}<link name="l"/></model>')
     moved = change(text, [Change("m", pose=(4, 2, 3, 0, 0, pi / 4))])
     assert result in moved.text
-    place = moved.entities["m"].place
+    place = moved.entities["m"].world_pose
     assert (*place[:3], *rotate(place[3:], (1, 0, 0))) == pytest.approx((4, 2, 3, cos(pi / 4), sin(pi / 4), 0))
 
 
@@ -88,11 +88,11 @@ def test_a_thing_ends_where_it_shall_in_whatever_frame_its_pose_is():
     }
     moved = change(text, [Change(name, pose=pose) for name, pose in wanted.items()])
     for name, pose in wanted.items():
-        assert moved.entities[name].place[:3] == pytest.approx(pose[:3], abs=1e-8)
+        assert moved.entities[name].world_pose[:3] == pytest.approx(pose[:3], abs=1e-8)
     assert moved.text.count("relative_to") == 3
     again = change(moved, [Change(name, pose=pose) for name, pose in wanted.items()])
     for name, thing in again.entities.items():
-        assert thing.place == pytest.approx(moved.entities[name].place, abs=1e-8)
+        assert thing.world_pose == pytest.approx(moved.entities[name].world_pose, abs=1e-8)
 
 
 def test_a_frame_that_is_not_there_is_told():
@@ -192,8 +192,8 @@ def test_an_include_has_its_name_and_all_else_as_it_is_written():
 def test_copies_have_free_names_and_stand_beside():
     text, names = copy(world_text(PLAIN), ["box", "lamp", "ground_plane"], (1, 0, 0))
     assert names == ["box_2", "lamp_2", "ground_plane_2"]
-    assert text.entities["box_2"].place == pytest.approx((3, 0, 0.25, 0, 0, 0, 1))
-    assert text.entities["lamp_2"].place[:3] == (1, 0, 3)
+    assert text.entities["box_2"].world_pose == pytest.approx((3, 0, 0.25, 0, 0, 0, 1))
+    assert text.entities["lamp_2"].world_pose[:3] == (1, 0, 3)
     assert BOX.replace("'box'", "'box_2'").replace(">2 0 0.250", ">3 0 0.250") in text.text
     again, names = copy(text, ["box_2", "box"], (0, 1, 0))
     assert names == ["box_3", "box_4"]

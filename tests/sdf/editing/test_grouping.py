@@ -20,7 +20,7 @@ def links(world: WorldText) -> dict[str, tuple[float, ...]]:
 def test_a_group_is_a_model_of_models_that_stand_where_they_stood():
     before = world_text(TWO)
     after = group(before, ["crate", "box"], "pile")
-    assert after.entities["pile"].parts == ("box", "crate")
+    assert after.entities["pile"].member_names == ("box", "crate")
     assert list(after.entities) == ["ground_plane", "pile", "lamp"]
     assert "    <model name=\"pile\">\n      <pose>3 0.5 0.25 0 0 0</pose>\n      <model name='box'>" in after.text
     assert "    <!-- between -->\n" in after.text
@@ -75,7 +75,7 @@ def test_included_models_can_be_grouped_and_static_ones_are_static():
     text, wall = add_shape(text, "wall", (1, 0, 0.5, 0, 0, 0))
     grouped = group(text, ["ground_plane", wall], "floor")
     assert grouped.entities["floor"].static
-    assert grouped.entities["floor"].parts == ("wall", "ground_plane")
+    assert grouped.entities["floor"].member_names == ("wall", "ground_plane")
     apart, names = ungroup(grouped, "floor")
     assert sorted(names) == ["ground_plane", "wall"]
     assert all(apart.entities[name].static for name in names)

@@ -32,25 +32,25 @@ def links(world):
 
 def test_things_are_where_the_state_says():
     assert list(SAVED.entities) == ["m", "n", "lamp", "new"]
-    assert SAVED.entities["m"].place[:3] == (1, 0, 0)
-    assert SAVED.entities["lamp"].place[:3] == (0, 0, 3)
+    assert SAVED.entities["m"].world_pose[:3] == (1, 0, 0)
+    assert SAVED.entities["lamp"].world_pose[:3] == (0, 0, 3)
 
 
 def test_what_is_moved_is_moved_in_both_places_with_its_links():
     moved = change(
         SAVED, [Change("m", pose=(1, 1, 0, 0, 0, 1.5707963267948966)), Change("lamp", pose=(0, 0, 5, 0, 0, 0))]
     )
-    assert moved.entities["m"].place[:3] == (1, 1, 0)
-    assert moved.entities["lamp"].place[:3] == (0, 0, 5)
+    assert moved.entities["m"].world_pose[:3] == (1, 1, 0)
+    assert moved.entities["lamp"].world_pose[:3] == (0, 0, 5)
     assert links(moved)["m::b"][:3] == pytest.approx((1, 2, 0))
     assert '<model name="m"><pose>1 1 0 0 0 1.570796327</pose>' in moved.text
     assert "<pose>1 1 0 0 -0 1.570796327</pose>\n" in moved.text
     inserted = change(SAVED, [Change("new", pose=(0, 3, 0, 0, 0, 0))])
-    assert inserted.entities["new"].place[:3] == (0, 3, 0)
+    assert inserted.entities["new"].world_pose[:3] == (0, 3, 0)
 
 
 def test_names_change_and_go_in_the_state_too():
-    assert change(SAVED, [Change("m", new_name="k")]).entities["k"].place[:3] == (1, 0, 0)
+    assert change(SAVED, [Change("m", new_name="k")]).entities["k"].world_pose[:3] == (1, 0, 0)
     gone = delete(SAVED, ["m", "lamp", "new"])
     assert list(gone.entities) == ["n"]
     assert gone.state.first("model").attributes == {"name": "n"}
@@ -61,12 +61,12 @@ def test_new_things_have_no_name_that_the_state_deletes():
     text = SAVED.text.replace("<name>old</name>", "<name>box</name>")
     world, name = add_shape(SAVED.with_text(text), "box", (0, 0, 1, 0, 0, 0))
     assert name == "box_2"
-    assert world.entities["box_2"].place[:3] == (0, 0, 1)
+    assert world.entities["box_2"].world_pose[:3] == (0, 0, 1)
 
 
 def test_copies_and_groups_begin_where_the_state_had_them():
     copied, names = copy(SAVED, ["n"], (0, 1, 0))
-    assert copied.entities[names[0]].place[:3] == (5, 1, 0)
+    assert copied.entities[names[0]].world_pose[:3] == (5, 1, 0)
     grouped = group(SAVED, ["m", "n"], "g")
     assert links(grouped)["g::n::a"][:3] == (5, 0, 0)
     assert links(grouped)["g::m::a"][:3] == (1, 0, 0)

@@ -101,7 +101,7 @@ def test_a_world_that_xacro_makes_is_saved_as_what_came_of_it(tmp_path):
     world.save("made.world")
     assert world.file == tmp_path / "made.world"
     assert "${" in path.read_text()
-    assert EditedWorld.of_file(world.file, NOWHERE).world.entities["机器人 é"].place[0] == 2
+    assert EditedWorld.of_file(world.file, NOWHERE).world.entities["机器人 é"].world_pose[0] == 2
 
 
 def test_worlds_that_come_with_the_program_are_not_written(tmp_path):

@@ -63,7 +63,10 @@ def test_lights_and_background_of_the_world_are_kept_where_that_is_asked_for(tmp
     made = {}
     for kept in ((), ("lights",)):
         source = Source(
-            (str(path),), (), None, replace(OPTIONS, distractors=0, form="png", kept=("colours", "lens", *kept))
+            (str(path),),
+            (),
+            None,
+            replace(OPTIONS, distractors=0, form="png", fixed_properties=("colours", "lens", *kept)),
         )
         studio = Studio(source)
         try:
@@ -133,7 +136,7 @@ def test_a_image_does_not_depend_on_those_before(source, monkeypatch, way):
     first, second = Studio(source), Studio(source)
     try:
         if way != "OpenGL":
-            assert f"ray casting with {way}," in str(first.way)
+            assert f"ray casting with {way}," in str(first.render_method)
         for number in (0, 49, 3, 51):
             first.make(number)
         assert first.make(52) == second.make(52)

@@ -38,7 +38,7 @@ def shots(stage, count):
 
 def labelled(stage, shot):
     geoms = stage.renderer.render(shot.optics, shot.pose, Channels.GEOMS).geoms
-    return label_image(stage, shot, geoms, OPTIONS.least_size, OPTIONS.least_visible), geoms
+    return label_image(stage, shot, geoms, OPTIONS.min_size, OPTIONS.min_visible), geoms
 
 
 def alone(shot, prop):
@@ -66,9 +66,9 @@ def test_whole_boxes_of_balls_are_those_of_their_outlines(stage):
     compared = 0
     for shot in shots(stage, 12):
         labels, _ = labelled(stage, shot)
-        seen = {label.whole: label for label in labels}
+        seen = {label.full_box: label for label in labels}
         axes = axes_of(shot.pose)
-        for prop in (each for each in shot.shown if each.label == 0):
+        for prop in (each for each in shot.placed_props if each.label == 0):
             center = (stage.simulation.data.geom_xpos[prop.geoms[0]] - np.array(shot.pose[:3])) @ axes
             if center[2] < 0.5:
                 continue
@@ -108,7 +108,7 @@ def test_labels_are_those_of_another_renderer(stage):
     for shot in shots(stage, 8):
         labels, _ = labelled(stage, shot)
         geoms = other.render(shot.optics, shot.pose, Channels.GEOMS).geoms
-        boxes = [box_of(np.isin(geoms, prop.geoms)) for prop in shot.shown]
+        boxes = [box_of(np.isin(geoms, prop.geoms)) for prop in shot.placed_props]
         for label in labels:
             if min(label.box[2] - label.box[0], label.box[3] - label.box[1]) >= 4:
                 assert min(np.abs(np.array(box) - label.box).max() for box in boxes if box is not None) <= 1
@@ -123,22 +123,27 @@ def test_visible_and_whole_fit_together(stage):
             left, top, right, bottom = label.box
             assert mask_of(label.counts, *geoms.shape).sum() == label.area
             assert box_of(mask_of(label.counts, *geoms.shape)) == label.box
-            assert label.whole[0] <= left
-            assert label.whole[1] <= top
-            assert label.whole[2] >= right
-            assert label.whole[3] >= bottom
+            assert label.full_box[0] <= left
+            assert label.full_box[1] <= top
+            assert label.full_box[2] >= right
+            assert label.full_box[3] >= bottom
             assert 0.0 < label.visibility <= 1.0
-            inside = label.whole[0] >= 0 and label.whole[1] >= 0 and label.whole[2] <= 320 and label.whole[3] <= 240
+            inside = (
+                label.full_box[0] >= 0
+                and label.full_box[1] >= 0
+                and label.full_box[2] <= 320
+                and label.full_box[3] <= 240
+            )
             assert label.truncated != inside
 
 
 def test_what_nothing_hides_is_visible(stage):
     for shot in shots(stage, 4):
-        for prop in shot.shown:
+        for prop in shot.placed_props:
             for geoms in stage.structures.values():
                 stage.hide(geoms)
             stage.hide(stage.distractors)
-            for other in shot.shown:
+            for other in shot.placed_props:
                 if other is not prop:
                     stage.hide(other.geoms)
             labels, _ = labelled(stage, alone(shot, prop))
@@ -150,7 +155,7 @@ def test_things_do_not_reach_into_each_other(stage):
     for shot in shots(stage, 12):
         places = [
             (stage.simulation.data.geom_xpos[prop.geoms, :2].mean(axis=0), prop.radius)
-            for prop in shot.shown
+            for prop in shot.placed_props
             if prop.label == 0
         ]
         for number, (place, _) in enumerate(places):
@@ -166,7 +171,7 @@ def test_a_sign_counts_where_its_plate_is_seen(tmp_path, height, focal, ignored)
     stage = Stage(simulation, find_objects(simulation, default_rules([simulation])), 1, 0)
     try:
         stage.set_patterns(np.random.default_rng(0))
-        stage.put(stage.props[0], np.zeros(3), np.eye(3))
+        stage.place_prop(stage.props[0], np.zeros(3), np.eye(3))
         optics = Optics(320, 240, focal, focal, 160, 120, 0.03, 30.0)
         shot = Shot(optics, (-2.0, 0.0, height, 0.0, 0.0, 0.0, 1.0), (stage.props[0],), ())
         geoms = stage.renderer.render(shot.optics, shot.pose, Channels.GEOMS).geoms
@@ -192,7 +197,7 @@ def test_few_things_are_put_behind_walls(stage):
     """The wall of the yard is 6 m long, 3 m ahead of its middle."""
     behind = objects = 0
     for shot in shots(stage, 40):
-        for prop in shot.shown:
+        for prop in shot.placed_props:
             there = stage.simulation.data.geom_xpos[prop.geoms, :2].mean(axis=0)
             here = np.array(shot.pose[:2])
             objects += 1

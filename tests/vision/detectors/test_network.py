@@ -172,7 +172,7 @@ def test_only_classes_that_are_wanted_and_no_more_than_that(tmp_path, image):
     detector = opened(path)
     found = detector.detect(image, Limits(0.6, 0.45, classes=frozenset({"cat"})))
     assert {found.name(index) for index in range(len(found))} == {"cat"}
-    assert len(detector.detect(image, Limits(0.6, 0.45, most=2))) == 2
+    assert len(detector.detect(image, Limits(0.6, 0.45, max_detections=2))) == 2
     assert len(detector.detect(image, Limits(0.9999))) == 0
 
 

@@ -12,7 +12,7 @@ from linkwright.diagnostics import LinkwrightError
 from linkwright.images.colour_words import PAINTS
 from linkwright.vision.detections import Detections
 from linkwright.vision.detector import Limits
-from linkwright.vision.detectors.drawing import colour_of, drawn
+from linkwright.vision.detectors.drawing import colour_of, draw_detections
 from linkwright.vision.detectors.options import DetectorOptions
 from linkwright.vision.detectors.registry import make_detector
 
@@ -51,7 +51,7 @@ def test_colours_of_ones_own_and_only_those_that_are_wanted():
     own = detector("colours", colours={"sky": [100, 100, 50, 130, 255, 255], "rose": [170, 100, 50, 5, 255, 255]})
     assert sorted(names(own.detect(image, LIMITS))) == ["rose", "sky"]
     assert names(own.detect(image, Limits(classes=frozenset({"sky"})))) == ["sky"]
-    assert names(own.detect(image, Limits(most=1))) == ["sky"]
+    assert names(own.detect(image, Limits(max_detections=1))) == ["sky"]
     assert len(detector("colours", least_area=1e6).detect(image, LIMITS)) == 0
 
 
@@ -166,11 +166,11 @@ def test_what_was_found_is_drawn_and_the_image_is_left_as_it_is():
     image = blank()
     boxes = np.array([[50, 60, 150, 160], [200, 5, 400, 90]], np.float32)
     found = Detections(boxes, np.array([0.9, 0.6], np.float32), np.array([0, 1], np.int32), ("ball", "box"))
-    canvas = drawn(image, found)
+    canvas = draw_detections(image, found)
     assert tuple(canvas[160, 100]) == colour_of("ball")
     assert tuple(canvas[90, 300]) == colour_of("box")
     assert (image == FLOOR).all()
-    assert (drawn(image, Detections.none(("ball",))) == image).all()
+    assert (draw_detections(image, Detections.empty(("ball",))) == image).all()
     marker = Detections(
         boxes[:1],
         found.scores[:1],
@@ -178,7 +178,7 @@ def test_what_was_found_is_drawn_and_the_image_is_left_as_it_is():
         found.names,
         np.array([[[50, 60], [150, 60], [150, 160], [50, 160]]], np.float32),
     )
-    assert tuple(drawn(image, marker)[160, 100]) == colour_of("ball")
+    assert tuple(draw_detections(image, marker)[160, 100]) == colour_of("ball")
     assert colour_of("red") == colour_of("red cube") == PAINTS["red"]
 
 

@@ -15,7 +15,7 @@ PERIOD = 1 / 30
 def found(*objects):
     """Detections of (centre x, centre y, size, score, class)."""
     if not objects:
-        return Detections.none(NAMES)
+        return Detections.empty(NAMES)
     boxes = [[x - size / 2, y - size / 2, x + size / 2, y + size / 2] for x, y, size, *_ in objects]
     scores = [thing[3] if len(thing) > 3 else 0.9 for thing in objects]
     classes = [thing[4] if len(thing) > 4 else 0 for thing in objects]
@@ -59,7 +59,7 @@ def test_who_is_away_for_a_moment_comes_back_and_after_long_is_another():
 
 
 def test_a_detection_of_low_score_keeps_a_track_and_begins_none():
-    tracker = Tracker(TrackerSettings(high=0.5, low=0.1, new=0.6))
+    tracker = Tracker(TrackerSettings(high=0.5, low=0.1, new_track_score=0.6))
     for step in range(5):
         tracker.update(found((100, 100, 40)), step * PERIOD)
     weak = [tracker.update(found((100, 100, 40, 0.2), (300, 300, 40, 0.2)), step * PERIOD) for step in range(5, 60)]

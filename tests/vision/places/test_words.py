@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from linkwright.vision.places.words import Answer, Sighting, answer, described, named, requested
+from linkwright.vision.places.words import Answer, Sighting, answer_phrase, described, name_with_colour, requested
 
 
 @pytest.mark.parametrize(
@@ -66,21 +66,21 @@ def test_nothing_is_asked_for(text):
     ],
 )
 def test_whether_this_is_it(asked, name, colour, is_it):
-    assert requested(asked).is_it(name, colour) is is_it
+    assert requested(asked).matches(name, colour) is is_it
 
 
 def test_a_patch_of_a_colour_is_a_ball_if_it_is_as_wide_as_high():
-    assert requested("red ball").is_it("red", None, 1.1)
-    assert not requested("red ball").is_it("red", None, 0.4)
-    assert requested("red ball").is_it("ball", "red", 0.4), "a class counts whatever part of the thing is seen"
-    assert requested("red").is_it("red", None, 0.4)
+    assert requested("red ball").matches("red", None, 1.1)
+    assert not requested("red ball").matches("red", None, 0.4)
+    assert requested("red ball").matches("ball", "red", 0.4), "a class counts whatever part of the thing is seen"
+    assert requested("red").matches("red", None, 0.4)
 
 
 def test_a_round_patch_of_any_colour_is_a_ball_and_a_square_one_is_none():
-    assert requested("ball").is_it("orange", None, 1.0, 0.79)
-    assert not requested("ball").is_it("orange", None, 1.0, 0.99)
-    assert not requested("ball").is_it("orange", None, 0.5, 0.79)
-    assert not requested("crate").is_it("orange", None, 1.0, 0.79)
+    assert requested("ball").matches("orange", None, 1.0, 0.79)
+    assert not requested("ball").matches("orange", None, 1.0, 0.99)
+    assert not requested("ball").matches("orange", None, 0.5, 0.79)
+    assert not requested("crate").matches("orange", None, 1.0, 0.79)
 
 
 def test_what_is_said_of_it_has_no_verb():
@@ -89,11 +89,11 @@ def test_what_is_said_of_it_has_no_verb():
 
 
 def test_an_answer_names_the_thing_in_its_own_language():
-    assert answer(Answer.LOOKING, requested("red ball"), "en") == "I am looking for the red ball."
-    assert answer(Answer.LOOKING, requested("traffic_cone"), "zh") == "我在找锥桶。"
-    assert answer(Answer.ARRIVED, requested("red ball"), "zh") == "我到红色的球这里了。"
-    assert answer(Answer.FOUND, requested("红球"), "zh") == "我看到红球了，正在过去。"
-    assert answer(Answer.LOST, requested("红球"), "en") == "I have lost the red ball."
+    assert answer_phrase(Answer.LOOKING, requested("red ball"), "en") == "I am looking for the red ball."
+    assert answer_phrase(Answer.LOOKING, requested("traffic_cone"), "zh") == "我在找锥桶。"
+    assert answer_phrase(Answer.ARRIVED, requested("red ball"), "zh") == "我到红色的球这里了。"
+    assert answer_phrase(Answer.FOUND, requested("红球"), "zh") == "我看到红球了，正在过去。"
+    assert answer_phrase(Answer.LOST, requested("红球"), "en") == "I have lost the red ball."
 
 
 def test_what_is_seen_in_a_sentence():
@@ -115,6 +115,6 @@ def test_what_is_seen_in_a_sentence():
 
 
 def test_names():
-    assert named("traffic cone", "orange", "zh") == "橙色的锥桶"
-    assert named("red_ball", "blue", "en") == "red ball"
-    assert named("teapot", None, "zh") == "teapot"
+    assert name_with_colour("traffic cone", "orange", "zh") == "橙色的锥桶"
+    assert name_with_colour("red_ball", "blue", "en") == "red ball"
+    assert name_with_colour("teapot", None, "zh") == "teapot"

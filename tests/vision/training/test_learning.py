@@ -13,7 +13,7 @@ import pytest
 
 from linkwright.cli import main
 from linkwright.diagnostics import LinkwrightError
-from linkwright.vision.training.images import read_lesson
+from linkwright.vision.training.images import read_labelled_images
 from linkwright.vision.training.options import Options
 from linkwright.vision.training.reading import open_dataset
 from linkwright.vision.training.teaching import train_network
@@ -29,10 +29,10 @@ if HERE:
 
     from linkwright.vision.training.learning.course import Course
     from linkwright.vision.training.learning.export import to_onnx
+    from linkwright.vision.training.learning.initial_weights import load_weights
     from linkwright.vision.training.learning.losses import assign, loss, overlaps
     from linkwright.vision.training.learning.network import Network, Shape, cells
     from linkwright.vision.training.learning.optimizer import orthogonalize
-    from linkwright.vision.training.learning.starting import load_weights
 
 
 @pytest.fixture(scope="module")
@@ -48,7 +48,7 @@ def options(shapes: Path, output: Path, **changed) -> Options:
 def course_of(given: Options) -> Course:
     given.output.mkdir(exist_ok=True)
     dataset = open_dataset(given.dataset)
-    lesson = read_lesson(dataset.read("train"), given.width, given.height)
+    lesson = read_labelled_images(dataset.read("train"), given.width, given.height)
     return Course(dataset.names, given, lesson, lesson)
 
 
@@ -66,7 +66,7 @@ def test_a_network_overfits_eight_images(shapes, tmp_path):
     )
     assert (last < first / 2).all()
     assert course.best_map > 0.5
-    assert course.judge().map50 >= 0.9
+    assert course.evaluate_averaged().map50 >= 0.9
 
 
 def test_the_same_seed_gives_the_same_weights_and_another_one_others(shapes, tmp_path):
@@ -241,12 +241,12 @@ def test_cells_answer_for_the_thing_they_are_in_and_may_say_what_they_like_of_wh
     objects = torch.tensor([[[1.0, 8, 8, 32, 32], [-2.0, 40, 40, 60, 60], [-1.0, -1, -1, -1, -1]]])
     wanted = assign(boxes, logits, middles, objects)
     inside = (middles >= 8).all(1) & (middles <= 32).all(1)
-    assert wanted.taken[0].sum() == 10
-    assert not (wanted.taken[0] & ~inside).any()
+    assert wanted.is_assigned[0].sum() == 10
+    assert not (wanted.is_assigned[0] & ~inside).any()
     assert (wanted.scores[0][..., 0] == 0).all()
     assert wanted.scores[0][..., 1].max() > 0.9
     hidden = (middles >= 40).all(1) & (middles <= 60).all(1)
-    assert (wanted.unasked[0] == hidden).all()
+    assert (wanted.is_ignored[0] == hidden).all()
 
 
 def test_a_batch_without_anything_in_it_has_a_loss():

@@ -6,7 +6,14 @@ import numpy as np
 import pytest
 
 from linkwright.diagnostics import LinkwrightError
-from linkwright.vision.training.images import Lesson, changed, read_image, read_lesson, repeat_factors, repeated_indices
+from linkwright.vision.training.images import (
+    LabelledImages,
+    augmented,
+    read_image,
+    read_labelled_images,
+    repeat_factors,
+    repeated_indices,
+)
 from linkwright.vision.training.options import Options, View
 from linkwright.vision.training.reading import open_dataset
 from tests.vision.training.images_of_shapes import NAMES, write_shapes
@@ -131,23 +138,23 @@ def test_a_label_that_cannot_be_is_said_with_its_place(shapes, line, message):
 def test_a_image_that_is_none_is_said(shapes):
     dataset = open_dataset(shapes)
     (shapes / "images" / "train" / "001.png").write_bytes(b"none")
-    found = problem(read_lesson, dataset.read("train"), 96, 96)
+    found = problem(read_labelled_images, dataset.read("train"), 96, 96)
     assert (found.code, "001.png" in str(found.message)) == ("VISION305", True)
 
 
 def test_images_of_another_shape_are_fitted_in_with_grey(shapes):
     images = open_dataset(shapes).read("train")
-    lesson = read_lesson(images, 160, 96)
+    lesson = read_labelled_images(images, 160, 96)
     assert lesson.images.shape == (3, 96, 160, 3)
     assert (lesson.images[:, :, :32] == 114).all()
     assert np.allclose(lesson.objects[0][:, 1:], images[0].boxes * 96 + (32, 0, 32, 0), atol=1e-4)
 
 
 def test_boxes_stay_with_what_they_are_around(shapes):
-    lesson = read_lesson(open_dataset(shapes).read("train"), 96, 96)
+    lesson = read_labelled_images(open_dataset(shapes).read("train"), 96, 96)
     seen = 0
     for seed in range(40):
-        image, objects = changed(lesson, seed % 3, VIEW, np.random.default_rng(seed))
+        image, objects = augmented(lesson, seed % 3, VIEW, np.random.default_rng(seed))
         assert image.shape == (64, 64, 3)
         for kind, left, top, right, bottom in objects:
             assert 0 <= left < right <= 64
@@ -160,8 +167,8 @@ def test_boxes_stay_with_what_they_are_around(shapes):
 
 
 def test_the_same_dice_change_a_image_in_the_same_way(shapes):
-    lesson = read_lesson(open_dataset(shapes).read("train"), 96, 96)
-    one, other = (changed(lesson, 0, VIEW, np.random.default_rng(5)) for _ in range(2))
+    lesson = read_labelled_images(open_dataset(shapes).read("train"), 96, 96)
+    one, other = (augmented(lesson, 0, VIEW, np.random.default_rng(5)) for _ in range(2))
     assert (one[0] == other[0]).all()
     assert (one[1] == other[1]).all()
 
@@ -170,9 +177,9 @@ def test_the_last_epochs_are_of_whole_images(shapes):
     options = Options(shapes, shapes, epochs=5, whole_epochs=2, width=96, height=96)
     assert [options.view(epoch).size for epoch in range(5)] == [(64, 64)] * 3 + [(96, 96)] * 2
     assert options.view(4).scales[0] > options.view(0).scales[0]
-    lesson = read_lesson(open_dataset(shapes).read("train"), 96, 96)
+    lesson = read_labelled_images(open_dataset(shapes).read("train"), 96, 96)
     same = View((96, 96), (1.0, 1.0))
-    (_, objects) = changed(lesson, 0, same, np.random.default_rng(5))
+    (_, objects) = augmented(lesson, 0, same, np.random.default_rng(5))
     here = lesson.objects[0]
     sides = (objects[:, 3:] - objects[:, 1:3]) / (here[:, 3:] - here[:, 1:3])
     assert (objects[:, 0] == here[:, 0]).all()
@@ -184,7 +191,7 @@ def test_images_of_rare_classes_are_seen_more_often():
         return np.array([[each, 0, 0, 9, 9] for each in classes], np.float32).reshape(-1, 5)
 
     objects = (*[image(0)] * 16, *[image(1, 0)] * 8, image(2), image(-4, 0), image())
-    lesson = Lesson(np.zeros((len(objects), 1, 1, 3), np.uint8), objects)
+    lesson = LabelledImages(np.zeros((len(objects), 1, 1, 3), np.uint8), objects)
     times = repeat_factors(lesson, 4)
     assert times[:24] == pytest.approx(1)  # classes 0 and 1 are at the median of 8, or more frequent
     assert times[24] == pytest.approx(np.sqrt(8))

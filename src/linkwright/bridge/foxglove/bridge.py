@@ -21,7 +21,7 @@ from linkwright.bridge.foxglove.topics import Channels
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
 from linkwright.graph import DESCRIPTION_QOS, Graph
 from linkwright.messages import String
-from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
 
 if TYPE_CHECKING:
     from aiohttp import web
@@ -45,7 +45,7 @@ class FoxgloveBridge(SingleNode):
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
-        with starting(self._node):
+        with handle_start_errors(self._node):
             declare = self._node.declare_parameter
             port, address = int(declare("port", 8765).value), str(declare("address", "127.0.0.1").value)
             filters = {
@@ -120,9 +120,9 @@ class FoxgloveBridge(SingleNode):
 
     def _schedule_update(self) -> None:
         if self._update_timer is None and not self._node.handle.is_destroyed:
-            self._update_timer = self._loop.call_later(_UPDATE_DELAY_S, self._look)
+            self._update_timer = self._loop.call_later(_UPDATE_DELAY_S, self._send_updates)
 
-    def _look(self) -> None:
+    def _send_updates(self) -> None:
         self._update_timer = None
         channels, removed_channels = self._offer.channels.poll_changes()
         services, removed_services = self._offer.services.poll_changes()

@@ -72,11 +72,13 @@ class Channels:
         }
         removed = [self._channels.pop(key).number for key in list(self._channels) if key not in current]
         added = [
-            channel for key in sorted(current - self._channels.keys()) if (channel := self._make(*key)) is not None
+            channel
+            for key in sorted(current - self._channels.keys())
+            if (channel := self._create_channel(*key)) is not None
         ]
         return added, removed
 
-    def _make(self, topic: str, type_name: str) -> Channel | None:
+    def _create_channel(self, topic: str, type_name: str) -> Channel | None:
         try:
             schema = schema_of(type_name)
         except LinkwrightError as error:

@@ -59,7 +59,7 @@ def compile_filter(text: str) -> Callable[[Any], bool]:
                 )
     code = compile(tree, _SOURCE_NAME, "eval")
 
-    def fits(message: Any) -> bool:
+    def matches(message: Any) -> bool:
         try:
             # `eval` is safe here, because the syntax tree was checked above: it contains no private names and only the
             # listed functions.
@@ -69,4 +69,4 @@ def compile_filter(text: str) -> Callable[[Any], bool]:
                 phrase(("the filter cannot be evaluated for a message: {error}"), error=foreign(error))
             ) from None
 
-    return fits
+    return matches

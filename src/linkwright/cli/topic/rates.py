@@ -60,7 +60,7 @@ class RateWindow:
     def __init__(self, size: int) -> None:
         self._times: deque[int] = deque(maxlen=size)
         self._last_time_ns: int | None = None
-        self._new = False
+        self._has_new_message = False
 
     def add(self, now_ns: int) -> bool:
         """Add the arrival of a message.
@@ -68,7 +68,7 @@ class RateWindow:
         Returns:
             Whether the time jumped back, which resets the window.
         """
-        previous_ns, self._last_time_ns, self._new = self._last_time_ns, now_ns, True
+        previous_ns, self._last_time_ns, self._has_new_message = self._last_time_ns, now_ns, True
         if previous_ns is None:
             return False
         if now_ns < previous_ns:
@@ -79,9 +79,9 @@ class RateWindow:
 
     def spread(self) -> Spread | None:
         """Return the statistics, or None if no message arrived since the last call."""
-        if not self._new or not self._times:
+        if not self._has_new_message or not self._times:
             return None
-        self._new = False
+        self._has_new_message = False
         return Spread.of(self._times)
 
 
@@ -95,22 +95,22 @@ class DelayWindow:
     def __init__(self, size: int) -> None:
         self._delays: deque[int] = deque(maxlen=size)
         self._last_time_ns: int | None = None
-        self._new = False
+        self._has_new_message = False
 
     def add(self, now_ns: int, stamp_ns: int) -> None:
         """Add the delay of a message, from its stamp to its arrival."""
         if self._last_time_ns is not None and now_ns < self._last_time_ns:
             self._delays.clear()
-        self._last_time_ns, self._new = now_ns, True
+        self._last_time_ns, self._has_new_message = now_ns, True
         self._delays.append(now_ns - stamp_ns)
 
     def text(self) -> str | None:
         """Return the output of ``topic delay``, or None before the first message."""
         if not self._delays:
             return None
-        if not self._new:
+        if not self._has_new_message:
             return "no new messages"
-        self._new = False
+        self._has_new_message = False
         spread = Spread.of(self._delays)
         return f"average delay: {spread.mean / NANOSECONDS_PER_SECOND:.3f}\n{spread.bounds()}"
 

@@ -165,10 +165,10 @@ def _write_drawing(image: NDArray[np.uint8], detections: Detections, folder: Pat
 
     from PIL import Image
 
-    from linkwright.vision.detectors.drawing import drawn
+    from linkwright.vision.detectors.drawing import draw_detections
 
     file = BytesIO()
-    Image.fromarray(drawn(image, detections)).save(file, "PNG")
+    Image.fromarray(draw_detections(image, detections)).save(file, "PNG")
     write_output(folder / f"{stem}_detections.png", file.getvalue())
 
 

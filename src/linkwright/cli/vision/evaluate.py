@@ -29,9 +29,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Evaluate a detector, and print the results."""
     from linkwright.vision.training.card import confusion, table
-    from linkwright.vision.training.teaching import judge
+    from linkwright.vision.training.teaching import evaluate_on_dataset
 
-    figures = judge(arguments.model, arguments.dataset, arguments.split)
+    figures = evaluate_on_dataset(arguments.model, arguments.dataset, arguments.split)
     if arguments.format == "json":
         data = {**asdict(figures), "confusion": figures.confusion.tolist()}
         print(json.dumps(data, indent=2, ensure_ascii=False))

@@ -125,9 +125,9 @@ class DriveOdometry:
         The service type is ``control_msgs/srv/SetOdometry``.
         """
 
-        def asked(request: Any, response: Any) -> Any:
+        def on_request(request: Any, response: Any) -> Any:
             self.odometer.reset(request.x, request.y, request.yaw)
             response.success = True
             return response
 
-        node.service("control_msgs/srv/SetOdometry", "~/set_odometry", asked)
+        node.service("control_msgs/srv/SetOdometry", "~/set_odometry", on_request)

@@ -298,7 +298,7 @@ class JointTrajectoryController(Controller[Parameters]):
             self._hold()
         self._current = self._read()
         trajectory = self._trajectory
-        is_first = not trajectory.begun
+        is_first = not trajectory.is_started
         if is_first:
             start_state = self._last_command if self.parameters.open_loop else self._current
             trajectory.begin(time_ns, _drop_unmeasured(start_state), self._is_wrapped)
@@ -455,7 +455,7 @@ class JointTrajectoryController(Controller[Parameters]):
         sample = None
         if not self._active:
             response.message = "Can't sample trajectory. Controller is not active."
-        elif not self._trajectory.begun:
+        elif not self._trajectory.is_started:
             response.message = "Currently there is no valid trajectory instance."
         else:
             sample = self._trajectory.sample(nanoseconds(request.time))

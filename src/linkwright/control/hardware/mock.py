@@ -33,11 +33,11 @@ class _Joint:
     """
 
     def __init__(self, description: ComponentDescription, states: dict[str, StateInterface]) -> None:
-        self.described = description
+        self.description = description
         self.mode = POSITION
-        self.shown = [states[state.name] for state in description.states if state.name in _STANDARD]
+        self.exposed_states = [states[state.name] for state in description.states if state.name in _STANDARD]
         self.values = dict.fromkeys(_STANDARD, 0.0)
-        for interface in self.shown:
+        for interface in self.exposed_states:
             if isnan(interface.value):
                 interface.value = 0.0
             self.values[interface.kind] = interface.value
@@ -69,9 +69,9 @@ class GenericSystem(Hardware):
             elif command.name in states:
                 self._mirrored_pairs.append((command, states[command.name]))
         self._mimic_joints = [
-            (joint, self._joints[joint.described.mimic.joint], joint.described.mimic)
+            (joint, self._joints[joint.description.mimic.joint], joint.description.mimic)
             for joint in self._joints.values()
-            if joint.described.mimic is not None and joint.described.mimic.joint in self._joints
+            if joint.description.mimic is not None and joint.description.mimic.joint in self._joints
         ]
         self._offset_states = [
             (self._joints[state.component], state)
@@ -82,7 +82,7 @@ class GenericSystem(Hardware):
         coupled = {other for joint, mimicked, _ in self._mimic_joints for other in (joint, mimicked)}
         joints = [joint for joint in self._joints.values() if self._has_dynamics or joint in coupled]
         uncoupled = [joint for joint in self._joints.values() if not self._has_dynamics and joint not in coupled]
-        self._shown_states = [(state, joint.values, state.kind) for joint in joints for state in joint.shown]
+        self._shown_states = [(state, joint.values, state.kind) for joint in joints for state in joint.exposed_states]
         self._repeated_commands = [
             (command, joint.values, kind, self._state_offset(kind))
             for joint in joints
@@ -91,7 +91,7 @@ class GenericSystem(Hardware):
         self._copied_commands = [
             (joint.commands[state.kind], state, self._state_offset(state.kind))
             for joint in uncoupled
-            for state in joint.shown
+            for state in joint.exposed_states
             if state.kind in joint.commands
         ]
         self._read: Callable[[float], None] = self._integrate if self._has_dynamics else self._repeat

@@ -108,7 +108,7 @@ class ControllerManager:
             for kind in controller_types():
                 logger.info(f"  {kind}")
             return False
-        controller = self._made(controller_type, name)
+        controller = self._create_controller(controller_type, name)
         if controller is None:
             logger.error(f"Could not initialize the controller named '{name}'")
             return False
@@ -117,7 +117,7 @@ class ControllerManager:
         self.on_change()
         return True
 
-    def _made(self, controller_type: type[Controller[Any]], name: str) -> Controller[Any] | None:
+    def _create_controller(self, controller_type: type[Controller[Any]], name: str) -> Controller[Any] | None:
         node = None
         try:
             node = controller_node(self.node, name, self._process)

@@ -56,7 +56,7 @@ class Trajectory:
         self.points = list(points)
         self._requested_start_ns = start_ns
         self._is_interpolated = interpolated
-        self.begun = False
+        self.is_started = False
 
     def begin(self, time_ns: int, current: MotionState, is_wrapped: Sequence[bool] = ()) -> None:
         """Start the trajectory from the current state.
@@ -69,7 +69,7 @@ class Trajectory:
             current: the state of the joints; its velocities and accelerations are used if the first point has them.
             is_wrapped: whether each joint rotates without limits; such joints take the shorter way to the first point.
         """
-        self.begun = True
+        self.is_started = True
         self._start_ns = self._requested_start_ns or time_ns
         self._begin_ns = time_ns
         first_ns = self._start_ns + self.points[0].time_ns

@@ -42,14 +42,14 @@ class HardwareSpawner(ManagerProgram):
     async def _set_states(self) -> int:
         logger, status = self._node.get_logger(), 0
         target, action = (ACTIVE, "activated") if self._arguments.activate else (INACTIVE, "configured")
-        loaded_names = [component.name for component in (await self._client.ask("list_hardware_components")).component]
+        loaded_names = [component.name for component in (await self._client.call("list_hardware_components")).component]
         for name in self._arguments.hardware_component_names:
             if name not in loaded_names:
                 logger.warning("Hardware Component is not loaded - state can not be changed.")
                 status = 1
                 continue
             target_state = get_message("lifecycle_msgs/msg/State")(target.state_id, target.label)
-            response = await self._client.ask("set_hardware_component_state", name=name, target_state=target_state)
+            response = await self._client.call("set_hardware_component_state", name=name, target_state=target_state)
             if response.ok:
                 logger.info(f"{action} component '{name}'. Hardware now in state: {response.state.label}.")
             else:

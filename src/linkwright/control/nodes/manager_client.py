@@ -45,7 +45,7 @@ class ManagerClient:
         self._node = node
         self._timeout, self._call_timeout = timeout, call_timeout
 
-    async def ask(self, service: str, **fields: Any) -> Any:
+    async def call(self, service: str, **fields: Any) -> Any:
         """Call one of the manager's services, such as ``list_controllers``, and return the response.
 
         Raises:
@@ -67,7 +67,7 @@ class ManagerClient:
     async def switch(self, activate: Sequence[str], deactivate: Sequence[str], timeout: float, *, asap: bool) -> Any:
         """Switch controllers with strictness STRICT, and return the response."""
         duration = get_message("builtin_interfaces/msg/Duration")(*divmod(round(timeout * 1e9), NANOSECONDS_PER_SECOND))
-        return await self.ask(
+        return await self.call(
             "switch_controller",
             activate_controllers=list(activate),
             deactivate_controllers=list(deactivate),

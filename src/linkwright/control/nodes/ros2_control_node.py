@@ -24,7 +24,7 @@ from linkwright.graph.log.logger import Logger
 from linkwright.graph.parameters.parameter import ParameterRules
 from linkwright.graph.stepped.node import SteppedNode
 from linkwright.messages import String
-from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 _DEFAULT_RATE = 100
@@ -61,7 +61,7 @@ class Ros2ControlNode(SingleNode):
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         self._node, _ = create_node(graph, options, self.DEFAULT_NAME, any_parameters=True)
         self._library = options.library
-        with starting(self._node):
+        with handle_start_errors(self._node):
             self._start(options)
 
     def _start(self, options: NodeOptions) -> None:

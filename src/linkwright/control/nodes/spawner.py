@@ -20,7 +20,7 @@ from linkwright.graph.command_line.ros_arguments import parse, remove_ros_argume
 from linkwright.graph.names.rules import join
 from linkwright.graph.parameters.files import read_parameter_file
 from linkwright.messages import get_service
-from linkwright.nodes.options import NodeOptions, create_node, starting
+from linkwright.nodes.options import NodeOptions, create_node, handle_start_errors
 
 _MANAGER_ENTRIES = ("type", "fallback_controllers")
 """The entries in a controller's parameter file that are set as parameters of the manager."""
@@ -40,7 +40,7 @@ class Spawner(ManagerProgram):
         self._arguments = arguments
         process_files = [*options.parameters_of_others.files, *parse(options.arguments).parameters.files]
         self._files = list(dict.fromkeys([*(arguments.param_file or ()), *process_files]))
-        with starting(self._node):
+        with handle_start_errors(self._node):
             for path in self._files:
                 if not Path(path).is_file():
                     message = phrase("parameter file '{path}' does not exist", path=path)
@@ -67,7 +67,7 @@ class Spawner(ManagerProgram):
                 return 1
             if arguments.load_only:
                 continue
-            if not (await self._client.ask("configure_controller", name=name)).ok:
+            if not (await self._client.call("configure_controller", name=name)).ok:
                 logger.error("Failed to configure controller")
                 return 1
             if arguments.inactive or arguments.activate_as_group:
@@ -92,7 +92,7 @@ class Spawner(ManagerProgram):
 
     async def _load(self, name: str) -> bool:
         logger = self._node.get_logger()
-        response = await self._client.ask("list_controllers")
+        response = await self._client.call("list_controllers")
         if any(controller.name == name for controller in response.controller):
             logger.warning("Controller already loaded, skipping load_controller")
             return True
@@ -102,7 +102,7 @@ class Spawner(ManagerProgram):
                 logger.fatal(f"Could not set {text}")
                 return False
             logger.info(f"Setting {text}")
-        if not (await self._client.ask("load_controller", name=name)).ok:
+        if not (await self._client.call("load_controller", name=name)).ok:
             logger.fatal(f"Failed loading controller {name}")
             return False
         logger.info(f"Loaded {name}")
@@ -166,7 +166,7 @@ class Unspawner(ManagerProgram):
         await self._client.switch((), names, self._arguments.switch_timeout, asap=True)
         logger.info("Deactivated controller")
         for name in names:
-            if not (await self._client.ask("unload_controller", name=name)).ok:
+            if not (await self._client.call("unload_controller", name=name)).ok:
                 logger.info("Failed to unload controller")
                 return 1
             logger.info("Unloaded controller")

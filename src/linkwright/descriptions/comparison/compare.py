@@ -160,7 +160,7 @@ class _Comparer:
     def _robot(self) -> Iterator[Difference]:
         old, new = self.old.robot, self.new.robot
         if old.name != new.name:
-            places = _place(old.element, "name"), _place(new.element, "name")
+            places = _location(old.element, "name"), _location(new.element, "name")
             yield Difference("robot", new.name, "changed", "name", old.name, new.name, "", *places)
 
     def _link_differences(self) -> Iterator[Difference]:
@@ -224,7 +224,7 @@ class _Comparer:
                 old_file, new_file = self.old.mesh(name), self.new.mesh(name)
                 if old_file and new_file and not _same_bytes(old_file, new_file):
                     values = _content_difference(old_file, new_file)
-                    places = _place(old_meshes[name]), _place(new_meshes[name])
+                    places = _location(old_meshes[name]), _location(new_meshes[name])
                     yield Difference("link", new.name, "changed", f"{tag} mesh {name}", *values, *places)
 
     # --- blocks of facts ------------------------------------------------------------------------------------------
@@ -245,7 +245,9 @@ class _Comparer:
                 elements[0] if old is None else old.element,
                 elements[1] if new is None else new.element,
             )
-            yield Difference(subject, name, "changed", block, *texts, "", _place(old_element), _place(new_element))
+            yield Difference(
+                subject, name, "changed", block, *texts, "", _location(old_element), _location(new_element)
+            )
             return
         for fact in dict.fromkeys([*new.facts, *old.facts]):
             old_fact, new_fact = old.facts.get(fact), new.facts.get(fact)
@@ -282,26 +284,28 @@ class _Comparer:
                 yield from self._element_differences(name, start_path, old_element, new_element)
             elif enclosing is None:
                 kind: Kind = "added" if old_element is None else "removed"
-                yield Difference("extension", key, kind, "", None, None, "", _place(old_element), _place(new_element))
+                yield Difference(
+                    "extension", key, kind, "", None, None, "", _location(old_element), _location(new_element)
+                )
             else:
                 texts = (
                     None if old_element is None else _one_line(old_element),
                     None if new_element is None else _one_line(new_element),
                 )
-                places = _place(old_element or enclosing[1]), _place(new_element or enclosing[2])
+                places = _location(old_element or enclosing[1]), _location(new_element or enclosing[2])
                 yield Difference("extension", enclosing[0], "changed", element_path, *texts, "", *places)
 
     def _element_differences(self, name: str, path: str, old: Element, new: Element) -> Iterator[Difference]:
         for attribute in dict.fromkeys([*new.attributes, *old.attributes]):
             old_value, new_value = old.attributes.get(attribute), new.attributes.get(attribute)
             if not self._same_text(old_value, new_value):
-                places = _place(old, attribute), _place(new, attribute)
+                places = _location(old, attribute), _location(new, attribute)
                 yield Difference(
                     "extension", name, "changed", f"{path} @{attribute}".strip(), old_value, new_value, "", *places
                 )
         texts = " ".join(old.text().split()), " ".join(new.text().split())
         if not self._same_text(*texts):
-            yield Difference("extension", name, "changed", path, *texts, "", _place(old), _place(new))
+            yield Difference("extension", name, "changed", path, *texts, "", _location(old), _location(new))
         yield from self._child_differences(list(old.elements()), list(new.elements()), path, (name, old, new))
 
     def _same_text(self, old: str | None, new: str | None) -> bool:
@@ -347,16 +351,16 @@ def _named_differences(
     names = {new_name: old_name for old_name, new_name in matches.items()}
     for name, item in new.items():
         if name not in names:
-            yield Difference(subject, name, "added", new_place=_place(item.element))
+            yield Difference(subject, name, "added", new_place=_location(item.element))
             continue
         old_item = old[names[name]]
         if old_item.name != name:
-            places = _place(old_item.element, "name"), _place(item.element, "name")
+            places = _location(old_item.element, "name"), _location(item.element, "name")
             yield Difference(subject, name, "renamed", "name", old_item.name, name, "", *places)
         yield from compare_pair(old_item, item)
     for name, item in old.items():
         if name not in matches:
-            yield Difference(subject, name, "removed", old_place=_place(item.element))
+            yield Difference(subject, name, "removed", old_place=_location(item.element))
 
 
 def _change(
@@ -365,7 +369,9 @@ def _change(
     def place(pair: tuple[Fact | None, Block]) -> Place | None:
         compared_fact, block = pair
         return (
-            _place(block.element) if compared_fact is None else _place(compared_fact.element, compared_fact.attribute)
+            _location(block.element)
+            if compared_fact is None
+            else _location(compared_fact.element, compared_fact.attribute)
         )
 
     old_fact, new_fact = old[0], new[0]
@@ -376,7 +382,7 @@ def _change(
     )
 
 
-def _place(element: Element | None, attribute: str = "") -> Place | None:
+def _location(element: Element | None, attribute: str = "") -> Place | None:
     """Return the location of an element or of one of its attributes, or None if unknown."""
     if element is None:
         return None

@@ -60,7 +60,7 @@ class Definitions:
                 yield from self._places_by_name.get(keys[-1], ())
                 yield from (place for path, place in self._values() if path[-len(keys) :] == keys)
 
-    def given(self, text: str, index: int | None, innermost: Frame | None) -> Iterator[Candidate]:
+    def addable_arguments(self, text: str, index: int | None, innermost: Frame | None) -> Iterator[Candidate]:
         """Yield arguments that could be added to calls that use a parameter's default.
 
         Args:
@@ -106,7 +106,7 @@ class Definitions:
         if parameter is None or parameter.default is None or parameter.forward:
             return None
         is_quoted = parameter.default[:1] in ("'", '"') and parameter.default[:1] == parameter.default[-1:]
-        return params.part(
+        return params.subrange(
             parameter.default_start + is_quoted, parameter.default_start + len(parameter.default) - is_quoted
         )
 

@@ -76,7 +76,12 @@ def other_differences(before: Element, after: Element, target: Target) -> Iterat
                 yield trail
                 break
             pending.append(
-                (old_child, new_child, (*trail, old_child), (*path, _place(old, old_child, index, path == target.path)))
+                (
+                    old_child,
+                    new_child,
+                    (*trail, old_child),
+                    (*path, _sibling_index(old, old_child, index, path == target.path)),
+                )
             )
 
 
@@ -95,7 +100,7 @@ def described(trail: tuple[Element, ...]) -> str:
     return name_text if inner_tag is None else phrase("{what} ({part})", what=name_text, part=term(inner_tag))
 
 
-def _place(old: Element, child: Element, index: int, is_owner: bool) -> int:
+def _sibling_index(old: Element, child: Element, index: int, is_owner: bool) -> int:
     """Return the index of a child among its siblings.
 
     In the owner, `index` does not count the removed element, so the child is searched.

@@ -26,7 +26,7 @@ def shortest_text(value: float, tolerance: float = EXACT) -> str:
     return repr(value)
 
 
-def same(first: float, second: float) -> bool:
+def are_close(first: float, second: float) -> bool:
     """Return whether two numbers are equal within the tolerance `EXACT`."""
     return abs(first - second) <= EXACT
 
@@ -49,7 +49,7 @@ def pi_fraction(angle: float) -> str | None:
         numerator = round(angle / pi * denominator)
         if (
             numerator
-            and same(numerator * pi / denominator, angle)
+            and are_close(numerator * pi / denominator, angle)
             and Fraction(numerator, denominator).denominator == denominator
         ):
             factor = {1: "", -1: "-"}.get(numerator, f"{numerator}*")

@@ -34,7 +34,7 @@ class Place:
         """The range as lines and columns."""
         return self.source.span(self.start, self.end)
 
-    def part(self, start: int, end: int) -> Place:
+    def subrange(self, start: int, end: int) -> Place:
         """Return a part of the range, with offsets from the start of this range."""
         return Place(self.source, self.start + start, self.start + end)
 
@@ -58,7 +58,7 @@ class Candidate:
 
 def words(place: Place) -> list[Place]:
     """Return the ranges of the words in a text, where an expression counts as one word."""
-    return [place.part(*match.span()) for match in _WORD.finditer(place.text)]
+    return [place.subrange(*match.span()) for match in _WORD.finditer(place.text)]
 
 
 def literal(place: Place) -> Candidate | None:
@@ -80,9 +80,9 @@ def added_constants(word: Place) -> Iterator[Candidate]:
     if expression is None or not expression.isascii():
         return
     body = expression.strip()
-    expression_place = word.part(2, len(word.text) - 1)
+    expression_place = word.subrange(2, len(word.text) - 1)
     start = len(expression) - len(expression.lstrip())
-    expression_place = expression_place.part(start, start + len(body))
+    expression_place = expression_place.subrange(start, start + len(body))
     tree = _parse(body)
     if tree is not None:
         yield from _terms(tree, expression_place)
@@ -195,7 +195,7 @@ def _signed_term(node: ast.BinOp, expression_place: Place) -> Candidate | None:
     if not text_before.endswith(sign):
         return None
     blanks = text[len(text_before) : node.right.col_offset]
-    term = expression_place.part(len(text_before) - 1, end)
+    term = expression_place.subrange(len(text_before) - 1, end)
 
     def write(number: float, tolerance: float) -> str:
         return f"{'-' if number < 0 else '+'}{blanks}{shortest_text(abs(number), tolerance)}"
@@ -214,5 +214,5 @@ def _literal_value(node: ast.AST) -> float | None:
 
 
 def _number_candidate(expression_place: Place, node: ast.expr, value: float) -> Candidate:
-    text_range = expression_place.part(node.col_offset, node.end_col_offset or node.col_offset)
+    text_range = expression_place.subrange(node.col_offset, node.end_col_offset or node.col_offset)
     return Candidate(text_range, value, shortest_text, value in (1.0, -1.0))

@@ -14,7 +14,7 @@ from math import isfinite
 from linkwright.descriptions.editing.definitions import attribute
 from linkwright.descriptions.editing.difference import Target, described, other_differences, path_to
 from linkwright.descriptions.editing.errors import EditRefusedError
-from linkwright.descriptions.editing.numbers import EXACT, parse_numbers, same, shortest_text
+from linkwright.descriptions.editing.numbers import EXACT, are_close, parse_numbers, shortest_text
 from linkwright.descriptions.editing.places import Candidate, Place, literal, words
 from linkwright.descriptions.editing.proposals import proposals
 from linkwright.descriptions.editing.refusals import Attempt, refusal
@@ -68,7 +68,7 @@ def plan_edit(description: Description, request: EditRequest, allowed: Allowed =
         EditRefusedError: if there is no such edit, with one of the diagnostics EDIT101 to EDIT106.
     """
     planner = _Planner(description, request, allowed)
-    for name, requested in planner.wanted():
+    for name, requested in planner.requested_values():
         planner.set(name, requested)
     return planner.plan()
 
@@ -98,7 +98,7 @@ class _Planner:
         self._path, self._owner = path, owner
         self._also_changed: dict[str, None] = {}
 
-    def wanted(self) -> Iterator[tuple[str, list[float]]]:
+    def requested_values(self) -> Iterator[tuple[str, list[float]]]:
         """Yield the name of each attribute to edit, with its requested numbers."""
         request = self._request
         for numbers in (request.xyz, request.rpy):
@@ -122,7 +122,7 @@ class _Planner:
         """Plan the edits that give an attribute the requested numbers."""
         current_numbers = self._values(name)
         changed_indexes = [
-            i for i, (old, new) in enumerate(zip(current_numbers, requested, strict=True)) if not same(old, new)
+            i for i, (old, new) in enumerate(zip(current_numbers, requested, strict=True)) if not are_close(old, new)
         ]
         if not changed_indexes:
             return
@@ -206,7 +206,7 @@ class _Planner:
             slope = change / (guess - candidate.value) if guess != candidate.value else 0.0
             if abs(slope) < _MIN_SLOPE:
                 return None  # the text does not affect the requested number
-            if candidate.is_choice and not any(same(abs(slope), plain_slope) for plain_slope in _PLAIN_SLOPES):
+            if candidate.is_choice and not any(are_close(abs(slope), plain_slope) for plain_slope in _PLAIN_SLOPES):
                 attempts.append(Attempt(candidate.text_range, is_choice=True))
                 return None
             side_effects = self._side_effects(trial, target, index, values)
@@ -215,7 +215,7 @@ class _Planner:
                     Attempt(candidate.text_range, side_effects=side_effects, may_be_choice=candidate.is_choice)
                 )
                 return None
-            if same(values[index], requested):
+            if are_close(values[index], requested):
                 return _EditedDescription(trial, side_effects)
             guess, tolerance = candidate.value + (requested - current) / slope, EXACT / abs(slope) / 2
         attempts.append(Attempt(candidate.text_range))
@@ -242,7 +242,7 @@ class _Planner:
         if trial is None or values is None:
             return None
         requested = [new_numbers.get(i, value) for i, value in enumerate(self._values(target.attribute))]
-        is_exact = all(map(same, values, requested)) and not self._differences(trial, target)
+        is_exact = all(map(are_close, values, requested)) and not self._differences(trial, target)
         return trial if is_exact else None
 
     def _try_text(self, place: Place, text: str) -> Snapshot | None:
@@ -277,7 +277,7 @@ class _Planner:
         if side_effects and self._request.together:
             self._also_changed.update(dict.fromkeys(side_effects))
             side_effects = ()
-        if trial is None or values is None or not all(map(same, values, requested)) or side_effects:
+        if trial is None or values is None or not all(map(are_close, values, requested)) or side_effects:
             raise EditRefusedError(
                 refusal(
                     text_range,

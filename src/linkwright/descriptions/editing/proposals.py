@@ -44,7 +44,7 @@ def proposals(
     for word in determining_words:
         yield from _numbers_in(word, present[index])
     for word in determining_words:
-        yield from definitions.given(word.text, index, frame)
+        yield from definitions.addable_arguments(word.text, index, frame)
     for word in determining_words:
         candidate = addition_candidate(word, is_angle=is_angle)
         if candidate is not None:

@@ -23,7 +23,7 @@ LANGUAGES = tuple(TAGS)
 _LANGUAGE_VARIABLES = ("LINKWRIGHT_LANG", "LC_ALL", "LC_MESSAGES", "LANG")
 """The environment variables for the language. The first that is set decides. POSIX orders the last three."""
 
-_asked: str | None = None
+_chosen_language: str | None = None
 
 
 def set_language(code: str | None) -> None:
@@ -31,10 +31,10 @@ def set_language(code: str | None) -> None:
 
     None selects the language of the environment.
     """
-    global _asked  # noqa: PLW0603 - the language is one for the whole process, as the locale is
+    global _chosen_language  # noqa: PLW0603 - the language is one for the whole process, as the locale is
     if code is not None and code not in LANGUAGES:
         raise ValueError(f"there is no language '{code}'; the languages are {', '.join(LANGUAGES)}")
-    _asked = code
+    _chosen_language = code
 
 
 def asked_language() -> str | None:
@@ -42,13 +42,13 @@ def asked_language() -> str | None:
 
     Output for programs is in English unless a language was set.
     """
-    return _asked
+    return _chosen_language
 
 
 def language() -> str:
     """Return the language of messages for people, one of `LANGUAGES`."""
-    if _asked is not None:
-        return _asked
+    if _chosen_language is not None:
+        return _chosen_language
     for name in _LANGUAGE_VARIABLES:
         value = os.environ.get(name)
         if value:

@@ -370,7 +370,7 @@ class _Executions(Entity):
         self._waiting: deque[Callable[[], object]] = deque()
 
     @property
-    def what(self) -> str:
+    def description(self) -> str:
         """The description of this entity in log messages."""
         return "execute callback of an action"
 

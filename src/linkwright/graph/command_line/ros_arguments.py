@@ -47,7 +47,7 @@ class RosArguments:
         stdout_logs: whether to write the log to the console; None if not given.
         external_lib_logs: whether to write the log to a log file; None if not given.
         enclave: the security enclave.
-        others: the arguments that are not ROS arguments.
+        non_ros_arguments: the arguments that are not ROS arguments.
     """
 
     remap_rules: list[RemapRule] = field(default_factory=list)
@@ -59,7 +59,7 @@ class RosArguments:
     stdout_logs: bool | None = None
     external_lib_logs: bool | None = None
     enclave: str | None = None
-    others: list[str] = field(default_factory=list)
+    non_ros_arguments: list[str] = field(default_factory=list)
 
     def remappings_for(self, node_name: str) -> list[tuple[str, str]]:
         """Return the remappings ``(from, to)`` for a node, in order, including those for every node.
@@ -92,7 +92,7 @@ def parse(arguments: Sequence[str]) -> RosArguments:
         if argument == BEGIN:
             in_ros_arguments = True
         elif not in_ros_arguments:
-            ros.others.append(argument)
+            ros.non_ros_arguments.append(argument)
         elif argument == END:
             in_ros_arguments = False
         elif argument in _FLAGS:

@@ -65,9 +65,9 @@ class _Watchdog:
     def _arm(self) -> None:
         dispatcher = self._owner.dispatcher
         if dispatcher is not None and self._alarm is None and self._last_ns is not None:
-            self._alarm = dispatcher.call_at(self._last_ns + self._limit_ns, self._look)
+            self._alarm = dispatcher.call_at(self._last_ns + self._limit_ns, self._check_deadline)
 
-    def _look(self) -> None:
+    def _check_deadline(self) -> None:
         with self._lock:
             self._alarm = None
             now_ns = self._owner.node.timebase.steady_ns()
@@ -98,7 +98,7 @@ class EndpointEvents(Entity):
             self._deadline = self._watch(deadline_ns, self._on_deadline_missed)
 
     @property
-    def what(self) -> str:
+    def description(self) -> str:
         """The description of this entity in log messages."""
         return f"event callback of topic '{self._name}'"
 
@@ -173,7 +173,7 @@ class SubscriptionEvents(EndpointEvents):
     def __init__(self, subscription: TopicEndpoint[Any], callbacks: SubscriptionEventCallbacks) -> None:
         super().__init__(subscription, callbacks)
         self._message_lost = callbacks.message_lost
-        self._alive = 0
+        self._alive_count = 0
         self._not_alive_count = 0
         self._outside_counts = (0, 0)
 
@@ -195,9 +195,9 @@ class SubscriptionEvents(EndpointEvents):
         """Update the numbers of publishers that are alive and not alive, and queue the callback."""
         if not alive_change and not not_alive_change:
             return
-        self._alive += alive_change
+        self._alive_count += alive_change
         self._not_alive_count += not_alive_change
-        info = QoSLivelinessChangedInfo(self._alive, self._not_alive_count, alive_change, not_alive_change)
+        info = QoSLivelinessChangedInfo(self._alive_count, self._not_alive_count, alive_change, not_alive_change)
         self._notify(self._callbacks.liveliness, info)
 
 

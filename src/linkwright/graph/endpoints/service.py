@@ -190,7 +190,7 @@ class Service(IntrospectedEndpoint, Entity, Generic[Request, Response]):
         self.raw = raw
 
     @property
-    def what(self) -> str:
+    def description(self) -> str:
         """The description of this entity in log messages."""
         return f"callback of service '{self.name}'"
 
@@ -326,7 +326,7 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
         self._completions: deque[Callable[[], None]] = deque()
 
     @property
-    def what(self) -> str:
+    def description(self) -> str:
         """The description of this entity in log messages."""
         return f"client of service '{self.name}'"
 

@@ -74,7 +74,7 @@ class Subscription(TopicEndpoint[M], Entity):
         Entity.__init__(self, node, callback_group)
         self._describe(node, msg_type, topic_name, qos_profile)
         self.raw = raw
-        self.malformed = 0
+        self.malformed_count = 0
         """The number of messages that could not be deserialized."""
         self._waiting: deque[Any] = deque(maxlen=qos_profile.queue_length)
         self._plain_type: type | None = None
@@ -93,7 +93,7 @@ class Subscription(TopicEndpoint[M], Entity):
         self._is_batched = False
 
     @property
-    def what(self) -> str:
+    def description(self) -> str:
         """The description of this entity in log messages."""
         return f"callback of topic '{self.name}'"
 
@@ -372,6 +372,6 @@ class Subscription(TopicEndpoint[M], Entity):
             return None
 
     def _refuse(self, error: LinkwrightError) -> None:
-        self.malformed += 1
-        if self.malformed == 1:
+        self.malformed_count += 1
+        if self.malformed_count == 1:
             self.node.logger.warning(f"Dropped a malformed message of topic '{self.name}': {error}")

@@ -56,13 +56,13 @@ class WorkQueue:
         self._last_number = 0
         self._cancelled = 0
         self._alarms_lock = threading.RLock()
-        self._sleepers: deque[threading.Lock] = deque()
+        self._wait_locks: deque[threading.Lock] = deque()
         self._is_wake_requested = False
 
     def add(self, item: Any) -> None:
         """Add an item at the end."""
         self._ready.append(item)
-        if self._sleepers:
+        if self._wait_locks:
             self._wake_sleepers()
 
     def add_first(self, items: list[Any]) -> None:
@@ -146,9 +146,11 @@ class WorkQueue:
             callback()
 
     def _sleep(self, deadline_ns: int | None, *, until_wake: bool) -> None:
-        sleeper = threading.Lock()
-        sleeper.acquire()
-        self._sleepers.append(sleeper)  # before the queue is checked, so that a thread that adds later wakes this one
+        wait_lock = threading.Lock()
+        wait_lock.acquire()
+        self._wait_locks.append(
+            wait_lock
+        )  # before the queue is checked, so that a thread that adds later wakes this one
         try:
             if self._is_wake_requested or (self._ready and not until_wake):
                 return
@@ -158,11 +160,11 @@ class WorkQueue:
             if deadline_ns is not None:
                 seconds = min((deadline_ns - time.monotonic_ns()) / NANOSECONDS_PER_SECOND, seconds)
             if seconds > 0:
-                sleeper.acquire(timeout=seconds)
+                wait_lock.acquire(timeout=seconds)
         finally:
             self._is_wake_requested = False
             with suppress(ValueError):  # already removed by the thread that woke it
-                self._sleepers.remove(sleeper)
+                self._wait_locks.remove(wait_lock)
 
     def _earliest_wake_ns(self, deadline_ns: int | None) -> int | None:
         with self._alarms_lock:
@@ -171,6 +173,6 @@ class WorkQueue:
         return deadline_ns
 
     def _wake_sleepers(self) -> None:
-        while self._sleepers:
+        while self._wait_locks:
             with suppress(IndexError):  # another thread removed it
-                self._sleepers.popleft().release()
+                self._wait_locks.popleft().release()

@@ -23,7 +23,7 @@ It may be called from any thread, but never by two threads at the same time.
 """
 
 
-class Namesakes:
+class SharedNameMonitor:
     """Tracks node names of this process that other processes also use, and reports changes.
 
     Args:

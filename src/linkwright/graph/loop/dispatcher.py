@@ -65,7 +65,7 @@ class Entity(Part, ABC):
 
     @property
     @abstractmethod
-    def what(self) -> str:
+    def description(self) -> str:
         """The description of this entity in log messages."""
 
     def set_dispatcher(self, dispatcher: Dispatcher | None) -> None:
@@ -110,7 +110,7 @@ class Entity(Part, ABC):
 
     def report(self, error: BaseException) -> None:
         """Log an error that a call of the entity raised, with the node's logger."""
-        log_failure(self.node.logger, self.what, error)
+        log_failure(self.node.logger, self.description, error)
 
 
 class GuardCondition(Entity):
@@ -127,7 +127,7 @@ class GuardCondition(Entity):
         self._triggered = False
 
     @property
-    def what(self) -> str:
+    def description(self) -> str:
         """The description of this entity in log messages."""
         return "guard condition callback"
 

@@ -76,7 +76,7 @@ class Timer(Entity):
         self._period_ns = int(period_ns)
         self._alarm: Alarm | None = None
         self._alarm_ns = 0
-        self._due = False
+        self._is_due = False
         self._running = autostart
         self._last_ns = clock.timer_ns()
         self._due_ns = self._last_ns + self._period_ns
@@ -106,7 +106,7 @@ class Timer(Entity):
         )
 
     @property
-    def what(self) -> str:
+    def description(self) -> str:
         """The description of this entity in log messages."""
         return "timer callback"
 
@@ -131,7 +131,7 @@ class Timer(Entity):
         """
         if self.destroyed:
             raise InvalidHandleError
-        self._due = False
+        self._is_due = False
         self._running = True
         self._last_ns = self.clock.timer_ns()
         self._due_ns = self._last_ns + self._period_ns
@@ -174,14 +174,14 @@ class Timer(Entity):
 
     def has_work(self) -> bool:
         """Return whether a call is due and has not been taken."""
-        return self._due
+        return self._is_due
 
     def take(self) -> Callable[[], object] | None:
         """Return the call of the callback that is due, or None if there is none."""
         self._announced = False
-        if not self._due:
+        if not self._is_due:
             return None
-        self._due = False
+        self._is_due = False
         now_ns = self.clock.timer_ns()
         expected_ns = self._due_ns
         self._last_ns = now_ns
@@ -209,7 +209,7 @@ class Timer(Entity):
         """Continue with the remaining time after the clock has changed its time source."""
         self._due_ns = self.clock.timer_ns() + self._remaining_ns
         self._last_ns = self._due_ns - self._period_ns
-        if self._running and not self._due:
+        if self._running and not self._is_due:
             self._arm()
 
     def after_jump_back(self) -> None:
@@ -223,7 +223,7 @@ class Timer(Entity):
         if now_ns < self._last_ns:
             self._last_ns = now_ns
             self._due_ns = now_ns + self._period_ns
-        if self._running and not self._due:
+        if self._running and not self._is_due:
             self._arm()
 
     def _arm(self) -> None:
@@ -234,7 +234,7 @@ class Timer(Entity):
 
     def _disarm(self) -> None:
         self._disarm_alarm()
-        self._due = False
+        self._is_due = False
 
     def _disarm_alarm(self) -> None:
         alarm, self._alarm = self._alarm, None
@@ -248,7 +248,7 @@ class Timer(Entity):
         if self._alarm_ns < self._due_ns:
             self._arm()
             return
-        self._due = True
+        self._is_due = True
         self.announce()
 
 
@@ -269,7 +269,7 @@ class Rate:
 
     def __init__(self, timer: Timer) -> None:
         self.timer = timer
-        self._next: Future[None] = Future()
+        self._next_tick: Future[None] = Future()
         self._is_ended = False
         timer.callback = self._tick
         timer.node.add_cleanup(self.wake)
@@ -312,12 +312,12 @@ class Rate:
             raise InterruptedWaitError
         if self.timer.is_canceled():
             self.timer.reset()
-        return self._next
+        return self._next_tick
 
     def _check_not_ended(self) -> None:
         if self._is_ended:
             raise InterruptedWaitError
 
     def _tick(self) -> None:
-        tick, self._next = self._next, Future()
+        tick, self._next_tick = self._next_tick, Future()
         tick.set_result(None)

@@ -31,7 +31,7 @@ WRONG_TYPE = "Wrong parameter type"
 """The beginning of every reason that concerns the type of a value."""
 
 
-def objection(parameter: Parameter, descriptor: Any, *, declared: bool, check_read_only: bool) -> str | None:
+def refusal_reason(parameter: Parameter, descriptor: Any, *, declared: bool, check_read_only: bool) -> str | None:
     """Return the reason why a parameter cannot be set, or None if it can be set.
 
     Fills in the descriptor's name, and its type if the parameter has dynamic typing.
@@ -282,7 +282,7 @@ class ParameterStore:
         fallback = current if alternative is None else Parameter(name, value=alternative)
         reason = None
         for candidate in (current, fallback):
-            reason = objection(candidate, descriptor, declared=True, check_read_only=False)
+            reason = refusal_reason(candidate, descriptor, declared=True, check_read_only=False)
             if reason is None:
                 self._parameters[name] = candidate
                 self._descriptors[name] = descriptor
@@ -357,7 +357,7 @@ class ParameterStore:
             if descriptor is None:
                 continue
             is_declared = parameter.name in self._parameters
-            reason = objection(parameter, descriptor, declared=is_declared, check_read_only=descriptors is None)
+            reason = refusal_reason(parameter, descriptor, declared=is_declared, check_read_only=descriptors is None)
             if reason is not None:
                 return SetParametersResult(successful=False, reason=reason)
         for callback in tuple(self.on_set):

@@ -180,7 +180,7 @@ class SteppedNode:
         qos: QoSProfile | int = 10,
         *,
         commander: Commander | None = None,
-        rest: Callable[[], object] | None = None,
+        stop_motion: Callable[[], object] | None = None,
     ) -> None:
         """Subscribe to a topic, with a callback that runs between two steps.
 
@@ -191,23 +191,25 @@ class SteppedNode:
             qos: the QoS; a number is a depth.
             commander: for commands that remain in effect until the next one, an object returned by the method
                 `commander`.
-            rest: called instead of the callback, with a warning, if a message contains NaN or an infinite number, which
-                would make the world unstable. None to accept such messages.
+            stop_motion: called instead of the callback, with a warning, if a message contains NaN or an infinite
+                number, which would make the world unstable. None to accept such messages.
         """
-        self._subscribe_to(msg_type, [topic], self._make_callback(topic, callback, rest, commander), qos, commander)
+        self._subscribe_to(
+            msg_type, [topic], self._make_callback(topic, callback, stop_motion, commander), qos, commander
+        )
 
-    def commander(self, rest: Callable[[], bool]) -> Commander:
+    def commander(self, stop_motion: Callable[[], bool]) -> Commander:
         """Return an object that revokes the last command when its publisher is lost.
 
         Such an object is for commands that remain in effect until the next one. It also warns if several nodes send
         commands at the same time.
 
         Args:
-            rest: stops the motion of the last command; returns whether there was any motion, which is logged.
+            stop_motion: stops the motion of the last command; returns whether there was any motion, which is logged.
         """
 
         def lost(publisher: EndpointInfo) -> None:
-            self.post(partial(self._stop_motion, rest, publisher))
+            self.post(partial(self._stop_motion, stop_motion, publisher))
 
         return Commander(lost, DriverWatch(self.logger, self._node.graph, self._now_ns))
 
@@ -221,10 +223,10 @@ class SteppedNode:
         """
         response = get_service(srv_type).Response
 
-        def asked(request: Any, reply: Callable[[Any], None]) -> None:
+        def on_request(request: Any, reply: Callable[[Any], None]) -> None:
             self.post(lambda: reply(callback(request, response())))
 
-        self._endpoints.append(self._node.create_service(srv_type, name, asked, replying=True))
+        self._endpoints.append(self._node.create_service(srv_type, name, on_request, replying=True))
 
     def post(self, command: Callable[[], object]) -> None:
         """Queue a function to be called between two steps. Callable from any thread."""
@@ -308,16 +310,16 @@ class SteppedNode:
             self.logger.warning(phrase("{who}: the motion stops", who=describe_lost_publisher(publisher)))
 
     def _pass_if_finite(
-        self, callback: Callable[[Any], object], rest: Callable[[], object], topic: str, message: Any
+        self, callback: Callable[[Any], object], stop_motion: Callable[[], object], topic: str, message: Any
     ) -> None:
         """Call `callback` with a command if all its numbers are finite.
 
-        Otherwise call `rest` and log a warning.
+        Otherwise call `stop_motion` and log a warning.
         """
         if _is_finite(message):
             callback(message)
             return
-        rest()
+        stop_motion()
         warning = phrase("a command on '{topic}' contains NaN or an infinite number: the motion stops", topic=topic)
         self.logger.warning(warning, throttle_duration_sec=_WARNING_PERIOD_S)
 

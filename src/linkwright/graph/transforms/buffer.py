@@ -196,7 +196,7 @@ class TransformBuffer:
         poses = self._poses_in_roots()
         return compose(invert(poses[target_row]), poses[source_row])
 
-    def knows(self, frame: str) -> bool:
+    def has_frame(self, frame: str) -> bool:
         """Return whether a frame exists."""
         return frame in self._rows
 

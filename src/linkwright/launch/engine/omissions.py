@@ -32,7 +32,7 @@ class Omissions:
 
     def __init__(self, log: LaunchLog, command: str | None, *, skip_all: bool) -> None:
         self._log = log
-        self._wanted = skip_all
+        self._skip_all = skip_all
         self._command = command
         self.has_skipped = False
         self._unreported: list[Note] = []
@@ -48,7 +48,7 @@ class Omissions:
         is_consequence = self.has_skipped and any(
             diagnostic.code in _UNSET_VALUE_CODES for diagnostic in error.diagnostics
         )
-        if not (is_consequence or is_unavailable(error) or (self._wanted and _is_missing(error))):
+        if not (is_consequence or is_unavailable(error) or (self._skip_all and _is_missing(error))):
             return False
         self.has_skipped = True
         self._unreported += [Note(diagnostic.message, diagnostic.span) for diagnostic in error.diagnostics]

@@ -39,7 +39,7 @@ class ProcessTable:
 
     def start(self, plan: ProcessPlan, name: str) -> None:
         """Start a process, monitor it until it ends, and respawn it if the plan requests a respawn."""
-        self._session.spawn(self._follow(plan, name))
+        self._session.spawn(self._run_process(plan, name))
 
     def stop_matching(self, matcher: ProcessMatcher) -> None:
         """Ask the processes with a matching action to end.
@@ -99,7 +99,7 @@ class ProcessTable:
         """Close the guardian after all processes have ended."""
         self._guardian.close()
 
-    async def _follow(self, plan: ProcessPlan, name: str) -> None:
+    async def _run_process(self, plan: ProcessPlan, name: str) -> None:
         start_count = 0
         # As in ROS, if an action starts a process and a later action fails, the process still starts and is then asked
         # to end, because handlers wait for its exit. After an interrupt, it does not start.

@@ -284,7 +284,7 @@ class RunningProcess:
 
     def _flush(self) -> None:
         for stream_number, splitter in self._lines.items():
-            for line in splitter.end():
+            for line in splitter.finish():
                 self._log_line(stream_number, line)
 
     def _log_line(self, stream_number: int, line: str) -> None:
@@ -325,7 +325,7 @@ class _LineSplitter:
         self._chunks, self._length = [remaining_text], len(remaining_text)
         return [line.rstrip("\r") for line in complete_lines]
 
-    def end(self) -> list[str]:
+    def finish(self) -> list[str]:
         """Return a list with the unterminated last line, or an empty list if there is none."""
         remaining_text = "".join(self._chunks) + self._decode(b"", final=True)
         return [remaining_text.rstrip("\r")] if remaining_text else []

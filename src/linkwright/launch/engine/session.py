@@ -102,7 +102,7 @@ class LaunchSession:
         return not (self._failures or has_run_nothing)
 
     @property
-    def visiting(self) -> bool:
+    def is_blocking(self) -> bool:
         """Whether code of the launch file is running. It blocks the event loop."""
         return self._is_visiting
 
@@ -227,7 +227,7 @@ class LaunchSession:
         next_entities = as_entities(entities)
         local_values = self.context.get_locals_as_dict()
 
-        def due() -> None:
+        def run_scheduled() -> None:
             self._waiting.pop(token, None)
             self.emit(event)
             self.context.push_locals()
@@ -244,7 +244,7 @@ class LaunchSession:
             self._waiting.pop(token, None)
             self._wake_event.set()
 
-        handle = (schedule or self.loop.call_later)(seconds, due)
+        handle = (schedule or self.loop.call_later)(seconds, run_scheduled)
         self._waiting[token] = cancel if cancel_on_shutdown else None
         return cancel
 

@@ -26,7 +26,7 @@ class MarkupEntity(Entity):
         self._type_name = type_name
         self._place = place
         self._parent = parent
-        self._asked: dict[str, None] = {}
+        self._read_names: dict[str, None] = {}
 
     @property
     def type_name(self) -> str:
@@ -54,12 +54,12 @@ class MarkupEntity(Entity):
         Raises:
             ValueError: LAUNCH116, a part was not read.
         """
-        unread_names = [name for name in present if name not in self._asked]
+        unread_names = [name for name in present if name not in self._read_names]
         if not unread_names:
             return
         name = unread_names[0]
         names_text = ", ".join(repr(str(unread_name)) for unread_name in unread_names)
-        known_names = [read_name for read_name in self._asked if read_name not in unread_names]
+        known_names = [read_name for read_name in self._read_names if read_name not in unread_names]
         hint = did_you_mean(name, known_names)
         if hint is None and known_names:
             hint = phrase(
@@ -77,7 +77,7 @@ class MarkupEntity(Entity):
         return self._place
 
     def _missing(self, name: str, present: Collection[str], ros_error: str) -> NoReturn:
-        unread_names = [candidate for candidate in present if candidate not in self._asked]
+        unread_names = [candidate for candidate in present if candidate not in self._read_names]
         similar_names = nearest(name, unread_names)
         hint = (
             phrase(("it has {names}; is that a misspelling?"), names=quoted_names(similar_names, " or "))

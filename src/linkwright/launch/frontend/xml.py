@@ -35,7 +35,7 @@ class Entity(MarkupEntity):
 
         Reading this property marks all child elements as read.
         """
-        self._asked.update((element.tag, None) for element in self._element.elements())
+        self._read_names.update((element.tag, None) for element in self._element.elements())
         return [Entity(element, parent=self) for element in self._element.elements()]
 
     def assert_entity_completely_parsed(self) -> None:
@@ -54,7 +54,7 @@ class Entity(MarkupEntity):
         The value is converted to the type. If there is an attribute ``NAME-sep``, the value is split at this separator
         into a list. See `linkwright.launch.model.markup.entity.Entity`.
         """
-        self._asked[name] = None
+        self._read_names[name] = None
         attributes = self._element.attributes
         ros_error = f"Attribute '{name}' of type '{data_type}' not found in Entity '{self.type_name}'"
         if is_list_of_entities(data_type):
@@ -68,7 +68,7 @@ class Entity(MarkupEntity):
             self._missing(name, attributes, ros_error)
         value: Any = PlacedText(attributes[name], _attribute_place(self._element, name))
         if name + _SEPARATOR in attributes:
-            self._asked[name + _SEPARATOR] = None
+            self._read_names[name + _SEPARATOR] = None
             value = [PlacedText(item, value.place) for item in value.split(attributes[name + _SEPARATOR])]
         try:
             return get_typed_value(value, data_type, can_be_str=can_be_str)
@@ -86,7 +86,7 @@ class Entity(MarkupEntity):
             return self.place if child is None else _place(child)
         if source is None:
             return None
-        if name in self._asked:
+        if name in self._read_names:
             return _attribute_place(element, name)
         name_range = attribute_name_range(source.text, element.offset, name)
         return MarkupPlace(source, *name_range) if name_range else self.place

@@ -48,7 +48,7 @@ class Entity(MarkupEntity):
         self._are_children_read = True
         children = self._element
         if isinstance(children, dict):
-            self._asked[_CHILDREN] = None
+            self._read_names[_CHILDREN] = None
             if _CHILDREN not in children:
                 text = (
                     f"Expected entity `{self.type_name}` to have children entities."
@@ -101,7 +101,7 @@ class Entity(MarkupEntity):
         The value must have the type according to YAML. As in newer ROS versions, a number or boolean is also accepted
         as a string. See `linkwright.launch.model.markup.entity.Entity`.
         """
-        self._asked[name] = None
+        self._read_names[name] = None
         if not isinstance(self._element, (dict, list)):
             message = phrase("'{type_name}' must be a mapping of attributes", type_name=self.type_name)
             raise error_at(self.place, "LAUNCH118", message, ros_error=TypeError(message))
@@ -132,7 +132,7 @@ class Entity(MarkupEntity):
     def _place_of_part(self, name: str) -> Place | None:
         for key, value in self._element.items() if isinstance(self._element, dict) else ():
             if key == name:
-                return (place_of(value) if name in self._asked else None) or place_of(key) or self.place
+                return (place_of(value) if name in self._read_names else None) or place_of(key) or self.place
         return self.place
 
 

@@ -153,7 +153,7 @@ class DeclaredSubstitution(Substitution):
     """
 
     _tag: ClassVar[str] = ""
-    _shown: ClassVar[str | None] = None
+    _description_format: ClassVar[str | None] = None
     _arguments: ClassVar[tuple[Texts, ...]] = ()
 
     def __init_subclass__(cls, *, tag: str = "", shown: str | None = None, **kwargs: Any) -> None:
@@ -164,7 +164,7 @@ class DeclaredSubstitution(Substitution):
             if "__init__" not in vars(cls):
                 type.__setattr__(cls, "__init__", _create_constructor(cls))
         if shown is not None:
-            cls._shown = shown
+            cls._description_format = shown
         if tag:
             cls._tag = tag
             for name in tag.split("/"):
@@ -198,9 +198,9 @@ class DeclaredSubstitution(Substitution):
     def describe(self) -> str:
         """Return the text of the substitution in listings."""
         argument_texts = {argument.name: argument.describe(vars(self)[argument.name]) for argument in self._arguments}
-        if self._shown is None:
+        if self._description_format is None:
             return f"{type(self).__name__}({', '.join(argument_texts.values())})"
-        return self._shown.format(kind=type(self).__name__, **argument_texts)
+        return self._description_format.format(kind=type(self).__name__, **argument_texts)
 
 
 def _create_constructor(cls: type[DeclaredSubstitution]) -> Callable[..., None]:

@@ -378,7 +378,7 @@ class Node(ExecuteProcess):
             destinations=self._destinations(context),
             respawns=self._respawn_max_retries if self._typed(context, "respawn", self._respawn) else 0,
             respawn_delay=self._respawn_delay or 0.0,
-            for_others=self.__node_parameters.rules(context),
+            parameters_of_others=self.__node_parameters.rules(context),
         )
         self.process_description.final_name = plan.process_name
         self.process_description.final_cmd = plan.details["cmd"]

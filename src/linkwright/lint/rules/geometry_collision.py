@@ -167,7 +167,7 @@ class CollisionAwayFromVisual(Rule):
                         gap=gap * 100,
                     ),
                     link.collisions[0].element,
-                    notes=[Note(phrase("the first visual is here"), _place(link.visuals[0]))],
+                    notes=[Note(phrase("the first visual is here"), _span_of(link.visuals[0]))],
                     hint=_origin_hint(link, visual_box),
                 )
 
@@ -229,7 +229,7 @@ class CollisionSize(Rule):
                         times=1 / ratio,
                     ),
                     link.collisions[0].element,
-                    notes=[Note(phrase("the first visual is here"), _place(link.visuals[0]))],
+                    notes=[Note(phrase("the first visual is here"), _span_of(link.visuals[0]))],
                     hint=phrase("check the sizes, and the 'scale' of meshes"),
                 )
 
@@ -283,5 +283,5 @@ def _has_collision(element: Element | None) -> bool:
     return element is not None and element.first("collision") is not None
 
 
-def _place(shape: Visual) -> Span | None:
+def _span_of(shape: Visual) -> Span | None:
     return shape.element.span() if shape.element is not None else None

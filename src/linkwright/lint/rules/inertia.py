@@ -15,7 +15,7 @@ from linkwright.urdf import Inertial, Link
 from linkwright.xmltree import Element
 
 
-def part(inertial: Inertial, tag: str) -> Element | None:
+def child_or_inertial(inertial: Inertial, tag: str) -> Element | None:
     """Return a child of an ``<inertial>``, or the ``<inertial>`` itself if the child is missing.
 
     The result is None if the inertial does not come from an element.
@@ -143,7 +143,7 @@ class ZeroMass(Rule):
         """Return the finding on a mass of zero, in a robot or a world."""
         return self.report(
             phrase("the mass of link '{name}' is zero", name=name),
-            part(inertial, "mass"),
+            child_or_inertial(inertial, "mass"),
             "value",
             hint=phrase("give its mass in kg, or leave <inertial> out if the link is only a frame"),
         )
@@ -182,7 +182,7 @@ class NegativeMass(Rule):
         """Return the finding on a negative mass, in a robot or a world."""
         return self.report(
             phrase("the mass of link '{name}' is negative: {mass:g} kg", name=name, mass=inertial.mass),
-            part(inertial, "mass"),
+            child_or_inertial(inertial, "mass"),
             "value",
             hint=phrase("masses are in kg and positive"),
         )
@@ -224,7 +224,7 @@ class TinyMass(Rule):
             (link, inertial, total), *others = tiny_bodies
             yield self.report(
                 phrase("the mass of moving link '{name}' is tiny: {total:g} kg", name=link.name, total=total),
-                part(inertial, "mass"),
+                child_or_inertial(inertial, "mass"),
                 "value",
                 notes=[Note(name_others([other.name for other, *_ in others]))] if others else [],
                 hint=phrase("masses are in kg; give the link a mass that solvers can work with"),
@@ -262,7 +262,7 @@ class HugeMass(Rule):
             if inertial.mass > largest:
                 yield self.report(
                     phrase("the mass of link '{name}' is {mass:g} kg", name=link.name, mass=inertial.mass),
-                    part(inertial, "mass"),
+                    child_or_inertial(inertial, "mass"),
                     "value",
                     hint=phrase("masses are in kg; if this is in grams, write {mass:g}", mass=inertial.mass / 1000),
                 )

@@ -9,7 +9,7 @@ from linkwright.lint.explanations import is_explained
 from linkwright.lint.extents import WEIGHTLESS
 from linkwright.lint.option import Option
 from linkwright.lint.rule import Rule
-from linkwright.lint.rules.inertia import links_with_inertial, part
+from linkwright.lint.rules.inertia import child_or_inertial, links_with_inertial
 from linkwright.lint.subject import Subject
 from linkwright.lint.tensors import DIAGONAL, PRODUCTS, name_others
 from linkwright.urdf import Inertial, Link
@@ -53,7 +53,7 @@ class PlaceholderInertia(Rule):
                     name=link.name,
                     count=len(group) - 1,
                 ),
-                part(inertial, "inertia"),
+                child_or_inertial(inertial, "inertia"),
                 notes=[Note(others)],
                 hint=phrase("`linkwright inertia` computes one for each from its shapes"),
                 severity=Severity.INFO if is_explained(inertial.element, "inertia") else None,
@@ -127,7 +127,7 @@ class RotatedIsotropicInertia(Rule):
                         "about every axis",
                         name=link.name,
                     ),
-                    part(inertial, "origin"),
+                    child_or_inertial(inertial, "origin"),
                     "rpy",
                     hint=phrase("leave 'rpy' out, or give the moments of the shape"),
                 )
@@ -171,7 +171,7 @@ class TinyInertia(Rule):
                         links=body.links[0],
                         moment=moment,
                     ),
-                    part(inertial_links[0].inertial, "inertia"),
+                    child_or_inertial(inertial_links[0].inertial, "inertia"),
                     hint=phrase("simulate with a larger inertia, or give the joint damping"),
                 )
 

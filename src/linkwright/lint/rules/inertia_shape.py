@@ -15,7 +15,7 @@ from linkwright.lint.explanations import is_explained
 from linkwright.lint.extents import MARKER, WEIGHTLESS
 from linkwright.lint.option import Option
 from linkwright.lint.rule import Rule
-from linkwright.lint.rules.inertia import links_with_inertial, part
+from linkwright.lint.rules.inertia import child_or_inertial, links_with_inertial
 from linkwright.lint.rules.inertia_doubtful import placeholder_links
 from linkwright.lint.subject import Subject
 from linkwright.lint.tensors import DIAGONAL, PRODUCTS, first_flaw, name_others
@@ -100,7 +100,7 @@ class DensityTooHigh(Rule):
                         name=link.name,
                         thousands=_grouped_digits(inertial.mass / volume),
                     ),
-                    part(inertial, "mass"),
+                    child_or_inertial(inertial, "mass"),
                     "value",
                     notes=[
                         Note(
@@ -173,7 +173,7 @@ class DensityTooLow(Rule):
                         name=link.name,
                         mass=mass / volume,
                     ),
-                    part(inertial, "mass"),
+                    child_or_inertial(inertial, "mass"),
                     "value",
                     notes=[Note(phrase("{mass:g} kg in {volume}", mass=mass, volume=_volume_text(volume)))],
                     hint=phrase("masses are in kg and lengths in m"),
@@ -225,7 +225,7 @@ class CenterOutside(Rule):
                         name=link.name,
                         length=_length_text(distance),
                     ),
-                    part(inertial, "origin"),
+                    child_or_inertial(inertial, "origin"),
                     "xyz",
                     notes=[_extent_note(bounds)],
                     hint=phrase("lengths are in metres; this looks like millimetres")
@@ -347,7 +347,7 @@ class InertiaTooLarge(Rule):
                 name=link.name,
                 largest=largest,
             ),
-            part(inertial, "inertia"),
+            child_or_inertial(inertial, "inertia"),
             name,
             notes=[Note(limit_phrase), *([Note(name_others(others))] if others else [])],
             hint=_COMPUTE
@@ -402,7 +402,7 @@ class InertiaTooSmall(Rule):
                         name=link.name,
                         thousands=_grouped_digits(uniform_moment / largest),
                     ),
-                    part(inertial, "inertia"),
+                    child_or_inertial(inertial, "inertia"),
                     notes=[
                         Note(
                             phrase(

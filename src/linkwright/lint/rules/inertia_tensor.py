@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator
 from linkwright.diagnostics import Diagnostic, Note, phrase
 from linkwright.lint.finding import Finding
 from linkwright.lint.rule import Rule
-from linkwright.lint.rules.inertia import part
+from linkwright.lint.rules.inertia import child_or_inertial
 from linkwright.lint.subject import Subject
 from linkwright.lint.tensors import DIAGONAL, Flaw, tensor
 from linkwright.urdf import Inertial, Link
@@ -71,7 +71,7 @@ class ZeroInertia(_FlawRule):
                 continue
             yield self.report(
                 phrase("link '{name}' has a mass of {mass:g} kg and no inertia", name=link.name, mass=inertial.mass),
-                part(inertial, "inertia"),
+                child_or_inertial(inertial, "inertia"),
                 hint=phrase("`linkwright inertia` computes it from the link's shapes")
                 if link.visuals or link.collisions
                 else phrase(
@@ -111,7 +111,7 @@ class NonPositiveMoment(_TensorRule):
         problem = phrase("zero") if flaw.amount == 0 else phrase("negative: {amount:g}", amount=flaw.amount)
         return self.report(
             phrase("'{attribute}' of link '{name}' is {what}", attribute=flaw.attribute, name=name, what=problem),
-            part(inertial, "inertia"),
+            child_or_inertial(inertial, "inertia"),
             flaw.attribute,
             hint=phrase("ixx, iyy and izz are positive, in kg m2; `linkwright inertia` computes them"),
         )
@@ -153,7 +153,7 @@ class ExcessiveProduct(_TensorRule):
                 name=name,
                 value=value,
             ),
-            part(inertial, "inertia"),
+            child_or_inertial(inertial, "inertia"),
             flaw.attribute,
             notes=[Note(phrase("with these moments, its magnitude can be at most {amount:.3g}", amount=flaw.amount))],
             hint=phrase("check the order ixx ixy ixz iyy iyz izz, and that all are in kg m2"),
@@ -190,7 +190,7 @@ class IndefiniteInertia(_TensorRule):
     def finding(self, name: str, inertial: Inertial, flaw: Flaw) -> Finding:
         return self.report(
             phrase("the inertia tensor of link '{name}' is not positive definite", name=name),
-            part(inertial, "inertia"),
+            child_or_inertial(inertial, "inertia"),
             notes=[_principal_moments_note(inertial)],
             hint=phrase("check the signs of the products, and that all components are about the centre of mass"),
         )
@@ -237,7 +237,7 @@ class TriangleInequality(_TensorRule):
             notes = [Note(phrase("{first} + {second} = {small:g}", first=first, second=second, small=moment_sum))]
         return self.report(
             message,
-            part(inertial, "inertia"),
+            child_or_inertial(inertial, "inertia"),
             flaw.attribute if is_diagonal else None,
             notes=notes,
             hint=phrase(

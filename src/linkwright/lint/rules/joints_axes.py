@@ -10,7 +10,7 @@ from linkwright.lint.fix import add_attribute, remove_element, replace_value
 from linkwright.lint.option import Option
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
-from linkwright.lint.walk import format_number, joints, parts, values
+from linkwright.lint.walk import format_number, joint_children, joints, values
 from linkwright.urdf import Joint
 from linkwright.urdf.values import plain
 
@@ -49,7 +49,7 @@ class AxisZero(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every moving joint with an ``<axis>`` of zero length."""
-        for joint, _, axis in parts(subject, "axis"):
+        for joint, _, axis in joint_children(subject, "axis"):
             if joint.type not in _MOVING_TYPES:
                 continue
             if "xyz" not in axis.attributes:
@@ -101,7 +101,7 @@ class AxisNotUnit(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every moving joint whose axis length differs from 1 by more than rounding explains."""
-        for joint, _, axis in parts(subject, "axis"):
+        for joint, _, axis in joint_children(subject, "axis"):
             direction = values(axis, "xyz")
             if joint.type not in _MOVING_TYPES or len(direction) != 3 or not any(direction):
                 continue
@@ -200,7 +200,7 @@ class AxisOnFixed(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every ``<axis>`` of a fixed or floating joint, because readers ignore it."""
-        for joint, _, axis in parts(subject, "axis"):
+        for joint, _, axis in joint_children(subject, "axis"):
             if joint.type in ("fixed", "floating"):
                 yield self.report(
                     phrase("{type} joint '{name}' has an <axis>, which is not read", type=joint.type, name=joint.name),
@@ -240,7 +240,7 @@ class AxisTilted(Rule):
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every axis that is close to a coordinate axis without being exactly aligned."""
         max_tilt = radians(self.option(subject, "largest-tilt", float))
-        for joint, _, axis in parts(subject, "axis"):
+        for joint, _, axis in joint_children(subject, "axis"):
             direction = values(axis, "xyz")
             if joint.type not in _MOVING_TYPES or len(direction) != 3 or not any(direction):
                 continue

@@ -9,7 +9,7 @@ from linkwright.diagnostics import Diagnostic, Severity, phrase
 from linkwright.lint.fix import Fix, remove_element, value_edit
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
-from linkwright.lint.walk import format_number, parts, value
+from linkwright.lint.walk import format_number, joint_children, value
 from linkwright.urdf import Joint
 from linkwright.xmltree import Element
 
@@ -47,7 +47,7 @@ class SoftLimitsOutside(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every soft limit beyond the limit on its side."""
-        for joint, _, safety in parts(subject, "safety_controller"):
+        for joint, _, safety in joint_children(subject, "safety_controller"):
             if joint.type not in ("revolute", "prismatic") or joint.limit is None or joint.safety is None:
                 continue
             lower, upper = joint.limit.lower, joint.limit.upper
@@ -121,7 +121,7 @@ class SoftLimitsInverted(Rule):
 
         If no soft limits are given, both are 0 and have no effect.
         """
-        for joint, _, safety in parts(subject, "safety_controller"):
+        for joint, _, safety in joint_children(subject, "safety_controller"):
             controller = joint.safety
             if controller is None or controller.soft_lower_limit == controller.soft_upper_limit == 0:
                 continue
@@ -174,7 +174,7 @@ class SafetyGainNegative(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every gain below 0."""
-        for joint, _, safety in parts(subject, "safety_controller"):
+        for joint, _, safety in joint_children(subject, "safety_controller"):
             for name in ("k_velocity", "k_position"):
                 gain = value(safety, name)
                 if gain is not None and gain < 0:
@@ -221,7 +221,7 @@ class DynamicsNegative(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every negative damping or friction."""
-        for joint, _, dynamics in parts(subject, "dynamics"):
+        for joint, _, dynamics in joint_children(subject, "dynamics"):
             for name in ("damping", "friction"):
                 coefficient = value(dynamics, name)
                 if coefficient is not None and coefficient < 0:
@@ -270,7 +270,7 @@ class DynamicsOnFixed(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every fixed joint with dynamics."""
-        for joint, _, dynamics in parts(subject, "dynamics"):
+        for joint, _, dynamics in joint_children(subject, "dynamics"):
             if joint.type == "fixed":
                 yield self.report(
                     phrase("fixed joint '{name}' has <dynamics>", name=joint.name),
@@ -307,7 +307,7 @@ class CalibrationOutside(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every reference position that a bounded joint cannot reach."""
-        for joint, _, calibration in parts(subject, "calibration"):
+        for joint, _, calibration in joint_children(subject, "calibration"):
             lower, upper = (joint.limit.lower, joint.limit.upper) if joint.limit else (-inf, inf)
             if joint.type not in ("revolute", "prismatic") or not lower < upper:
                 continue

@@ -9,7 +9,7 @@ from linkwright.diagnostics import Diagnostic, Severity, phrase
 from linkwright.lint.fix import Fix, value_edit
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
-from linkwright.lint.walk import BOUNDED, bounds, format_number, is_for_simulation, limits, parts, value
+from linkwright.lint.walk import BOUNDED, bounds, format_number, is_for_simulation, joint_children, limits, value
 
 
 class _ZeroLimitRule(Rule):
@@ -105,7 +105,7 @@ class _NegativeLimitRule(Rule):
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         if subject.robot is not None and subject.robot.version >= (1, 2):
             return  # the reader reports negative limits in files of URDF 1.2
-        for joint, _, limit in parts(subject, "limit"):
+        for joint, _, limit in joint_children(subject, "limit"):
             magnitude = value(limit, self.attribute)
             if magnitude is not None and magnitude < 0:
                 edit = value_edit(limit, self.attribute, limit.attributes[self.attribute].strip().lstrip("-"))

@@ -10,7 +10,7 @@ from linkwright.lint.fix import Fix, value_edit
 from linkwright.lint.option import Option
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
-from linkwright.lint.walk import SURROUNDINGS, format_number, joints, parts, values
+from linkwright.lint.walk import SURROUNDINGS, format_number, joint_children, joints, values
 from linkwright.loading.deferred import lazy_pattern
 from linkwright.urdf.values import looks_like_degrees
 from linkwright.xmltree import Element
@@ -45,7 +45,7 @@ class OriginFar(Rule):
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every joint whose origin is implausibly far away in metres."""
         max_distance = self.option(subject, "farthest", float)
-        for joint, _, origin in parts(subject, "origin"):
+        for joint, _, origin in joint_children(subject, "origin"):
             xyz = values(origin, "xyz")
             if len(xyz) != 3 or joint.parent in SURROUNDINGS:
                 continue
@@ -227,7 +227,7 @@ def _pi_fraction(text: str) -> str | None:
 
 
 def _origins(subject: Subject) -> Iterator[tuple[str, Element]]:
-    for joint, _, origin in parts(subject, "origin"):
+    for joint, _, origin in joint_children(subject, "origin"):
         yield phrase("joint '{name}'", name=joint.name), origin
     for link in subject.links:
         if link.element is None:

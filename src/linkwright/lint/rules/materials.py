@@ -98,7 +98,7 @@ class RedefinedMaterial(Rule):
                 "name",
                 notes=[
                     Note(
-                        phrase("the first definition, '{look}', is used", look=_look(first_definition)),
+                        phrase("the first definition, '{look}', is used", look=_appearance_text(first_definition)),
                         first_definition.element.span(),
                     )
                 ],
@@ -326,7 +326,8 @@ class MaterialNamesDifferInCase(Rule):
                     "name",
                     notes=[
                         Note(
-                            phrase("'{name}' is defined here", name=first_material.name), _place(first_material.element)
+                            phrase("'{name}' is defined here", name=first_material.name),
+                            _span_of(first_material.element),
                         )
                     ],
                     hint=phrase("use the same name in both places"),
@@ -347,11 +348,11 @@ def _looks_alike(first: Material, second: Material) -> bool:
     )
 
 
-def _look(material: Material) -> str:
+def _appearance_text(material: Material) -> str:
     if material.rgba is not None:
         return " ".join(f"{channel:g}" for channel in material.rgba)
     return str(material.texture)
 
 
-def _place(element: Element | None) -> Span | None:
+def _span_of(element: Element | None) -> Span | None:
     return element.span() if element is not None else None

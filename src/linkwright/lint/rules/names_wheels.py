@@ -124,7 +124,7 @@ class WheelSide(Rule):
             if gap[1] < -_POSITION_TOLERANCE and abs(gap[1]) > abs(gap[0]) and left.joint.element is not None:
                 note = Note(
                     phrase("'{name}' is at y = {position:g}", name=right.joint.name, position=right.frame.position[1]),
-                    _place(right.joint),
+                    _span_of(right.joint),
                 )
                 message = phrase(
                     "'{name}' is on the right of '{joint_name}', at y = {position:g}",
@@ -271,7 +271,7 @@ class WheelAxesOpposed(Rule):
         for left, right in pairs(list(wheels(subject))):
             if dot(left.axis, right.axis) < -_AXIS_TOLERANCE and right.joint.element is not None:
                 note = Note(
-                    phrase(("'{name}' turns in the opposite direction"), name=left.joint.name), _place(left.joint)
+                    phrase(("'{name}' turns in the opposite direction"), name=left.joint.name), _span_of(left.joint)
                 )
                 message = phrase(
                     "'{name}' and '{joint_name}' turn in opposite directions at velocities of the same sign",
@@ -315,7 +315,7 @@ class WheelsNotMirrored(Rule):
             if max(abs(lx - rx), abs(ly + ry), abs(lz - rz)) > _POSITION_TOLERANCE and right.joint.element is not None:
                 note = Note(
                     phrase("'{name}' is at {lx:.4g} {ly:.4g} {lz:.4g}", name=left.joint.name, lx=lx, ly=ly, lz=lz),
-                    _place(left.joint),
+                    _span_of(left.joint),
                 )
                 message = phrase(
                     "'{name}', at {rx:.4g} {ry:.4g} {rz:.4g}, does not mirror '{joint_name}'",
@@ -415,5 +415,5 @@ def _axis_text(axis: Vector3) -> str:
     return " ".join(f"{round(sign * value, 3) + 0.0:g}" for value in axis)
 
 
-def _place(joint: Joint) -> Span | None:
+def _span_of(joint: Joint) -> Span | None:
     return joint.element.span() if joint.element is not None else None

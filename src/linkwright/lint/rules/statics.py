@@ -115,7 +115,7 @@ class WheelsNotLevel(Rule):
                     ),
                     contact.link.element,
                     "name",
-                    notes=[Note(phrase("'{name}' is defined here", name=lowest.name), _place(lowest))],
+                    notes=[Note(phrase("'{name}' is defined here", name=lowest.name), _span_of(lowest))],
                     hint=phrase("check the heights of their joints, and the radii of the wheels"),
                 )
 
@@ -253,5 +253,5 @@ def _distance_outside(point: Point, corners: Sequence[Point]) -> float:
     return max_distance
 
 
-def _place(link: Link) -> Span | None:
+def _span_of(link: Link) -> Span | None:
     return link.element.span() if link.element is not None else None

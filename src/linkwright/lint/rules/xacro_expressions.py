@@ -51,11 +51,11 @@ class DeprecatedFunction(XacroRule):
             for use in file.uses:
                 if use.attribute is None or use.attribute == "params":
                     continue
-                for call in use.found.bare_calls:
+                for call in use.mentions.bare_calls:
                     if call.name not in property_names and not _is_called_by(DEPRECATED[call.name], file):
-                        yield self._found(use.element, use.attribute, call.name, call.offset)
+                        yield self._finding(use.element, use.attribute, call.name, call.offset)
 
-    def _found(self, element: Element, attribute: str, name: str, offset: int) -> Diagnostic:
+    def _finding(self, element: Element, attribute: str, name: str, offset: int) -> Diagnostic:
         from linkwright.lint.xacro_names import DEPRECATED
         from linkwright.xacro.faults import attribute_span
 
@@ -112,7 +112,7 @@ class ConstantCondition(XacroRule):
     def check_xacro(self, facts: XacroFacts) -> Iterator[Diagnostic]:
         from linkwright.lint.xacro_names import is_constant
 
-        for file in facts.own.values():
+        for file in facts.package_files.values():
             for element in islice(file.document.root.walk(), 1, None):
                 if element.tag not in ("xacro:if", "xacro:unless"):
                     continue
@@ -162,10 +162,10 @@ class UndeclaredArgument(XacroRule):
         declared_names |= {definition.name for file in facts.files.values() for definition in file.arguments}
         if any("$" in name for name in declared_names):
             return
-        for file in facts.own.values():
+        for file in facts.package_files.values():
             for use in file.uses:
                 text = use.element.attributes.get(use.attribute, "") if use.attribute else ""
-                for name in sorted(use.found.arguments - declared_names):
+                for name in sorted(use.mentions.arguments - declared_names):
                     if f"$(arg {name})" in text:
                         message = phrase(
                             "nothing declares the argument '{name}', which a branch that is not taken uses", name=name

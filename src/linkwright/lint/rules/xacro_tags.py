@@ -220,7 +220,7 @@ class IncludeAbsolutePath(XacroRule):
     holds_for_parts = True
 
     def check_xacro(self, facts: XacroFacts) -> Iterator[Diagnostic]:
-        for file in facts.own.values():
+        for file in facts.package_files.values():
             for include in file.includes:
                 if _ABSOLUTE_PATH.match(include.name):
                     message = phrase("the file '{name}' is included by an absolute path", name=include.name)
@@ -257,7 +257,7 @@ class IncludeOutsidePackage(XacroRule):
         package = facts.package
         if package is None:
             return
-        for path, file in facts.own.items():
+        for path, file in facts.package_files.items():
             folder = path.absolute().parent
             if not folder.is_relative_to(package.folder):
                 continue
@@ -315,11 +315,11 @@ class UndeclaredPackage(Rule):
         if package is None or package.manifest is None:
             return
         reported_packages: set[str] = set()
-        for is_optional, file in product((False, True), facts.own.values()):
+        for is_optional, file in product((False, True), facts.package_files.values()):
             for use in file.uses:
                 if _CONDITIONS.isdisjoint(parent.tag for parent in use.parents) is is_optional:
                     continue
-                for name, offset in use.found.packages:
+                for name, offset in use.mentions.packages:
                     if name in reported_packages or package.manifest.declares(name) or use.attribute is None:
                         continue
                     reported_packages.add(name)
@@ -373,7 +373,7 @@ class RecursiveMacro(XacroRule):
     severity = Severity.ERROR
 
     def check_xacro(self, facts: XacroFacts) -> Iterator[Diagnostic]:
-        for file in facts.own.values():
+        for file in facts.package_files.values():
             for macro in file.macros:
                 call = _unconditional_call(macro, file)
                 if call is not None:
@@ -410,7 +410,7 @@ class IncludeOfItself(XacroRule):
     holds_for_parts = True
 
     def check_xacro(self, facts: XacroFacts) -> Iterator[Diagnostic]:
-        for path, file in facts.own.items():
+        for path, file in facts.package_files.items():
             for include in file.includes:
                 target = include.name.replace("\\", "/")
                 if "$" not in target and (path.parent / target).absolute() == path.absolute():
@@ -443,7 +443,7 @@ class MacroDefinedTwice(XacroRule):
     holds_for_parts = True
 
     def check_xacro(self, facts: XacroFacts) -> Iterator[Diagnostic]:
-        for file in facts.own.values():
+        for file in facts.package_files.values():
             first_macros: dict[tuple[str, int], Definition] = {}
             for macro in file.macros:
                 if macro.is_conditional or not macro.name:

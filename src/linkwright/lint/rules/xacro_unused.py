@@ -70,7 +70,7 @@ class UnusedProperty(XacroRule):
     def check_xacro(self, facts: XacroFacts) -> Iterator[Diagnostic]:
         if facts.is_open or facts.is_library:
             return
-        for file in facts.own.values():
+        for file in facts.package_files.values():
             for definition in file.properties:
                 name, element = definition.name, definition.element
                 if "$" in name or not name or name in facts.names or _is_removal(element) or _shows_message(element):
@@ -120,7 +120,7 @@ class UnusedArgument(XacroRule):
     def check_xacro(self, facts: XacroFacts) -> Iterator[Diagnostic]:
         if facts.arguments_open:
             return
-        for file in facts.own.values():
+        for file in facts.package_files.values():
             for definition in file.arguments:
                 name = definition.name
                 if name and "$" not in name and name not in facts.used_arguments and _is_first(definition, file):
@@ -211,7 +211,7 @@ class UnusedInclude(XacroRule):
         ):
             return
         paths = _included_paths(facts)
-        for file in facts.own.values():
+        for file in facts.package_files.values():
             for include in file.includes:
                 path = paths.get(id(include.element))
                 if path is not None and not (_contributes(path, facts, paths) or _is_switched_off(path, facts)):
@@ -259,7 +259,7 @@ class UnusedMacroParameter(XacroRule):
         if facts.calls_open:
             return  # Macros that are called by a computed name must all accept the same parameters.
         shared_names = _shared_parameters(facts)
-        for file in facts.own.values():
+        for file in facts.package_files.values():
             if file.has_bare_tags:
                 continue
             for macro in file.macros:
@@ -318,8 +318,8 @@ def _used_inside(macro: Element, file: FileFacts) -> tuple[set[str], set[str], b
     names: set[str] = set()
     is_open = False
     for use in (*file.uses_by_macro.get(id(macro), ()), *file.parameter_uses.get(id(macro), ())):
-        names |= use.found.names
-        is_open = is_open or use.found.is_open or bool(use.found.pasted_arguments)
+        names |= use.mentions.names
+        is_open = is_open or use.mentions.is_open or bool(use.mentions.pasted_arguments)
     blocks: set[str] = set()
     for element in macro.walk():
         if element.tag == "xacro:insert_block":
@@ -404,7 +404,7 @@ def _is_switched_off(path: Path, facts: XacroFacts) -> bool:
     The author can enable such a call, so the include is useful.
     """
     macro_names = {macro.name for macro in facts.files[path].macros} if path in facts.files else set()
-    texts = (file.document.source.text for file in facts.own.values() if file.document.source is not None)
+    texts = (file.document.source.text for file in facts.package_files.values() if file.document.source is not None)
     comments = (comment for text in texts for comment in _COMMENT.findall(text))
     return any(call_name in macro_names for comment in comments for call_name in _CALL.findall(comment))
 

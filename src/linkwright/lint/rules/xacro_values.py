@@ -47,7 +47,7 @@ class LiteralChangesType(XacroRule):
     name = "literal-changes-type"
 
     def check_xacro(self, facts: XacroFacts) -> Iterator[Diagnostic]:
-        for file in facts.own.values():
+        for file in facts.package_files.values():
             for call in file.calls:
                 yield from self._call_findings(call, facts)
             for definition in file.properties:
@@ -55,7 +55,7 @@ class LiteralChangesType(XacroRule):
                 if value is not None and _is_changed_by_literal_rule(value):
                     use = _use_in_name(definition.name, facts, None)
                     if use is not None:
-                        yield self._found(definition.element, "value", definition.name, value, use, quotes="''")
+                        yield self._finding(definition.element, "value", definition.name, value, use, quotes="''")
 
     def _call_findings(self, call: Definition, facts: XacroFacts) -> Iterator[Diagnostic]:
         macros = [
@@ -70,9 +70,9 @@ class LiteralChangesType(XacroRule):
             if _is_changed_by_literal_rule(value):
                 use = _use_in_name(name, facts, macro.element)
                 if use is not None:
-                    yield self._found(call.element, name, name, value, use, quotes="'")
+                    yield self._finding(call.element, name, name, value, use, quotes="'")
 
-    def _found(
+    def _finding(
         self, element: Element, attribute: str, name: str, value: str, use: tuple[Element, str], quotes: str
     ) -> Diagnostic:
         converted = literal(value)
@@ -120,7 +120,7 @@ class PropertyDefinedTwice(XacroRule):
     name = "property-defined-twice"
 
     def check_xacro(self, facts: XacroFacts) -> Iterator[Diagnostic]:
-        for file in facts.own.values():
+        for file in facts.package_files.values():
             groups: dict[tuple[str, int], list[Definition]] = {}
             for definition in file.properties:
                 if definition.name and "$" not in definition.name and "value" in definition.element.attributes:
@@ -148,7 +148,7 @@ class PropertyDefinedTwice(XacroRule):
             return False
         name = first.name
         for use in file.uses:
-            if first.order < use.order <= second.order and (name in use.found.names or use.found.is_open):
+            if first.order < use.order <= second.order and (name in use.mentions.names or use.mentions.is_open):
                 return False
         calls_between = [
             call for call in (*file.calls, *file.includes) if first.order < call.order < second.order
@@ -192,7 +192,7 @@ class ShadowedProperty(XacroRule):
             for definition in file.properties:
                 if definition.macro is None and "$" not in definition.name:
                     outer_properties.setdefault(definition.name, definition)
-        for file in facts.own.values():
+        for file in facts.package_files.values():
             for macro in file.macros:
                 for parameter in file.parameters(macro.element):
                     if parameter.name in outer_properties and not parameter.forward:
@@ -202,7 +202,7 @@ class ShadowedProperty(XacroRule):
                             name=parameter.name,
                             macro_name=macro.name,
                         )
-                        yield self._found(macro.element, span, subject, outer_properties[parameter.name])
+                        yield self._finding(macro.element, span, subject, outer_properties[parameter.name])
             for inner_property in file.properties:
                 if (
                     inner_property.macro is not None
@@ -210,14 +210,14 @@ class ShadowedProperty(XacroRule):
                     and "scope" not in inner_property.element.attributes
                 ):
                     span = inner_property.element.attribute_span("name")
-                    yield self._found(
+                    yield self._finding(
                         inner_property.element,
                         span,
                         phrase("the property '{name}'", name=inner_property.name),
                         outer_properties[inner_property.name],
                     )
 
-    def _found(self, element: Element, span: Span | None, subject: str, outer_property: Definition) -> Diagnostic:
+    def _finding(self, element: Element, span: Span | None, subject: str, outer_property: Definition) -> Diagnostic:
         note = Note(phrase("the outer property is defined here"), outer_property.element.attribute_span("name"))
         return self.report(
             phrase("{what} hides a property of the same name", what=subject), element, span=span, notes=[note]
@@ -254,7 +254,7 @@ class ParameterHidesGlobal(XacroRule):
         from linkwright.lint.xacro_facts import is_global, parameter_span
         from linkwright.lint.xacro_names import DEPRECATED
 
-        for file in facts.own.values():
+        for file in facts.package_files.values():
             for macro in file.macros:
                 for parameter in file.parameters(macro.element):
                     if is_global(parameter.name) or parameter.name in DEPRECATED:
@@ -287,7 +287,7 @@ def _use_in_name(name: str, facts: XacroFacts, macro: Element | None) -> tuple[E
             if (
                 use.attribute not in _NAME_ATTRIBUTES
                 or use.element.tag.startswith("xacro:")
-                or name not in use.found.names
+                or name not in use.mentions.names
             ):
                 continue
             if f"${{{name}}}" not in use.element.attributes[use.attribute].replace(" ", ""):

@@ -23,25 +23,25 @@ MAX_LOOP_DEPTH = 5
 
 
 class Place(NamedTuple):
-    """The known part of a position: its remainder `rest` after division by `modulus` (1, 2, 4 or 8)."""
+    """The known part of a position: its remainder `remainder` after division by `modulus` (1, 2, 4 or 8)."""
 
     modulus: int
-    rest: int
+    remainder: int
 
     def after(self, size: int) -> Place:
         """Return the position that is `size` bytes further."""
-        return Place(self.modulus, (self.rest + size) % self.modulus)
+        return Place(self.modulus, (self.remainder + size) % self.modulus)
 
     def padding(self, size: int) -> int | None:
         """Return the number of bytes up to the next multiple of `size`, or None if it is not known."""
-        return (-self.rest) % size if self.modulus >= size else None
+        return (-self.remainder) % size if self.modulus >= size else None
 
     def common(self, other: Place) -> Place:
         """Return the common knowledge about two positions, either of which may be the actual one."""
         modulus = min(self.modulus, other.modulus)
-        while (self.rest - other.rest) % modulus:
+        while (self.remainder - other.remainder) % modulus:
             modulus //= 2
-        return Place(modulus, self.rest % modulus)
+        return Place(modulus, self.remainder % modulus)
 
 
 START = Place(8, 0)
@@ -52,14 +52,14 @@ class Facts(NamedTuple):
     """The layout of a structure or a field.
 
     Attributes:
-        least: the minimum serialized size in bytes, without padding.
-        leaves: the number of primitives, strings and sequences, including those of nested structures.
-        first: the alignment of the first primitive in bytes.
+        min_size: the minimum serialized size in bytes, without padding.
+        leaf_count: the number of primitives, strings and sequences, including those of nested structures.
+        first_alignment: the alignment of the first primitive in bytes.
     """
 
-    least: int
-    leaves: int
-    first: int
+    min_size: int
+    leaf_count: int
+    first_alignment: int
 
 
 _facts: dict[str, Facts] = {}
@@ -71,7 +71,9 @@ def facts(structure: Structure) -> Facts:
     if layout_facts is None:
         facts_of_fields = [field_facts(field) for field in structure.wire_fields]
         layout_facts = Facts(
-            sum(f.least for f in facts_of_fields), sum(f.leaves for f in facts_of_fields), facts_of_fields[0].first
+            sum(f.min_size for f in facts_of_fields),
+            sum(f.leaf_count for f in facts_of_fields),
+            facts_of_fields[0].first_alignment,
         )
         _facts[structure.type_name] = layout_facts
     return layout_facts
@@ -82,12 +84,12 @@ def field_facts(field: Field) -> Facts:
     kind = field.type
     primitive = PRIMITIVES.get(kind.base)
     if kind.container is Container.SEQUENCE:
-        leaves = 1 if primitive is not None else 1 + facts(LIBRARY.structure(kind.base)).leaves
+        leaves = 1 if primitive is not None else 1 + facts(LIBRARY.structure(kind.base)).leaf_count
         return Facts(4, leaves, 4)
     item_facts = (
         Facts(primitive.size, 1, primitive.size) if primitive is not None else facts(LIBRARY.structure(kind.base))
     )
     if kind.container is Container.ARRAY:
         assert kind.size is not None
-        return Facts(item_facts.least * kind.size, item_facts.leaves, item_facts.first)
+        return Facts(item_facts.min_size * kind.size, item_facts.leaf_count, item_facts.first_alignment)
     return item_facts

@@ -50,7 +50,7 @@ def compile_reader(structure: Structure, class_of: ClassOf, order: Order = "<") 
         order: ``<`` for little-endian data, ``>`` for big-endian data.
     """
     code = _ReaderCode(START, class_of, order, known=4)
-    name = code.made(structure)
+    name = code.add_creation(structure)
     code.structure(structure, name)
     code.end_run()
     body = "    e = len(d)\n" + code.body()
@@ -68,7 +68,7 @@ def _compile_part(structure: Structure, class_of: ClassOf, order: Order) -> Call
     reader = _part_readers.get((structure.type_name, order))
     if reader is None:
         code = _ReaderCode(ANYWHERE, class_of, order, known=None)
-        name = code.made(structure)
+        name = code.add_creation(structure)
         code.structure(structure, name)
         code.end_run()
         source = f"def read(d, p, e):\n{code.body()}    return {name}, p\n"
@@ -105,7 +105,7 @@ class _ReaderCode:
 
     # --- structures and fields ------------------------------------------------------------------------------
 
-    def made(self, structure: Structure) -> str:
+    def add_creation(self, structure: Structure) -> str:
         """Generate code that creates an object for a structure, and return the name of its variable."""
         name = f"m{next(self._names)}"
         self._add_line(f"{name} = new({self._constant_name(self._class_of(structure), 'C')})")
@@ -142,13 +142,13 @@ class _ReaderCode:
 
     def _read_nested(self, kind: FieldType, target: str) -> None:
         structure = LIBRARY.structure(kind.base)
-        if facts(structure).leaves > MAX_INLINE_LEAVES or self._loops >= MAX_LOOP_DEPTH:
+        if facts(structure).leaf_count > MAX_INLINE_LEAVES or self._loops >= MAX_LOOP_DEPTH:
             self._write_position()
             part = _compile_part(structure, self._class_of, self._order)
             self._add_line(f"{target}, p = {self._constant_name(part, 'R')}(d, p, e)")
             self.place = ANYWHERE
         else:
-            name = self.made(structure)
+            name = self.add_creation(structure)
             self._add_line(f"{target} = {name}")
             self.structure(structure, name)
 
@@ -205,7 +205,7 @@ class _ReaderCode:
             if kind.string_bound is not None:
                 self._add_line(f"check_bounds({field.name!r}, {target}, {kind.string_bound})")
         else:
-            min_size = 4 if primitive is not None else facts(LIBRARY.structure(kind.base)).least
+            min_size = 4 if primitive is not None else facts(LIBRARY.structure(kind.base)).min_size
             self._add_line(f"if {length} * {min_size} > e - p: truncated()")
             self._read_repeated(field, target, length)
 

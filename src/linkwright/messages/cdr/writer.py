@@ -131,7 +131,7 @@ class _WriterCode:
         """
         fields = structure.wire_fields
         for index, field in enumerate(fields):
-            next_alignment = field_facts(fields[index + 1]).first if index + 1 < len(fields) else following
+            next_alignment = field_facts(fields[index + 1]).first_alignment if index + 1 < len(fields) else following
             value = "0" if field.name == EMPTY_MEMBER else f"{source}._{field.name}"
             self._write_field(field, value, next_alignment)
 
@@ -178,7 +178,7 @@ class _WriterCode:
 
     def _write_nested(self, kind: FieldType, value: str, following: int) -> None:
         structure = LIBRARY.structure(kind.base)
-        if facts(structure).leaves > MAX_INLINE_LEAVES or self._loops >= MAX_LOOP_DEPTH:
+        if facts(structure).leaf_count > MAX_INLINE_LEAVES or self._loops >= MAX_LOOP_DEPTH:
             self.flush()
             self.sync()
             self.needs_position = self._uses_list = True

@@ -369,12 +369,12 @@ def _span_of(source: SourceText, reference: str, owner: str) -> Span:
     return source.span(*match.span(1)) if match else source.span(0)
 
 
-def _recursion_diagnostic(source: SourceText, way: tuple[str, ...]) -> Diagnostic:
-    span = _span_of(source, way[-1], way[-2])
-    inside = way[0] if len(way) == 2 else f"{way[0]} by way of " + ", ".join(way[1:-1])
+def _recursion_diagnostic(source: SourceText, type_chain: tuple[str, ...]) -> Diagnostic:
+    span = _span_of(source, type_chain[-1], type_chain[-2])
+    inside = type_chain[0] if len(type_chain) == 2 else f"{type_chain[0]} by way of " + ", ".join(type_chain[1:-1])
     return Diagnostic(
         "MSG116",
-        phrase("'{way}' would contain itself: it is part of {inside}", way=way[-1], inside=inside),
+        phrase("'{way}' would contain itself: it is part of {inside}", way=type_chain[-1], inside=inside),
         span,
         source=source,
     )

@@ -231,7 +231,7 @@ class _Reader:
         self._type_name = type_name
         self._package, self._kind, _ = type_name.split("/")
         self._known = known
-        self._found: list[Diagnostic] = []
+        self._diagnostics: list[Diagnostic] = []
 
     def read(self) -> Definition:
         sections = [_Section()]
@@ -259,8 +259,8 @@ class _Reader:
                 offset,
                 0,
             )
-        if self._found:
-            raise DefinitionError(*self._found)
+        if self._diagnostics:
+            raise DefinitionError(*self._diagnostics)
         structures = [
             Structure(self._type_name + suffix, tuple(section.fields), tuple(section.constants))
             for suffix, section in zip(suffixes, sections, strict=True)
@@ -466,7 +466,7 @@ class _Reader:
 
     def _report(self, code: str, message: Phrase, start: int, length: int, hint: Phrase | None = None) -> None:
         span = self._source.span(start, start + length)
-        self._found.append(Diagnostic(code, message, span, hint=hint, source=self._source))
+        self._diagnostics.append(Diagnostic(code, message, span, hint=hint, source=self._source))
 
 
 def _without_comment(line: str) -> str:

@@ -43,7 +43,7 @@ class Circle:
 
     radius: float
 
-    def holds(self, points: Points) -> NDArray[np.bool_]:
+    def contains(self, points: Points) -> NDArray[np.bool_]:
         """Return a mask of the points inside the circle, of shape (points,)."""
         inside: NDArray[np.bool_] = (points**2).sum(axis=1) < self.radius**2
         return inside
@@ -59,7 +59,7 @@ class Outline:
 
     corners: Footprint
 
-    def holds(self, points: Points) -> NDArray[np.bool_]:
+    def contains(self, points: Points) -> NDArray[np.bool_]:
         """Return a mask of the points inside the polygon, of shape (points,)."""
         return within_polygon(points, self.corners)
 
@@ -94,7 +94,7 @@ class Rule:
         if self.action is Action.APPROACH:
             seconds = self._time_to_collision(shape, points, velocity)
             return None if seconds is None else _scaled(velocity, seconds / self.time_before_collision)
-        if self.action is Action.NOTHING or np.count_nonzero(shape.holds(points)) < self.min_points:
+        if self.action is Action.NOTHING or np.count_nonzero(shape.contains(points)) < self.min_points:
             return None
         if self.action is Action.STOP:
             return Velocity(0.0, 0.0, 0.0)
@@ -119,7 +119,7 @@ class Rule:
         for count in range(int(self.time_before_collision / step + 1e-9) + 1):
             cosine, sine = np.cos(yaw), np.sin(yaw)
             relative_points = (points - (x, y)) @ np.array([[cosine, -sine], [sine, cosine]])
-            if np.count_nonzero(shape.holds(relative_points)) >= self.min_points:
+            if np.count_nonzero(shape.contains(relative_points)) >= self.min_points:
                 return count * step
             x += float(velocity.x * cosine - velocity.y * sine) * step
             y += float(velocity.x * sine + velocity.y * cosine) * step

@@ -108,7 +108,7 @@ class LayeredCostmap:
             layer.write(grid, window, moment)
         return True
 
-    def touch(self) -> None:
+    def invalidate(self) -> None:
         """Make the next update write all cells."""
         self._is_updated = False
 

@@ -20,14 +20,14 @@ class Beams:
 
     Attributes:
         origin: x and y of the laser in the frame of the robot, in metres.
-        ends: the end points of the beams, x and y in that frame, of shape (n, 2); a beam without a return ends at
+        end_points: the end points of the beams, x and y in that frame, of shape (n, 2); a beam without a return ends at
             `range_max`.
         ranges: the lengths of the beams, of shape (n,), in metres.
         range_max: the maximum length of a beam, in metres.
     """
 
     origin: tuple[float, float]
-    ends: Points
+    end_points: Points
     ranges: NDArray[np.float64]
     range_max: float
 
@@ -40,7 +40,7 @@ class Beams:
     @property
     def angles(self) -> NDArray[np.float64]:
         """The directions of the beams in the frame of the robot, of shape (n,), in radians."""
-        offsets = self.ends - np.array(self.origin)
+        offsets = self.end_points - np.array(self.origin)
         angles: NDArray[np.float64] = np.arctan2(offsets[:, 1], offsets[:, 0])
         return angles
 

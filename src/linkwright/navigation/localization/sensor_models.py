@@ -89,7 +89,7 @@ class MapLikelihoods:
         if model == "beam":
             return self._beam_likelihoods(particles, beams)
         is_product = model == "likelihood_field_prob"
-        hits = beams.ends[beams.hits]
+        hits = beams.end_points[beams.hits]
         if not len(hits):
             return np.ones(len(particles))
         cells = self._end_cells(particles, hits)
@@ -104,12 +104,12 @@ class MapLikelihoods:
         likelihoods: Likelihoods = np.exp(exponents - exponents.max())
         return likelihoods
 
-    def fit(self, pose: tuple[float, float, float], beams: Beams) -> float | None:
+    def matching_share(self, pose: tuple[float, float, float], beams: Beams) -> float | None:
         """Return the share of beams from a pose that end near an obstacle of the map, 0 to 1.
 
         Returns None if no beam hit anything.
         """
-        hits = beams.ends[beams.hits]
+        hits = beams.end_points[beams.hits]
         if not len(hits):
             return None
         distances = self._distances.take(self._end_cells(np.array([pose]), hits))

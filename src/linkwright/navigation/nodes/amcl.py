@@ -51,7 +51,7 @@ class AmclNode(ManagedNode):
         self._active = self._begun = self._update_requested = False
         self._update_count = self._misfit_count = 0
         self._odometry: Pose = (0.0, 0.0, 0.0)
-        self.add_post_set_parameters_callback(lambda _: self._follow())
+        self.add_post_set_parameters_callback(lambda _: self._apply_parameters())
 
     def configure(self) -> None:
         """Read the parameters, and create the topics and the services.
@@ -232,7 +232,7 @@ class AmclNode(ManagedNode):
         self._begun = self._update_requested = False
         self._update_count = self._misfit_count = 0
 
-    def _follow(self) -> None:
+    def _apply_parameters(self) -> None:
         """Apply changed parameters to the configured node.
 
         The frames and topics stay the same.
@@ -269,7 +269,7 @@ class AmclNode(ManagedNode):
     def _check_fit(self, estimate: Estimate, beams: Beams) -> None:
         """Warn if several consecutive scans did not match the map."""
         assert self._map is not None, "there is an estimate"
-        fit = self._map.fit(estimate.pose, beams)
+        fit = self._map.matching_share(estimate.pose, beams)
         if fit is None:
             return
         self._misfit_count = 0 if fit > _MIN_FIT else self._misfit_count + 1

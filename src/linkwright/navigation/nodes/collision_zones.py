@@ -82,7 +82,7 @@ class Zone:
             if speed_range.covers(velocity):
                 self._shape = speed_range.shape
                 break
-        self._place()
+        self._transform_polygon()
         if self._shape is None:
             self._node.get_logger().warning(f"[{self.name}]: Polygon shape is not set yet", throttle_duration_sec=2.0)
             return None
@@ -196,9 +196,9 @@ class Zone:
 
     def _on_polygon(self, message: Any) -> None:
         self._polygon = message if len(message.polygon.points) >= 3 else None
-        self._place()
+        self._transform_polygon()
 
-    def _place(self) -> None:
+    def _transform_polygon(self) -> None:
         """Transform the polygon received on a topic to the robot's current frame.
 
         Footprints are published at the robot's pose, so they are transformed back with the transform at their stamp.

@@ -37,7 +37,7 @@ from linkwright.navigation.grids.library import load_scipy
 from linkwright.navigation.nodes.costmap_layers import (
     DEFAULT_LAYERS,
     Surroundings,
-    follow,
+    apply_parameters,
     make_layers,
 )
 from linkwright.navigation.nodes.costmap_messages import CostmapPublisher, raw_message
@@ -102,7 +102,7 @@ class CostmapNode(ManagedNode):
         self._layered: LayeredCostmap | None = None
         self._publisher: CostmapPublisher | None = None
         self._last_published_ns: int | None = None
-        self.add_post_set_parameters_callback(self._follow)
+        self.add_post_set_parameters_callback(self._apply_parameters)
         self._table = ParameterTable(self, CostmapParameters)  # Added last, so that its callback runs first.
         self._filters: list[str] = string_list(self, "filters", [])
         self.transforms = BufferCore(logger=self.get_logger().get_child("tf2"))
@@ -218,7 +218,7 @@ class CostmapNode(ManagedNode):
 
     def activate(self) -> None:
         """Start updating the costmap."""
-        self.layered.touch()
+        self.layered.invalidate()
         self._begin_updates()
 
     def deactivate(self) -> None:
@@ -245,7 +245,7 @@ class CostmapNode(ManagedNode):
             sensor.process()
         layered = self.layered
         if layered.update(pose, self.now_ns()) and self._publisher is not None:
-            self._publisher.note(layered.changed)
+            self._publisher.add_change(layered.changed)
         self._publish_footprint(pose)
         return True
 
@@ -330,7 +330,7 @@ class CostmapNode(ManagedNode):
             return
         self.layered.footprint = corners
 
-    def _follow(self, changed: list[Parameter]) -> None:
+    def _apply_parameters(self, changed: list[Parameter]) -> None:
         """Apply changed parameters to the configured node."""
         layered = self._layered
         if layered is None or self._surroundings is None:
@@ -342,8 +342,8 @@ class CostmapNode(ManagedNode):
                 layered.footprint = self._read_footprint()
             except LinkwrightError as error:
                 self.log_error(error)
-        if follow(self._surroundings, changed):
-            layered.touch()
+        if apply_parameters(self._surroundings, changed):
+            layered.invalidate()
         if "update_frequency" in names and self.is_cycling:
             self._begin_updates()
 

@@ -105,7 +105,7 @@ def make_layers(shared: Surroundings, names: list[str]) -> None:
         node.get_logger().info(f"layers that 'plugins' does not name are ignored: {', '.join(ignored_layers)}")
 
 
-def follow(shared: Surroundings, changed: list[Parameter]) -> bool:
+def apply_parameters(shared: Surroundings, changed: list[Parameter]) -> bool:
     """Apply changed parameters to the layers, and return whether any of them belongs to a layer."""
     is_layer_changed = False
     for changed_parameter in changed:

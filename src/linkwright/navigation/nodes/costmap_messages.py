@@ -81,7 +81,7 @@ class CostmapPublisher:
             if publisher is not None:
                 publisher.destroy()
 
-    def note(self, window: Window) -> None:
+    def add_change(self, window: Window) -> None:
         """Add a changed window to the changes that the next `publish` sends."""
         self._pending_window = self._pending_window.joined(window)
 

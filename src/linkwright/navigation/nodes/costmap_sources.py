@@ -77,12 +77,12 @@ class SensorTopic(ABC):
         later_messages = messages[messages.index(placed_messages[-1][0]) + 1 :]
         self._waiting.clear()
         self._waiting.extend(later_messages)
-        for message, pose in placed_messages if self.all_count else placed_messages[-1:]:
+        for message, pose in placed_messages if self.uses_all_messages else placed_messages[-1:]:
             self._observe(message, pose)
 
     @property
     @abstractmethod
-    def all_count(self) -> bool:
+    def uses_all_messages(self) -> bool:
         """Whether all messages are used, instead of only the latest one."""
 
     @abstractmethod
@@ -135,7 +135,7 @@ class PointsTopic(SensorTopic):
         )
 
     @property
-    def all_count(self) -> bool:
+    def uses_all_messages(self) -> bool:
         """Whether every message is used, because observations persist."""
         return bool(self.buffer.source.observation_persistence)
 
@@ -169,7 +169,7 @@ class RangeTopic(SensorTopic):
         self._layer = layer
 
     @property
-    def all_count(self) -> bool:
+    def uses_all_messages(self) -> bool:
         """Always True, because every message updates the probabilities."""
         return True
 

@@ -19,7 +19,7 @@ from linkwright.messages import get_service
 from linkwright.navigation.nodes.bond import TIMEOUT, Bond
 from linkwright.nodes.answers import wait_for_future, wait_for_service
 from linkwright.nodes.diagnostic_updater import DiagnosticUpdater, Health, Level
-from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
 from linkwright.nodes.settings import bad_value, log_unknown
 
 _CHECK_PERIOD = 1.0
@@ -77,7 +77,7 @@ class _ManagedNodeClient:
         self._change_client = node.create_client(self._change_type, f"{name}/change_state")
         self._get_client = node.create_client(self._get, f"{name}/get_state")
 
-    def is_there(self) -> bool:
+    def is_available(self) -> bool:
         """Return whether the lifecycle services of the managed node are available."""
         return bool(self._change_client.service_is_ready() and self._get_client.service_is_ready())
 
@@ -108,9 +108,9 @@ class _ManagedNodeClient:
         response = await self._call(self._get_client, self._get.Request(), log_period)
         return None if response is None else int(response.current_state.id)
 
-    async def answers(self, seconds: float) -> bool:
+    async def reports_unconfigured(self, seconds: float) -> bool:
         """Return whether the node reports within `seconds` that it is unconfigured."""
-        if not self.is_there():
+        if not self.is_available():
             return False
         future = self._get_client.call_async(self._get.Request())
         if await wait_for_future(self._node, future, seconds):
@@ -150,7 +150,7 @@ class LifecycleManager(SingleNode):
         self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
         self._logger = self._node.get_logger()
         self._logger.info("Creating")
-        with starting(self._node):
+        with handle_start_errors(self._node):
             self._declare_parameters()
             log_unknown(self._node)
         self._state = _State.UNCONFIGURED
@@ -365,7 +365,7 @@ class LifecycleManager(SingleNode):
             waited_seconds += _CHECK_PERIOD
             async with self._command_lock:
                 if self._is_still_down() and all(
-                    [await managed.answers(_CHECK_PERIOD) for managed in self._managed_nodes]
+                    [await managed.reports_unconfigured(_CHECK_PERIOD) for managed in self._managed_nodes]
                 ):
                     self._logger.info("Successfully re-established connections from server respawns, starting back up.")
                     await self._startup()

@@ -10,7 +10,7 @@ from linkwright.graph import Graph, Node, Timer
 from linkwright.graph.lifecycle.managed_node import LifecycleNodeMixin
 from linkwright.graph.lifecycle.states import ACTIVE, LifecycleState, TransitionCallbackReturn
 from linkwright.navigation.nodes.bond import PERIOD, Bond
-from linkwright.nodes.options import NodeOptions, SingleNode, create_node_with_class, starting
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node_with_class, handle_start_errors
 from linkwright.nodes.settings import log_unknown
 
 _SUCCESS = TransitionCallbackReturn.SUCCESS
@@ -195,7 +195,7 @@ class ManagedServer(SingleNode):
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         node, _ = create_node_with_class(self.NODE, graph, options, self.DEFAULT_NAME)
         self._node: ManagedNode = node
-        with starting(node):
+        with handle_start_errors(node):
             self.prepare(graph, options)
             node.autostart()
 

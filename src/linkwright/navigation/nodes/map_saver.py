@@ -18,7 +18,7 @@ from linkwright.navigation.maps.map_files import FREE_THRESH, OCCUPIED_THRESH, M
 from linkwright.navigation.maps.map_yaml import MapMode
 from linkwright.navigation.nodes.managed import ManagedNode, ManagedServer
 from linkwright.nodes.answers import wait_for_future
-from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
 from linkwright.nodes.settings import log_unknown
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
@@ -158,7 +158,7 @@ class MapSaver(SingleNode):
             options.output(_USAGE)
             self.finished.set_result(0)
             return
-        with starting(self._node):
+        with handle_start_errors(self._node):
             saving = _MapSaving(self._node)
             log_unknown(self._node)
         try:

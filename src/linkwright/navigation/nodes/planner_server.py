@@ -81,8 +81,8 @@ class PlannerNode(ManagedNode):
             )
         self.costmap.trigger_configure()
         self._path_publisher = self.register(self.create_publisher(get_message("nav_msgs/msg/Path"), "plan", 1))
-        self._offer("ComputePathToPose", "compute_path_to_pose", self._plan_to_pose)
-        self._offer("ComputePathThroughPoses", "compute_path_through_poses", self._plan_through_poses)
+        self._create_action_server("ComputePathToPose", "compute_path_to_pose", self._plan_to_pose)
+        self._create_action_server("ComputePathThroughPoses", "compute_path_through_poses", self._plan_through_poses)
         kind = get_service("nav2_msgs/srv/IsPathValid")
         self.register(self.create_service(kind, "is_path_valid", self._on_is_path_valid))
 
@@ -129,7 +129,7 @@ class PlannerNode(ManagedNode):
 
     # --- goals --------------------------------------------------------------------------------------------------------
 
-    def _offer(self, kind: str, name: str, work: Callable[[Any], Work]) -> None:
+    def _create_action_server(self, kind: str, name: str, work: Callable[[Any], Work]) -> None:
         """Create an action server that plans paths.
 
         `work` returns the generator that computes the path for a request.

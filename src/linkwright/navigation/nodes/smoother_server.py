@@ -50,7 +50,7 @@ class SmootherNode(ManagedNode):
         self._costmap: Costmap | None = None
         names = string_list(self, "smoother_plugins", ["simple_smoother"])
         for name in names:
-            self._make(name)
+            self._declare_smoother(name)
         self._smoothers = names
         self.get_logger().info(f"Smoother Server has {' '.join(names)}  smoothers available.")
         raw, path = get_message("nav2_msgs/msg/Costmap"), get_message("nav_msgs/msg/Path")
@@ -59,7 +59,7 @@ class SmootherNode(ManagedNode):
         self._output = self.register(self.create_publisher(path, "plan_smoothed", 1))
         self._goals = self.register(GoalServer(self, "nav2_msgs/action/SmoothPath", "smooth_path", self._smooth))
 
-    def _make(self, name: str) -> None:
+    def _declare_smoother(self, name: str) -> None:
         kind = type_of(self, name, _DEFAULT_TYPES)
         declared(self, Smoothing, name)
         declare_unused(self, name)

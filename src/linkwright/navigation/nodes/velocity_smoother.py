@@ -59,7 +59,7 @@ class _ManagedSmoother(ManagedNode):
         self.declare_parameter("use_realtime_priority", False)
         self._is_stamped: bool | None = self.declare_parameter("enable_stamped_cmd_vel", ParameterType.BOOL).value
         self.add_on_set_parameters_callback(self._check)
-        self.add_post_set_parameters_callback(lambda _: self._follow())
+        self.add_post_set_parameters_callback(lambda _: self._apply_parameters())
 
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Configure the node, unless a parameter has an invalid value."""
@@ -123,7 +123,7 @@ class _ManagedSmoother(ManagedNode):
         problem = self._parameter_error({parameter.name: parameter.value for parameter in parameters})
         return SetParametersResult(successful=problem is None, reason="" if problem is None else str(problem))
 
-    def _follow(self) -> None:
+    def _apply_parameters(self) -> None:
         """Apply changed parameters to the configured node.
 
         The topics stay the same.

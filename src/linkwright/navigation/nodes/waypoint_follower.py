@@ -64,9 +64,9 @@ class WaypointNode(StepNode):
     def _start(self, goal: ServerGoalHandle) -> None:
         self._missed_waypoints, self._index = [], 0
         self.get_logger().info(f"Received follow waypoint request with {len(goal.request.poses)} waypoints.")
-        self.work_on(self._waypoint_server, self._follow(goal.request))
+        self.work_on(self._waypoint_server, self._follow_waypoints(goal.request))
 
-    def _follow(self, goal: Any) -> Step:
+    def _follow_waypoints(self, goal: Any) -> Step:
         if not goal.poses:
             raise StepError("UNKNOWN", "there are no waypoints")
         first_index = getattr(goal, "goal_index", 0)

@@ -119,7 +119,7 @@ class _Watch:
             ),
         ]
         self._work: asyncio.Task[None] | None = None
-        self._next: asyncio.TimerHandle | None = None
+        self._request_timer: asyncio.TimerHandle | None = None
         self._request_states()
 
     def command(self, command: NavigationCommand) -> None:
@@ -130,8 +130,8 @@ class _Watch:
 
     def close(self) -> None:
         """Stop monitoring."""
-        if self._next is not None:
-            self._next.cancel()
+        if self._request_timer is not None:
+            self._request_timer.cancel()
         if self._work is not None:
             self._work.cancel()
         with suppress(ValueError):  # The node may have been destroyed already.
@@ -153,7 +153,7 @@ class _Watch:
     # --- states ------------------------------------------------------------------------------------------------
 
     def _request_states(self) -> None:
-        self._next = asyncio.get_running_loop().call_later(_PERIOD, self._request_states)
+        self._request_timer = asyncio.get_running_loop().call_later(_PERIOD, self._request_states)
         for name, client in self._active.items():
             if not client.service_is_ready():
                 self._pending_managers.discard(name)

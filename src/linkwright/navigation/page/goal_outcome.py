@@ -37,7 +37,7 @@ class GoalOutcomeFeature(PageFeature):
         self._active = False
         self._reasons: dict[str, str] = {}
         self._outcome: GoalOutcome = NO_GOAL_FAILED
-        self._due: asyncio.TimerHandle | None = None
+        self._publish_timer: asyncio.TimerHandle | None = None
 
     def opening(self) -> list[ServerMessage]:
         """Subscribe for the first page, and return the outcome of the last goal."""
@@ -56,9 +56,9 @@ class GoalOutcomeFeature(PageFeature):
 
     def close(self) -> None:
         """Unsubscribe."""
-        if self._due is not None:
-            self._due.cancel()
-            self._due = None
+        if self._publish_timer is not None:
+            self._publish_timer.cancel()
+            self._publish_timer = None
         for subscription in self._subscriptions:
             self.context.node.destroy_subscription(subscription)
         self._subscriptions.clear()
@@ -80,14 +80,14 @@ class GoalOutcomeFeature(PageFeature):
         elif self._active:
             self._active = False
             if latest.status == _ABORTED:
-                self._due = asyncio.get_running_loop().call_later(_LOG_DELAY, self._publish_failure, goal_id)
+                self._publish_timer = asyncio.get_running_loop().call_later(_LOG_DELAY, self._publish_failure, goal_id)
 
     def _logged(self, record: Any) -> None:
         if record.level >= _ERROR_LEVEL:
             self._reasons[record.name] = record.msg
 
     def _publish_failure(self, goal: bytes) -> None:
-        self._due = None
+        self._publish_timer = None
         if goal != self._goal_id:
             return
         servers = {

@@ -72,7 +72,7 @@ class _Blocks:
     column: NDArray[np.int64]
     bound: Floats
 
-    def part(self, selection: slice | NDArray[np.bool_]) -> _Blocks:
+    def selected(self, selection: slice | NDArray[np.bool_]) -> _Blocks:
         return _Blocks(self.angle[selection], self.row[selection], self.column[selection], self.bound[selection])
 
 
@@ -105,7 +105,7 @@ class _Window:
         )
         return level, _Blocks(angle, row, column, np.zeros(len(angle)))
 
-    def judge(self, blocks: _Blocks, level: int) -> None:
+    def set_bounds(self, blocks: _Blocks, level: int) -> None:
         """Set the upper bounds of blocks of a level."""
         grid, offset = self._likelihood.level(level)
         height, width = grid.shape
@@ -161,20 +161,20 @@ def best_pose(likelihood: Likelihood, points: Floats, guess: Floats, search: Sea
     window = _Window(likelihood, points, guess, search)
     level, blocks = window.top()
     yield from _rate_in_batches(window, blocks, level)
-    best_response, best_block = -1.0, blocks.part(np.s_[:1])
+    best_response, best_block = -1.0, blocks.selected(np.s_[:1])
     while level:
         leaf = _descend(window, blocks, level)
         if leaf.bound[0] > best_response:
             best_response, best_block = float(leaf.bound[0]), leaf
         level -= 1
-        blocks = window.children(blocks.part(blocks.bound > best_response), level)
+        blocks = window.children(blocks.selected(blocks.bound > best_response), level)
         if not len(blocks.angle):
             break
         yield from _rate_in_batches(window, blocks, level)
     if len(blocks.angle):
         index = int(np.argmax(blocks.bound))
         if blocks.bound[index] > best_response:
-            best_response, best_block = float(blocks.bound[index]), blocks.part(np.s_[index : index + 1])
+            best_response, best_block = float(blocks.bound[index]), blocks.selected(np.s_[index : index + 1])
     shift = np.array((best_block.column[0], best_block.row[0])) * likelihood.resolution
     pose: Floats = np.array((guess[0] + shift[0], guess[1] + shift[1], guess[2] + window.angles[best_block.angle[0]]))
     pose[2] = (pose[2] + pi) % (2 * pi) - pi
@@ -183,8 +183,8 @@ def best_pose(likelihood: Likelihood, points: Floats, guess: Floats, search: Sea
 
 def _rate_in_batches(window: _Window, blocks: _Blocks, level: int) -> Steps[None]:
     for begin in range(0, len(blocks.angle), _BATCH_SIZE):
-        batch = blocks.part(np.s_[begin : begin + _BATCH_SIZE])
-        window.judge(batch, level)
+        batch = blocks.selected(np.s_[begin : begin + _BATCH_SIZE])
+        window.set_bounds(batch, level)
         blocks.bound[begin : begin + _BATCH_SIZE] = batch.bound
         yield
 
@@ -195,11 +195,11 @@ def _descend(window: _Window, blocks: _Blocks, level: int) -> _Blocks:
     The pose is a block of one cell.
     """
     index = int(np.argmax(blocks.bound))
-    block = blocks.part(np.s_[index : index + 1])
+    block = blocks.selected(np.s_[index : index + 1])
     while level:
         level -= 1
         children = window.children(block, level)
-        window.judge(children, level)
+        window.set_bounds(children, level)
         index = int(np.argmax(children.bound))
-        block = children.part(np.s_[index : index + 1])
+        block = children.selected(np.s_[index : index + 1])
     return block

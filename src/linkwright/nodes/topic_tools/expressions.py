@@ -30,7 +30,7 @@ from linkwright.graph import (
 )
 from linkwright.graph.qos.compatibility import fit
 from linkwright.messages import get_message, interface_names, set_fields
-from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
 from linkwright.nodes.settings import words_of
 
 
@@ -55,12 +55,12 @@ class _ExpressionTool(SingleNode, ABC):
         self._node, _ = create_node(graph, options, f"{self.PROGRAM}_{getpid()}")
         self._publisher: Publisher[Any] | None = None
         self._subscription: Subscription[Any] | None = None
-        with starting(self._node):
+        with handle_start_errors(self._node):
             self._output_class = _message_class(self._arguments.output_type)
             self._prepare()
-        self._graph_changed = self._node.create_guard_condition(self._look)
+        self._graph_changed = self._node.create_guard_condition(self._subscribe_when_available)
         graph.watch(self._graph_changed.trigger)
-        self._look()
+        self._subscribe_when_available()
 
     PROGRAM: ClassVar[str]
 
@@ -74,7 +74,7 @@ class _ExpressionTool(SingleNode, ABC):
         """Compile the expressions from the command line."""
 
     @abstractmethod
-    def _make(self, message: Any) -> Any:
+    def _convert(self, message: Any) -> Any:
         """Return the message to publish for an input message."""
 
     def _parser(self) -> argparse.ArgumentParser:
@@ -92,7 +92,7 @@ class _ExpressionTool(SingleNode, ABC):
             parser.add_argument(f"--qos-{name}", choices=kind.short_keys())
         return parser
 
-    def _look(self) -> None:
+    def _subscribe_when_available(self) -> None:
         sources = self._node.get_publishers_info_by_topic(self._arguments.input)
         if self._subscription is None and sources:
             qos = self._profile([source.qos_profile for source in sources])
@@ -117,7 +117,7 @@ class _ExpressionTool(SingleNode, ABC):
 
     def _receive(self, message: Any) -> None:
         try:
-            output = self._make(message)
+            output = self._convert(message)
         except Exception as error:  # noqa: BLE001 - whatever the user's expression raises
             self._node.get_logger().error(
                 f"{self._arguments.expression}: {type(error).__name__}: {error}", throttle_duration_sec=5.0
@@ -149,7 +149,7 @@ class Transform(_ExpressionTool):
             self._arguments.expression, {name.partition(".")[0]: names[name] for name in names}
         )
 
-    def _make(self, message: Any) -> Any:
+    def _convert(self, message: Any) -> Any:
         for name in self._field:
             message = getattr(message, name)
         output = self._expression(message)
@@ -184,7 +184,7 @@ class RelayField(_ExpressionTool):
             raise _parse_error(self._arguments.expression, "it is not a mapping of fields")
         self._fields = {name: _compile_value(value) for name, value in fields.items()}
 
-    def _make(self, message: Any) -> Any:
+    def _convert(self, message: Any) -> Any:
         result = self._output_class()
         stamps = set_fields(
             result,

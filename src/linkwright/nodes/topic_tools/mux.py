@@ -58,10 +58,10 @@ class _Switch(TopicTool):
         selected: str = node.declare_parameter("initial_topic", "").value
         single: str = node.declare_parameter(self._SINGLE_PARAMETER, self._SINGLE_DEFAULT).value
         self._lazy = node.declare_parameter("lazy", False).value
-        self._place(single, selected or self._topics[0])
+        self._set_topics(single, selected or self._topics[0])
 
     @abstractmethod
-    def _place(self, single: str, selected: str) -> None:
+    def _set_topics(self, single: str, selected: str) -> None:
         """Set the topics `_input` and `_output` for a selection.
 
         Args:
@@ -78,11 +78,11 @@ class _Switch(TopicTool):
     def _change(self, selected: str) -> None:
         """Replace the selected topic."""
 
-    def _look(self) -> None:
+    def _update_endpoints(self) -> None:
         if self._selected == NO_TOPIC:
             self._stop()
         else:
-            super()._look()
+            super()._update_endpoints()
 
     def _receive(self, message: Any) -> None:
         self._send(message)
@@ -141,7 +141,7 @@ class _Switch(TopicTool):
                 return response
             logger.info(f"{name} selected {'input' if name == 'mux' else 'output'}: [{topic}]")
         self._change(topic)
-        self._look()
+        self._update_endpoints()
         return response
 
 
@@ -162,7 +162,7 @@ class Mux(_Switch):
     )
     _VERB = "listening to"
 
-    def _place(self, single: str, selected: str) -> None:
+    def _set_topics(self, single: str, selected: str) -> None:
         self._input, self._output = selected, single
 
     @property
@@ -190,7 +190,7 @@ class Demux(_Switch):
     )
     _VERB = "publishing to"
 
-    def _place(self, single: str, selected: str) -> None:
+    def _set_topics(self, single: str, selected: str) -> None:
         self._input, self._output = single, selected
 
     @property

@@ -16,7 +16,7 @@ from linkwright.graph.endpoints.base import EndpointInfo
 from linkwright.graph.endpoints.commander import Commander
 from linkwright.graph.endpoints.drivers import DriverWatch
 from linkwright.graph.qos.compatibility import fit
-from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
 from linkwright.nodes.settings import log_unknown, options_from_words, words_of
 from linkwright.nodes.standstill import VELOCITIES, send_stop
 
@@ -46,12 +46,12 @@ class TopicTool(SingleNode, ABC):
         self._publisher: Publisher[Any] | None = None
         self._subscription: Subscription[Any] | None = None
         self._has_mixed_qos = False
-        with starting(self._node):
+        with handle_start_errors(self._node):
             self._declare()
             log_unknown(self._node)
-        self._changed = self._node.create_guard_condition(self._look)
+        self._changed = self._node.create_guard_condition(self._update_endpoints)
         graph.watch(self._changed.trigger)
-        self._look()
+        self._update_endpoints()
 
     def close(self) -> None:
         """Close the node."""
@@ -74,7 +74,7 @@ class TopicTool(SingleNode, ABC):
         if self._publisher is not None:
             self._publisher.publish(message)
 
-    def _look(self) -> None:
+    def _update_endpoints(self) -> None:
         """Create or destroy the publisher and the subscription to match the current graph."""
         sources = self._sources()
         if not sources:

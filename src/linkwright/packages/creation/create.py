@@ -79,13 +79,13 @@ def create_package(request: PackageRequest, report: Callable[[str], None]) -> li
     try:
         package.mkdir(parents=True)
         is_created = True
-        report(f"creating folder {shown(package)}")
+        report(f"creating folder {format_path(package)}")
         for step in steps(request):
             _execute_step(step, package, report)
     except OSError as error:
         if is_created:
             shutil.rmtree(package, ignore_errors=True)  # an incomplete package would block the next attempt
-        path = shown(Path(error.filename)) if error.filename else shown(package)
+        path = format_path(Path(error.filename)) if error.filename else format_path(package)
         message = phrase("cannot create '{where}': {strerror}", where=path, strerror=foreign(error.strerror or error))
         hint = phrase("choose a folder that you may write to: --destination-directory FOLDER")
         raise LinkwrightError(Diagnostic("PKG208", message, hint=hint)) from None
@@ -113,7 +113,7 @@ def check_request(request: PackageRequest) -> list[Diagnostic]:
         findings.append(
             Diagnostic(
                 "PKG207",
-                phrase("the {what} '{package}' already exists", what=term(member_kind), package=shown(package)),
+                phrase("the {what} '{package}' already exists", what=term(member_kind), package=format_path(package)),
                 hint=hint,
             )
         )
@@ -175,7 +175,7 @@ def steps(request: PackageRequest) -> Iterator[Step]:
         yield File(Path("LICENSE"), text, announced=False)
 
 
-def shown(path: Path) -> str:
+def format_path(path: Path) -> str:
     """Format a path as ros2 prints it.
 
     A path below the current folder begins with a dot.
@@ -228,9 +228,9 @@ def _execute_step(step: Step, package: Path, report: Callable[[str], None]) -> N
         return
     path = package / step.path
     if isinstance(step, Folder):
-        report(f"creating folder {shown(path)}")
+        report(f"creating folder {format_path(path)}")
         path.mkdir(parents=True, exist_ok=True)
         return
     if step.announced:
-        report(f"creating {shown(path)}")
+        report(f"creating {format_path(path)}")
     write_whole_file(path, step.text)

@@ -29,14 +29,14 @@ def find_module(finder: PackageFinder, name: str, near: Path) -> ModuleSpec | No
         return None
     own = finder.find(name)
     if own is not None:
-        spec = _first(name, _folders(own, name))
+        spec = _find_module(name, _folders(own, name))
         if spec is None and any((own / name).glob("*.py")):
             spec = PathFinder.find_spec(name, [str(own)])  # the package's module folder has no __init__.py
         if spec is not None:
             return spec
     asking = enclosing_package(near)
     packages = chain(() if asking is None else (asking,), finder.packages().items())
-    return _first(name, (folder for package, share in packages for folder in _folders(share, package)))
+    return _find_module(name, (folder for package, share in packages for folder in _folders(share, package)))
 
 
 def _folders(share: Path, package: str) -> Iterator[Path]:
@@ -49,7 +49,7 @@ def _folders(share: Path, package: str) -> Iterator[Path]:
         yield root
 
 
-def _first(name: str, folders: Iterable[Path]) -> ModuleSpec | None:
+def _find_module(name: str, folders: Iterable[Path]) -> ModuleSpec | None:
     for folder in folders:
         if (folder / name / "__init__.py").is_file() or (folder / f"{name}.py").is_file():
             return PathFinder.find_spec(name, [str(folder)])

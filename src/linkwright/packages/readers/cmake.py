@@ -104,7 +104,7 @@ class CopyRule:
     only_matching: bool = False
     is_optional: bool = False
 
-    def takes(self, folder: str, relative_path: PurePosixPath) -> bool:
+    def copies(self, folder: str, relative_path: PurePosixPath) -> bool:
         """Return whether the rule copies a file in a folder.
 
         Args:
@@ -165,7 +165,7 @@ class CMakeFile:
     unknown: list[str] = field(default_factory=list)
     is_ament: bool = False
     _generated: dict[str, InstalledFile] = field(default_factory=dict)
-    _made: dict[str, InstalledFile] = field(default_factory=dict)
+    _generated_files: dict[str, InstalledFile] = field(default_factory=dict)
 
     @property
     def is_complete(self) -> bool:
@@ -230,7 +230,7 @@ class CMakeFile:
         return self._files(package, PurePosixPath(share))
 
     def _files(self, package: Path, share: PurePosixPath | None) -> Iterator[InstalledFile]:
-        for file in self._made.values():
+        for file in self._generated_files.values():
             if share is None or file.content is not None or (package / file.source).is_file():
                 yield file
         for rule in self.copies:
@@ -261,7 +261,7 @@ class CMakeFile:
             return
         for file in sorted(path.rglob("*")):
             relative_path = PurePosixPath(file.relative_to(path).as_posix())
-            if file.is_file() and rule.takes(item, relative_path):
+            if file.is_file() and rule.copies(item, relative_path):
                 yield InstalledFile((source / relative_path).as_posix(), str(target_folder / relative_path))
 
     def _copied_build_files(self, rule: CopyRule, item: str, target: PurePosixPath) -> Iterator[InstalledFile]:
@@ -271,17 +271,19 @@ class CMakeFile:
                 yield file._replace(destination=str(target / (rule.new_name or PurePosixPath(path).name)))
             elif path.startswith(f"{item.rstrip('/')}/"):
                 relative_path = PurePosixPath(path).relative_to(item)
-                if rule.takes(item, relative_path):
+                if rule.copies(item, relative_path):
                     yield file._replace(destination=str(target_folder / relative_path))
 
-    def _make(self, source: str, destination: str, values: dict[str, str] | None = None, content: str = "") -> None:
+    def _add_generated_file(
+        self, source: str, destination: str, values: dict[str, str] | None = None, content: str = ""
+    ) -> None:
         """Record a file that the build generates and installs.
 
         If the same file is recorded again, the content is appended.
         """
-        previous = self._made.get(destination)
+        previous = self._generated_files.get(destination)
         text = None if values is not None else (previous.content or "" if previous else "") + content
-        self._made[destination] = InstalledFile(source, destination, values, text)
+        self._generated_files[destination] = InstalledFile(source, destination, values, text)
 
 
 def _is_nested(first: PurePosixPath, second: PurePosixPath) -> bool:
@@ -364,9 +366,9 @@ def _read_hooks(file: CMakeFile, command: Command, program: CMakeProgram) -> Non
         target = f"share/{file.project.text if file.project else ''}/environment/{name.removesuffix('.in')}"
         file.hooks.append(target)
         if name.endswith(".in"):
-            file._make(hook, target, dict(program.variables))
+            file._add_generated_file(hook, target, dict(program.variables))
         else:
-            file._made[target] = InstalledFile(hook, target)
+            file._generated_files[target] = InstalledFile(hook, target)
 
 
 def _read_resource(file: CMakeFile, command: Command) -> None:
@@ -374,11 +376,11 @@ def _read_resource(file: CMakeFile, command: Command) -> None:
     words, project = command.words, file.project.text if file.project else ""
     if command.name == "ament_index_register_resource":
         name, content = _argument_after(words, "PACKAGE_NAME") or project, _argument_after(words, "CONTENT") or ""
-        file._make(_FILE_NAME, f"{_INDEX_FOLDER}/{words[0]}/{name}", content=content)
+        file._add_generated_file(_FILE_NAME, f"{_INDEX_FOLDER}/{words[0]}/{name}", content=content)
     elif len(words) > 1 and not is_open(words[1]):
         path = PurePosixPath(within_package(words[1], command.folder))
         share = f"share/{project}"
-        file._make(
+        file._add_generated_file(
             _FILE_NAME, f"{_INDEX_FOLDER}/{words[0]}__pluginlib__plugin/{project}", content=f"{share}/{path.name}\n"
         )
         rule = CopyRule("FILES", command.arguments[1:2], share, is_optional=command.is_conditional)

@@ -92,7 +92,7 @@ def _change_list(operation: str, items: list[str], words: list[str]) -> list[str
     if operation == "SORT" and not words:
         return sorted(items)
     if operation == "FILTER" and len(words) == 3 and words[1] == "REGEX":
-        return [item for item in items if bool(_found(words[2], item)) == (words[0] == "INCLUDE")]
+        return [item for item in items if bool(_find_matches(words[2], item)) == (words[0] == "INCLUDE")]
     if operation == "TRANSFORM" and words:
         return [_transform_item(item, words) for item in items]
     raise _NotKnownError
@@ -130,7 +130,7 @@ def _evaluate_string(operation: str, args: list[str], value_of: Callable[[str], 
     if operation == "REGEX" and args[0] == "REPLACE":
         return args[3], _replace_regex(args[1], args[2], "".join(args[4:]))
     if operation == "REGEX" and args[0] in ("MATCH", "MATCHALL"):
-        matches = [text for text, _ in _found(args[1], "".join(args[3:]))]
+        matches = [text for text, _ in _find_matches(args[1], "".join(args[3:]))]
         return args[2], ";".join(matches if args[0] == "MATCHALL" else matches[:1])
     if operation in ("APPEND", "PREPEND"):
         old, new = value_of(args[0]), "".join(args[1:])
@@ -153,7 +153,7 @@ def _convert_case(conversion: str, text: str) -> str:
     return text.strip() if conversion == "STRIP" else text.lower() if conversion == "TOLOWER" else text.upper()
 
 
-def _found(pattern: str, text: str) -> list[tuple[str, list[str]]]:
+def _find_matches(pattern: str, text: str) -> list[tuple[str, list[str]]]:
     matches = matched(pattern, text)
     if matches is None:
         raise _NotKnownError

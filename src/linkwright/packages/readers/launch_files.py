@@ -101,15 +101,15 @@ def read_launch_file(source: SourceText, path: str) -> LaunchFile:
     )
     for call in python.calls("Node", "LifecycleNode", "ComposableNode"):
         package, executable = argument_of(call, "package"), argument_of(call, "executable")
-        facts.nodes.append(StartedNode(_place(python, package), _place(python, executable)))
+        facts.nodes.append(StartedNode(_place_of(python, package), _place_of(python, executable)))
     for call in python.calls("get_package_share_directory", "get_package_share_path", "FindPackageShare"):
         argument = call.args[0] if call.args else argument_of(call, "package")
-        expression = _place(python, argument)
+        expression = _place_of(python, argument)
         if expression is not None:
             facts.shares.append(expression)
     written_paths = (python.value(node) for node in _written_paths(python))
     facts.written_files = frozenset(
-        (share_path.package, share_path.rest.strip("/"))
+        (share_path.package, share_path.subpath.strip("/"))
         for share_path in written_paths
         if isinstance(share_path, SharePath)
     )
@@ -164,7 +164,7 @@ def _written_paths(python: PythonFile) -> Iterator[ast.expr]:
         yield from call.args[1:2]
 
 
-def _place(python: PythonFile, node: ast.expr | None) -> Place | None:
+def _place_of(python: PythonFile, node: ast.expr | None) -> Place | None:
     if node is None:
         return None
     text = python.text(node)
@@ -195,8 +195,8 @@ class _PathReader(ast.NodeVisitor):
             return
         assert isinstance(node, ast.expr)
         value = self._python.value(node)
-        if isinstance(value, SharePath) and value.rest and not self._path_depth:
-            self._facts.paths.append(SharedFile(value.package, value.rest.strip("/"), self._python.span(node)))
+        if isinstance(value, SharePath) and value.subpath and not self._path_depth:
+            self._facts.paths.append(SharedFile(value.package, value.subpath.strip("/"), self._python.span(node)))
         self._path_depth += 1
         super().generic_visit(node)
         self._path_depth -= 1

@@ -32,11 +32,11 @@ class SharePath:
 
     Attributes:
         package: the name of the package.
-        rest: the path below the folder, such as ``/urdf/robot.urdf``; empty for the folder itself.
+        subpath: the path below the folder, such as ``/urdf/robot.urdf``; empty for the folder itself.
     """
 
     package: str
-    rest: str = ""
+    subpath: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -285,7 +285,7 @@ def concatenated(values: Sequence[Value]) -> Value:
         return UNKNOWN
     text = "".join(value for value in suffixes if isinstance(value, str))
     if isinstance(prefix, SharePath):
-        return SharePath(prefix.package, prefix.rest + text)
+        return SharePath(prefix.package, prefix.subpath + text)
     return prefix + text if isinstance(prefix, str) else UNKNOWN
 
 
@@ -298,7 +298,7 @@ def joined(values: Sequence[Value]) -> Value:
         if not isinstance(value, str) or value.startswith("/"):
             return UNKNOWN
         if isinstance(path, SharePath):
-            path = SharePath(path.package, f"{path.rest.rstrip('/')}/{value}")
+            path = SharePath(path.package, f"{path.subpath.rstrip('/')}/{value}")
         elif isinstance(path, str):
             path = f"{path.rstrip('/')}/{value}" if path else value
         else:

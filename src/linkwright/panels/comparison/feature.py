@@ -31,7 +31,7 @@ _OLD_ROBOT_ALPHA = 0.4
 
 def add_old_robot(config: RvizConfig, name: str) -> None:
     """Add a translucent display of the old robot to the configuration of the new robot."""
-    display = config.make("rviz_default_plugins/RobotModel", name)
+    display = config.new_display("rviz_default_plugins/RobotModel", name)
     for path, value in (
         (("Description Topic", "Value"), TOPIC),
         (("TF Prefix",), PREFIX),
@@ -87,7 +87,7 @@ class ComparisonFeature(PageFeature):
         if self._last_comparison is None or self._last_comparison[0] is not old or self._last_comparison[1] is not new:
             comparison = self._pair.compare(old, new)
             self._last_comparison = old, new, comparison
-            self._old_robot.place(old, new, comparison)
+            self._old_robot.publish_poses(old, new, comparison)
         for manager in self.managers.all():
             self._publish(manager)
 
@@ -198,8 +198,8 @@ def _compared_item(difference: Difference, old: Robot, new: Robot, pair: Pair) -
         element=name,
         element_kind=kind,
         in_old=in_old,
-        old_place=_place(difference.old_place, pair.old),
-        new_place=_place(difference.new_place, pair.new),
+        old_place=_compared_place(difference.old_place, pair.old),
+        new_place=_compared_place(difference.new_place, pair.new),
     )
 
 
@@ -221,8 +221,8 @@ def _element_of(difference: Difference, old: Robot, new: Robot) -> tuple[Literal
     return "link", "", False
 
 
-def _place(place: Place | None, model: Model) -> ComparedPlace | None:
+def _compared_place(place: Place | None, model: Model) -> ComparedPlace | None:
     if place is None:
         return None
     span = place.span
-    return ComparedPlace(f"{model.named(span.file)}:{span.line}:{span.column}", span.file, span.line)
+    return ComparedPlace(f"{model.display_name(span.file)}:{span.line}:{span.column}", span.file, span.line)

@@ -51,10 +51,10 @@ class OldRobot:
         listener.create_subscription(JointState, "joint_states", self._on_joint_states, SENSOR_DATA_QOS)
 
     def publish(self, text: str) -> None:
-        """Publish a description. Call `place` to publish the poses of its links."""
+        """Publish a description. Call `publish_poses` to publish the poses of its links."""
         self._text.publish(String(text))
 
-    def place(self, old: Robot, new: Robot, comparison: Comparison) -> None:
+    def publish_poses(self, old: Robot, new: Robot, comparison: Comparison) -> None:
         """Publish the poses of the old robot's links, now and at each joint state of the new robot.
 
         Args:

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 
-from linkwright.diagnostics import LinkwrightError, display_path, in_one_line
+from linkwright.diagnostics import LinkwrightError, display_path, join_messages
 from linkwright.page.audience import Page
 from linkwright.page.files import Download
 from linkwright.page.protocol.export import AskExport, ExportFailed, ExportReady
@@ -74,7 +74,7 @@ class ExportFeature(PageFeature):
         """Start an export, unless an export of the page is already running."""
         if message.format not in FORMATS or page in self._export_tasks:
             return
-        task = asyncio.get_running_loop().create_task(self._make(page, message))
+        task = asyncio.get_running_loop().create_task(self._export(page, message))
         self._export_tasks[page] = task
         task.add_done_callback(lambda _: self._export_tasks.pop(page, None))
 
@@ -83,12 +83,12 @@ class ExportFeature(PageFeature):
         for task in self._export_tasks.values():
             task.cancel()
 
-    async def _make(self, page: Page, message: AskExport) -> None:
+    async def _export(self, page: Page, message: AskExport) -> None:
         try:
             snapshot = snapshot_of(self.viewer, self.managers.of(page), message.view)
             data = await asyncio.to_thread(partial(export_snapshot, snapshot, message.format))
         except LinkwrightError as error:
-            page.send(ExportFailed(in_one_line(error.diagnostics)))
+            page.send(ExportFailed(join_messages(error.diagnostics)))
             return
         except Exception as error:  # noqa: BLE001  # an internal error must not leave the page waiting
             self.context.node.get_logger().error(
@@ -99,4 +99,4 @@ class ExportFeature(PageFeature):
         name = re.sub(r"[^\w.-]+", "_", snapshot.name).strip("._") or "robot"
         file = Download(f"{name}.{message.format}", FORMATS[message.format].content_type, data)
         outside_paths = [display_path(path) for path in snapshot.outside]
-        page.send(ExportReady(self.context.downloads.put(file), file.name, outside_paths))
+        page.send(ExportReady(self.context.downloads.offer_once(file), file.name, outside_paths))

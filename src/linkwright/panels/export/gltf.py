@@ -199,7 +199,7 @@ class _RobotWriter:
         source = (shape.url,) if shape.kind == "mesh" else (shape.kind, *shape.size)
         primitives = []
         for number, part in enumerate(self._mesh_parts(link, shape)):
-            appearance = _look(shape, part, self._texture_file(shape))
+            appearance = _appearance(shape, part, self._texture_file(shape))
             primitives.append(
                 {**self._add_geometry((*source, number), part), "material": self._add_material(appearance)}
             )
@@ -305,7 +305,7 @@ class _NeighbourFiles:
         return []
 
 
-def _look(shape: Shape, part: MeshPart, texture: bytes | None) -> _Appearance:
+def _appearance(shape: Shape, part: MeshPart, texture: bytes | None) -> _Appearance:
     """Return the appearance of a mesh part, from the mesh file or, if it has none, the URDF.
 
     The opacity is always taken from the URDF.

@@ -81,7 +81,7 @@ class LogFeature(PageFeature):
         self._watching_pages.add(page)
         if page not in self._queues:
             self._queues[page] = _PageQueue(self._past_lines)
-        self._sender.ask()
+        self._sender.request()
 
     def page_closed(self, page: Page) -> None:
         """Discard the page's records, and unsubscribe after the last page has closed."""
@@ -113,7 +113,7 @@ class LogFeature(PageFeature):
         self._past_lines.append(line)
         for queue in self._queues.values():
             queue.add(line)
-        self._sender.ask()
+        self._sender.request()
 
     def _send(self) -> None:
         for page in self._watching_pages:

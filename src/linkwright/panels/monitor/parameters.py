@@ -26,7 +26,7 @@ from linkwright.page.protocol.monitor import (
 )
 from linkwright.panels.monitor.topic_tap import Paced, TopicTap
 from linkwright.panels.page_feature import FeatureHost, PageFeature
-from linkwright.rviz.parameter_answers import NoAnswerError, answer, wait_for_services
+from linkwright.rviz.parameter_answers import NoAnswerError, wait_for_response, wait_for_services
 
 _KIND_NAMES: dict[ParameterType, ParameterKind] = {
     kind: cast("ParameterKind", kind.name.lower()) for kind in ParameterType
@@ -133,7 +133,7 @@ class RemoteNode:
 
     def __init__(self, node: Node, name: str, publish: Callable[[NodeParameters], None]) -> None:
         self.name = name
-        self.known: NodeParameters | None = None
+        self.parameters: NodeParameters | None = None
         self._publish = publish
         self._client = AsyncParameterClient(node, name)
         self._rows: dict[str, ParameterRow] = {}
@@ -161,8 +161,8 @@ class RemoteNode:
                 row.kind, row.values = value_texts(parameter.value)
         if any(parameter.name not in self._rows for parameter in event.new_parameters):
             self.refresh()
-        elif self.known is not None:
-            self._publisher.ask()
+        elif self.parameters is not None:
+            self._publisher.request()
 
     def set(self, request: SetParameter, on_result: Callable[[ParameterResult], None]) -> None:
         """Set a parameter, and call the callback with the result."""
@@ -185,16 +185,16 @@ class RemoteNode:
                 (await self._response_to(self._client.describe_parameters(names))).descriptors if names else []
             )
         except NoAnswerError as error:
-            self.known = NodeParameters(self.name, [], str(error))
-            self._publish(self.known)
+            self.parameters = NodeParameters(self.name, [], str(error))
+            self._publish(self.parameters)
             return
         pairs = zip(descriptors, values, strict=False)
         self._rows = {descriptor.name: parameter_row(descriptor, value) for descriptor, value in pairs}
         self._publish_rows()
 
     def _publish_rows(self) -> None:
-        self.known = NodeParameters(self.name, [self._rows[name] for name in sorted(self._rows)], None)
-        self._publish(self.known)
+        self.parameters = NodeParameters(self.name, [self._rows[name] for name in sorted(self._rows)], None)
+        self._publish(self.parameters)
 
     async def _set(self, request: SetParameter, on_result: Callable[[ParameterResult], None]) -> None:
         try:
@@ -222,7 +222,7 @@ class RemoteNode:
         return sorted((await self._response_to(self._client.list_parameters())).result.names)
 
     async def _response_to(self, future: Awaitable[Any]) -> Any:
-        return await answer(self._client, future)
+        return await wait_for_response(self._client, future)
 
 
 _EVENTS_TOPIC = "/parameter_events"
@@ -286,8 +286,8 @@ class ParametersFeature(PageFeature):
             self._send_node_lists()
         if watched_node is None and name is not None:
             self._nodes[name].refresh()
-        elif watched_node is not None and watched_node.known is not None:
-            page.send(watched_node.known)
+        elif watched_node is not None and watched_node.parameters is not None:
+            page.send(watched_node.parameters)
 
     def _update_subscriptions(self) -> None:
         """Open the clients and subscriptions that pages need, and close all others."""

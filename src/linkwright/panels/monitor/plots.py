@@ -288,7 +288,7 @@ class PlotsFeature(PageFeature):
             self._schedule_read()
         if requested:
             plots.sent = []
-            self._sender.ask()
+            self._sender.request()
 
     # --- samples from before the displayed time ----------------------------------------------------------------
 
@@ -321,7 +321,7 @@ class PlotsFeature(PageFeature):
         series = _Series(requested, path, None)
         channel = self._channels.get(requested.topic)
         if channel is None:
-            channel = _PlottedTopic(self.context, requested.topic, self._sender.ask)
+            channel = _PlottedTopic(self.context, requested.topic, self._sender.request)
             self._channels[requested.topic] = channel
         channel.add(series)
         return series

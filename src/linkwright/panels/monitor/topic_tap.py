@@ -33,21 +33,21 @@ class Paced:
         self._period = period
         self._loop = asyncio.get_running_loop()
         self._last_call_time = float("-inf")
-        self._due: asyncio.TimerHandle | None = None
+        self._timer: asyncio.TimerHandle | None = None
 
-    def ask(self) -> None:
+    def request(self) -> None:
         """Request a call. It follows as soon as the period since the last call has passed."""
-        if self._due is None:
-            self._due = self._loop.call_at(max(self._loop.time(), self._last_call_time + self._period), self._call)
+        if self._timer is None:
+            self._timer = self._loop.call_at(max(self._loop.time(), self._last_call_time + self._period), self._call)
 
     def cancel(self) -> None:
         """Cancel a requested call."""
-        if self._due is not None:
-            self._due.cancel()
-            self._due = None
+        if self._timer is not None:
+            self._timer.cancel()
+            self._timer = None
 
     def _call(self) -> None:
-        self._due = None
+        self._timer = None
         self._last_call_time = self._loop.time()
         self._work()
 
@@ -91,15 +91,15 @@ class TopicTap:
         self._changed = changed
         self._subscription: Subscription[Any] | None = None
         self._qos: QoSProfile | None = None
-        self._changes.watch(self._look)
+        self._changes.watch(self._on_graph_change)
         self._update_subscription()
 
     def close(self) -> None:
         """Unsubscribe."""
-        self._changes.unwatch(self._look)
+        self._changes.unwatch(self._on_graph_change)
         self._unsubscribe()
 
-    def _look(self) -> None:
+    def _on_graph_change(self) -> None:
         previous_state = self.error, self.message_class
         self._update_subscription()
         if (self.error, self.message_class) != previous_state and self._changed is not None:

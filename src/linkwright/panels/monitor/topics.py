@@ -147,7 +147,7 @@ class _Gauge:
     def _receive(self, data: Any, info: MessageInfo) -> None:
         self.window.add(time.monotonic_ns(), len(data))
         self.last = (data, info.received_timestamp / NANOSECONDS_PER_SECOND)
-        self._feature.came(self.topic)
+        self._feature.message_received(self.topic)
 
 
 class TopicsFeature(PageFeature):
@@ -186,16 +186,16 @@ class TopicsFeature(PageFeature):
         self._requests.clear()
         self._update_subscriptions()
 
-    def came(self, topic: str) -> None:
+    def message_received(self, topic: str) -> None:
         """Record that a topic has a new message, and send it soon to the pages that show it."""
         for request in self._requests.values():
             if topic in request.opened:
                 request.due.add(topic)
-                self._messages_sender.ask()
+                self._messages_sender.request()
 
     def send_figures_soon(self) -> None:
         """Send measurements as soon as the period since the last measurements has passed."""
-        self._figures_sender.ask()
+        self._figures_sender.request()
 
     def _update_subscriptions(self, page: Page | None = None) -> None:
         """Open the subscriptions that pages need, and close all others.
@@ -216,9 +216,9 @@ class TopicsFeature(PageFeature):
             self._figures_sender.cancel()
             self._messages_sender.cancel()
             return
-        self._figures_sender.ask()
+        self._figures_sender.request()
         if page is not None and self._requests[page].due:
-            self._messages_sender.ask()
+            self._messages_sender.request()
 
     def _send_topic_lists(self) -> None:
         topic_list = TopicList(self._topic_rows())
@@ -248,7 +248,7 @@ class TopicsFeature(PageFeature):
             if gauges:
                 page.send(TopicFigures([gauge.traffic() for gauge in gauges]))
         if self._gauges:
-            self._figures_sender.ask()
+            self._figures_sender.request()
 
     def _send_messages(self) -> None:
         messages: dict[str, TopicMessage | None] = {}

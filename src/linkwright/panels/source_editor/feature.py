@@ -110,7 +110,7 @@ class SourceEditorFeature(PageFeature):
         if editor is None:
             return
         if isinstance(message, messages.AskSourceFile):
-            editor.files.known = self._known(page)
+            editor.files.known = self._description_files(page)
             await self._send_file(page, editor, message.path)
         elif isinstance(message, messages.LeaveSourceFile):
             editor.open_files.pop(message.path, None)
@@ -138,7 +138,7 @@ class SourceEditorFeature(PageFeature):
 
         If no file can be edited, the language server is ended, and the response gives the reason.
         """
-        known = self._known(page)
+        known = self._description_files(page)
         why_not = _refusal_reason(page, file, known)
         if why_not is not None:
             self.page_closed(page)
@@ -151,7 +151,7 @@ class SourceEditorFeature(PageFeature):
             editor.files = files
         return messages.EditorOpened(str(files.folder), files.folder.as_uri(), "")
 
-    def _known(self, page: Page) -> frozenset[str]:
+    def _description_files(self, page: Page) -> frozenset[str]:
         return frozenset(self.viewer.add_feature(DescriptionFeature).files(page))
 
     def _process(self, page: Page) -> LanguageProcess:

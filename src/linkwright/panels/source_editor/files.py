@@ -58,14 +58,14 @@ class SourceFiles:
 
     Args:
         main: a file of the workspace.
-        known: the files of the shown descriptions.
+        description_files: the files of the shown descriptions.
 
     Attributes:
-        known: the files of the shown descriptions.
+        description_files: the files of the shown descriptions.
     """
 
-    def __init__(self, main: Path, known: frozenset[str] = frozenset()) -> None:
-        self.known = known
+    def __init__(self, main: Path, description_files: frozenset[str] = frozenset()) -> None:
+        self.known = description_files
         self._workspace = Workspace(main)
 
     @property

@@ -83,8 +83,8 @@ def _message(answers: IO[bytes]) -> str | None:
     length = None
     for _ in range(_MAX_HEADER_LINES):
         line = answers.readline()
-        found = _LENGTH.match(line)
-        length = found or length
+        length_match = _LENGTH.match(line)
+        length = length_match or length
         if line in (b"\r\n", b""):
             break
     if length is None:

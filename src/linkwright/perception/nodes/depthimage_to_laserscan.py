@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from linkwright.graph import SENSOR_DATA_QOS, Graph
 from linkwright.messages import get_message
-from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
 from linkwright.nodes.settings import log_unknown, positive
 from linkwright.perception.nodes.lazy import LazySubscriptions
 from linkwright.perception.scans.projection import Pinhole, scan_from_depths
@@ -34,7 +34,7 @@ class DepthImageToLaserScan(SingleNode):
         self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
         node = self._node
         self._camera: Pinhole | None = None
-        with starting(node):
+        with handle_start_errors(node):
             self._scan_time: float = node.declare_parameter("scan_time", 0.033).value
             self._range_min: float = node.declare_parameter("range_min", 0.45).value
             self._range_max: float = node.declare_parameter("range_max", 10.0).value

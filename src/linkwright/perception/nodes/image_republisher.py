@@ -15,7 +15,7 @@ from typing import Any, ClassVar
 from linkwright.diagnostics import install_hint
 from linkwright.graph import DEFAULT_QOS, Graph, Node, Publisher, Subscription
 from linkwright.messages import get_message
-from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
 from linkwright.nodes.settings import bad_value, log_unknown, options_from_words, words_of
 from linkwright.perception.nodes.image_transports import (
     BadImageError,
@@ -61,7 +61,7 @@ class ImageRepublisher(SingleNode):
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         options = options_from_words(options, words_of(options), self.WORDS, self.USAGE)
         self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
-        with starting(self._node):
+        with handle_start_errors(self._node):
             self._in_transport = self._transport("in_transport", "raw")
             out_transport = self._transport("out_transport", "")
             log_unknown(self._node)

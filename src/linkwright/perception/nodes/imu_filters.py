@@ -23,7 +23,7 @@ from linkwright.geometry.single import (
 )
 from linkwright.graph import SENSOR_DATA_QOS, TF_QOS, Graph
 from linkwright.messages import TFMessage, TransformBatch, get_message
-from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
 from linkwright.nodes.settings import bad_value, log_unknown
 from linkwright.perception.attitude import GRAVITY, ComplementaryFilter, MadgwickFilter, World, attitude_at_rest
 
@@ -47,7 +47,7 @@ class _ImuFilter(SingleNode, ABC):
         node = self._node
         self._last_ns: int | None = None
         self._magnetic: Vector3 | None = None
-        with starting(node):
+        with handle_start_errors(node):
             declare = node.declare_parameter
             self._use_mag: bool = declare("use_mag", self._USES_MAGNETOMETER).value
             self._publish_tf: bool = declare("publish_tf", self._PUBLISHES_TF).value
@@ -59,7 +59,7 @@ class _ImuFilter(SingleNode, ABC):
             self._covariance = np.eye(3).reshape(9) * standard_deviation**2
             if not self._constant_dt >= 0.0:
                 raise bad_value("constant_dt", self._constant_dt, node.get_name())
-            self._filter = self._make()
+            self._filter = self._create_filter()
             log_unknown(node)
         imu_class, vector_class = get_message("sensor_msgs/msg/Imu"), get_message("geometry_msgs/msg/Vector3Stamped")
         self._publisher = node.create_publisher(imu_class, "imu/data", _QUEUE_DEPTH)
@@ -74,7 +74,7 @@ class _ImuFilter(SingleNode, ABC):
             )
 
     @abstractmethod
-    def _make(self) -> _Filter:
+    def _create_filter(self) -> _Filter:
         """Create the filter from the remaining parameters."""
 
     def _begin(self, acceleration: Vector3, magnetic: Vector3 | None) -> bool:
@@ -155,7 +155,7 @@ class MadgwickNode(_ImuFilter):
     _USES_MAGNETOMETER = True
     _PUBLISHES_TF = True
 
-    def _make(self) -> MadgwickFilter:
+    def _create_filter(self) -> MadgwickFilter:
         declare = self._node.declare_parameter
         name: str = declare("world_frame", "enu").value
         if name not in [world.value for world in World]:
@@ -207,7 +207,7 @@ class ComplementaryNode(_ImuFilter):
     _USES_MAGNETOMETER = False
     _PUBLISHES_TF = False
 
-    def _make(self) -> ComplementaryFilter:
+    def _create_filter(self) -> ComplementaryFilter:
         declare = self._node.declare_parameter
 
         def share(name: str) -> float:

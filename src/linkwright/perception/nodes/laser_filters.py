@@ -19,7 +19,7 @@ from linkwright.graph import SENSOR_DATA_QOS, Graph, Node, ParameterDescriptor, 
 from linkwright.loading.extensions import extensions
 from linkwright.messages import Time, get_message
 from linkwright.nodes.frame_poses import FramePoses
-from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
 from linkwright.nodes.settings import log_unknown
 from linkwright.perception.nodes.lazy import LazySubscriptions
 from linkwright.perception.scans.scan import Scan, ScanFilter
@@ -45,7 +45,7 @@ class ScanToScanFilterChain(SingleNode):
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
         node = self._node
-        with starting(node):
+        with handle_start_errors(node):
             self._chain = read_chain(node)
             self._target_frame: str = node.declare_parameter("tf_message_filter_target_frame", "").value
             node.declare_parameter("tf_message_filter_tolerance", 0.03)  # no effect: scans do not wait

@@ -30,9 +30,9 @@ class LazySubscriptions:
         self._publishers = publishers
         self._subscribe = subscribe
         self._open: Sequence[Subscription[Any]] = ()
-        self._graph_condition = node.create_guard_condition(self._look)
+        self._graph_condition = node.create_guard_condition(self._update_subscriptions)
         graph.watch(self._graph_condition.trigger)
-        self._look()
+        self._update_subscriptions()
 
     @property
     def are_open(self) -> bool:
@@ -43,7 +43,7 @@ class LazySubscriptions:
         """Stop watching the graph. The subscriptions are destroyed with their node."""
         self._graph.unwatch(self._graph_condition.trigger)
 
-    def _look(self) -> None:
+    def _update_subscriptions(self) -> None:
         is_needed = any(publisher.get_subscription_count() for publisher in self._publishers)
         if is_needed and not self._open:
             self._open = self._subscribe()

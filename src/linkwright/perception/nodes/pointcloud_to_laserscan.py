@@ -17,7 +17,7 @@ from linkwright.geometry.arrays import rotation_matrix
 from linkwright.graph import SENSOR_DATA_QOS, Graph, QoSProfile, ReliabilityPolicy
 from linkwright.messages import get_message
 from linkwright.nodes.frame_poses import FramePoses
-from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
 from linkwright.nodes.settings import log_unknown, positive
 from linkwright.perception.nodes.laser_filters import to_scan
 from linkwright.perception.nodes.lazy import LazySubscriptions
@@ -39,7 +39,7 @@ class _Converter(SingleNode, ABC):
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
         node = self._node
-        with starting(node):
+        with handle_start_errors(node):
             self._target_frame: str = node.declare_parameter("target_frame", "").value
             node.declare_parameter("transform_tolerance", 0.01)  # lookups never wait
             depth = int(positive(node, "queue_size", node.declare_parameter("queue_size", _QUEUE_SIZE).value))

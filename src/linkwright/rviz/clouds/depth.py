@@ -134,7 +134,7 @@ class DepthCloudBuilder:
             covered = self._covered = _CoveredPoints(
                 np.zeros_like(metres), np.zeros_like(colours), np.zeros(metres.shape)
             )
-        covered.metres[covered.seen < now - timeout] = 0.0
+        covered.metres[covered.seen_times < now - timeout] = 0.0
         is_covering = valid & (metres < covered.metres - _SHADOW_DISTANCE)
         is_shown = (covered.metres != 0.0) & (is_covering | ~valid)
         covered_points = _points_from_depths(covered.metres, covered.colours, is_shown, camera)
@@ -142,7 +142,7 @@ class DepthCloudBuilder:
         is_visible = valid & ~is_covering
         covered.metres[is_visible] = metres[is_visible]
         covered.colours[is_visible] = colours[is_visible] >> 1 & 0x7F7F7F
-        covered.seen[is_visible] = now
+        covered.seen_times[is_visible] = now
         return Points(
             np.concatenate([visible_points.positions, covered_points.positions]),
             {"rgb": np.concatenate([visible_points.channels["rgb"], covered_points.channels["rgb"]])},
@@ -153,7 +153,7 @@ class DepthCloudBuilder:
 class _CoveredPoints:
     metres: NDArray[np.float32]
     colours: NDArray[np.uint32]
-    seen: NDArray[np.float64]
+    seen_times: NDArray[np.float64]
 
 
 def _read_depths(image: Any) -> tuple[NDArray[np.float32], NDArray[np.bool_]]:

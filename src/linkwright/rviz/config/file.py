@@ -22,11 +22,11 @@ class FileForm:
     """The byte order mark and the line endings of a file.
 
     Attributes:
-        mark: whether the file begins with a byte order mark.
+        has_byte_order_mark: whether the file begins with a byte order mark.
         newline: the line ending.
     """
 
-    mark: bool = False
+    has_byte_order_mark: bool = False
     newline: str = "\n"
 
 
@@ -76,7 +76,7 @@ def write(path: Path, text: str, form: FileForm) -> None:
     Raises:
         LinkwrightError: RVIZ104, the file cannot be written.
     """
-    content = (codecs.BOM_UTF8 if form.mark else b"") + text.encode("utf-8")
+    content = (codecs.BOM_UTF8 if form.has_byte_order_mark else b"") + text.encode("utf-8")
     try:
         write_whole_file(path, content)
     except OSError as error:

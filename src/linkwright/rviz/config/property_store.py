@@ -125,12 +125,12 @@ class PropertyStore:
 
     def memories(self, memories: Iterable[Memory]) -> list[Memory]:
         """Return the current entries of the keys that the given memories refer to, for `recall`."""
-        return [self._place().memory(memory.key) for memory in memories]
+        return [self._values_section().memory(memory.key) for memory in memories]
 
     def recall(self, memories: Iterable[Memory]) -> list[Path]:
         """Restore previous entries of the file, and return the paths of the properties whose values changed."""
         keys = {memory.key for memory in memories}
-        section = self._place()
+        section = self._values_section()
         for memory in memories:
             section.recall(memory)
         self._new_sections = remove_unchanged(self._new_sections)
@@ -251,8 +251,8 @@ class PropertyStore:
                 "false",
             )  # `Unreliable` is a boolean in RViz 1, a policy in RViz 2
         if self._recorded_memories is not None and path[0] not in (memory.key for memory in self._recorded_memories):
-            self._recorded_memories.append(self._place().memory(path[0]))
-        self._place().put(path, text, string=is_string, nested=is_nested)
+            self._recorded_memories.append(self._values_section().memory(path[0]))
+        self._values_section().put(path, text, string=is_string, nested=is_nested)
 
     def _former_key(self, path: Path) -> FormerKey | None:
         """Return the RViz 1 key of a property, or None.
@@ -261,7 +261,7 @@ class PropertyStore:
         """
         return self._former_keys.get(path) if self._section.scalar(*self._base, *path) is None else None
 
-    def _place(self) -> Section:
+    def _values_section(self) -> Section:
         """Return the mapping that contains the values, creating it if it is missing."""
         section, new_sections = make_section(self._section, *self._base)
         self._new_sections += new_sections

@@ -217,7 +217,7 @@ def read_displays(
     return displays
 
 
-def place(display: DisplayConfig, parent: Section, siblings: list[DisplayConfig], index: int) -> None:
+def insert_display(display: DisplayConfig, parent: Section, siblings: list[DisplayConfig], index: int) -> None:
     """Insert a display before the sibling at `index`, both in the list and in the file."""
     next_section = siblings[index].section if index < len(siblings) else None
     yaml_tree.insert_section(parent, _DISPLAYS, display.section, next_section)
@@ -346,7 +346,7 @@ class RvizConfig:
         """
         config = cls.parse(_DEFAULT, name)
         for name, values in _MODEL_DISPLAYS:
-            display = config.make(_DEFAULT_PLUGINS + name, name)
+            display = config.new_display(_DEFAULT_PLUGINS + name, name)
             for key, value in values.items():
                 display.section.put((key,), value, string=True, nested=True)
             display.checked = frames or name != "TF"
@@ -376,7 +376,7 @@ class RvizConfig:
         self.views.current = view
         self._proposed_view = self.views.current
 
-    def follow(self, frame: str, distance: float) -> None:
+    def follow_frame(self, frame: str, distance: float) -> None:
         """Make the view follow a mobile robot's frame, and keep the current sizes of grid and axes.
 
         Args:
@@ -439,7 +439,7 @@ class RvizConfig:
         for display in self.displays:
             yield from display.walk()
 
-    def make(self, cls: str, name: str) -> DisplayConfig:
+    def new_display(self, cls: str, name: str) -> DisplayConfig:
         """Return a new enabled display with the defaults of its class, to be added with `insert`."""
         section = yaml_tree.new_section(self.document.source)
         section.put(("Class",), cls, string=True)
@@ -464,7 +464,7 @@ class RvizConfig:
         if group is not None and (not group.is_group or group in display.walk()):
             raise ValueError(f"'{display.name}' cannot be put into '{group.name}'")
         siblings = self.siblings(group)
-        place(display, self._parent(group), siblings, len(siblings) if index is None else index)
+        insert_display(display, self._parent(group), siblings, len(siblings) if index is None else index)
         display.group = group
 
     def remove(self, display: DisplayConfig) -> None:
@@ -473,7 +473,7 @@ class RvizConfig:
 
     def make_group(self, name: str) -> DisplayConfig:
         """Return an empty group, to be added with `insert`."""
-        return self.make(GROUP, name)
+        return self.new_display(GROUP, name)
 
     def arrangement(self) -> Arrangement:
         """Return the current order and grouping of the displays, for `arrange`."""

@@ -149,7 +149,7 @@ class ToolsConfig:
         self._is_listed_in_file = bool(self._entries)
         if not self._entries:
             for cls in DEFAULT_TOOLS:
-                self._append_entry(cls, self._new(cls))
+                self._append_entry(cls, self._new_section(cls))
 
     @property
     def entries(self) -> list[ToolEntry]:
@@ -171,7 +171,7 @@ class ToolsConfig:
         if cls not in TOOL_KINDS:
             raise ValueError(f"there is no tool class {cls!r}")
         self.write_defaults()
-        section = self._new(cls)
+        section = self._new_section(cls)
         insert_section(self._manager(), _TOOLS, section)
         return self._append_entry(cls, section)
 
@@ -200,7 +200,7 @@ class ToolsConfig:
     def _manager(self) -> Section:
         return ensure_section(self._document, _MANAGER)
 
-    def _new(self, cls: str) -> Section:
+    def _new_section(self, cls: str) -> Section:
         section = new_section(self._document.source)
         section.put(("Class",), cls, string=True)
         return section

@@ -205,7 +205,7 @@ class DepthCloudDisplay(CloudDisplay):
         self._builder.reset()
         self._camera_pose = None
         self._pending = None
-        if self.last is None:
+        if self.last_message is None:
             self._info = None
             self._recent_colours.clear()
         super().reset()

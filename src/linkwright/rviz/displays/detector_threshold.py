@@ -10,7 +10,7 @@ from linkwright.graph import Node, Parameter
 from linkwright.graph.parameters.client import AsyncParameterClient
 from linkwright.graph.parameters.parameter import ParameterType
 from linkwright.page.protocol.configuration import StatusLevel
-from linkwright.rviz.parameter_answers import NoAnswerError, answer, wait_for_services
+from linkwright.rviz.parameter_answers import NoAnswerError, wait_for_response, wait_for_services
 
 _PARAMETER_NAMES = ["threshold", "confidence_threshold", "detection.threshold"]
 """The parameter names in Linkwright's detector and yolo_ros, in yolov5_ros, and in openrobotics_darknet_ros."""
@@ -69,12 +69,12 @@ class DetectorThreshold:
         client = AsyncParameterClient(self._node, name)
         try:
             await wait_for_services(client)
-            names = (await answer(client, client.list_parameters())).result.names
+            names = (await wait_for_response(client, client.list_parameters())).result.names
             parameter_name = next((name for name in _PARAMETER_NAMES if name in names), None)
             if parameter_name is None:
                 return "ok", f"The display filters: {name} has no parameter 'threshold'"
             parameter = Parameter(parameter_name, ParameterType.DOUBLE, value)
-            result = (await answer(client, client.set_parameters([parameter]))).results[0]
+            result = (await wait_for_response(client, client.set_parameters([parameter]))).results[0]
         except NoAnswerError as error:
             return "warn", f"The display filters: {error}"
         finally:

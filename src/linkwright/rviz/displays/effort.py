@@ -81,7 +81,7 @@ class EffortDisplay(RecentDisplay):
     def start(self) -> None:
         """Subscribe to the joint states and to the robot's description."""
         super().start()
-        self._follow()
+        self._subscribe_description()
 
     def stop(self) -> None:
         """Unsubscribe."""
@@ -92,7 +92,7 @@ class EffortDisplay(RecentDisplay):
         """Subscribe to another robot description, or redraw the rings with a new frame prefix."""
         super().changed(path)
         if path == (_DESCRIPTION,):
-            self._follow()
+            self._subscribe_description()
         elif path == (_PREFIX,):
             self.reset()
             self.frames_changed()
@@ -100,7 +100,7 @@ class EffortDisplay(RecentDisplay):
     def enabled_changed(self) -> None:
         """Subscribe to the joint states and the robot's description, or unsubscribe from both."""
         super().enabled_changed()
-        self._follow()
+        self._subscribe_description()
 
     def frame_of(self, message: Any) -> tuple[str, int]:
         """Return the frame of the first known joint in the message, and the stamp in ns.
@@ -168,7 +168,7 @@ class EffortDisplay(RecentDisplay):
 
     # --- description -------------------------------------------------------------------------------------------
 
-    def _follow(self) -> None:
+    def _subscribe_description(self) -> None:
         self._unsubscribe_description()
         topic = self.properties.text(_DESCRIPTION).strip()
         if not self.enabled or not topic:

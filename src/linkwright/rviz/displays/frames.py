@@ -108,7 +108,7 @@ class FrameFilter:
         self.problem: Phrase | None = None
         self._expression: Expression | None = None  # imported below, because few users write an expression
         self._checked_names: set[str] = set()
-        self._found: set[str] = set()
+        self._matching_names: set[str] = set()
         if text:
             from linkwright.graph.names.expressions import Expression, ExpressionError
 
@@ -132,12 +132,12 @@ class FrameFilter:
 
             try:
                 new_matches = self._expression.found_in(name for name in names if name not in self._checked_names)
-                self._found = new_matches | self._found.intersection(names)
+                self._matching_names = new_matches | self._matching_names.intersection(names)
                 self._checked_names = set(names)
             except TooCostlyError:
-                self._expression, self._found = None, set()
+                self._expression, self._matching_names = None, set()
                 self.problem = phrase("This expression is not used: matching it with the frame names takes too long")
-        return self._found
+        return self._matching_names
 
 
 _WHITELIST, _BLACKLIST = "Filter (whitelist)", "Filter (blacklist)"

@@ -232,12 +232,12 @@ class ImageDisplay(ImageTopicDisplay):
         """
         previous_size, self._panel = self._panel, message
         if self._is_hidden:
-            if self.last is not None:
+            if self.last_message is not None:
                 self._unsubscribe()
             return
         if self.enabled and self._subscription is None:
             self._subscribe()
-            if self.last is not None:  # the previous image is still shown
+            if self.last_message is not None:  # the previous image is still shown
                 self._count = 1
                 self._report_count()
         if previous_size is not None and (message.width > previous_size.width or message.height > previous_size.height):
@@ -380,7 +380,7 @@ class CameraDisplay(ImageTopicDisplay):
 
     def reset(self) -> None:
         """Discard the image and the camera parameters."""
-        if self.last is None:
+        if self.last_message is None:
             self._info = None
         super().reset()
 

@@ -127,8 +127,8 @@ class InteractiveMarkersDisplay(DataDisplay):
             return
         self._release = self.context.transforms.use(self._on_transforms)
         events = ClientEvents(
-            lambda markers: self._soon(partial(self._apply_all, markers)),
-            lambda update: self._soon(partial(self._apply_update, update)),
+            lambda markers: self._apply_or_queue(partial(self._apply_all, markers)),
+            lambda update: self._apply_or_queue(partial(self._apply_update, update)),
             self._clear,
             self._client_status,
         )
@@ -154,7 +154,7 @@ class InteractiveMarkersDisplay(DataDisplay):
     def _client_status(self, level: StatusLevel, text: Phrase) -> None:
         self.set_status_row(_CLIENT_ROW, level, text)
 
-    def _soon(self, handle: Callable[[], None]) -> None:
+    def _apply_or_queue(self, handle: Callable[[], None]) -> None:
         """Handle an update from the server immediately or, while time is paused, after the pause."""
         if self.host.time.paused:
             self._queued_updates.append(handle)

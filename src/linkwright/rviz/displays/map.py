@@ -146,7 +146,7 @@ class MapDisplay(TopicDisplay):
         if self._send_timer is not None:
             self._send_timer.cancel()
             self._send_timer = None
-        if self.last is None:
+        if self.last_message is None:
             self._map = None
         super().reset()
 

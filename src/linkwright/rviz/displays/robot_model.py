@@ -62,7 +62,7 @@ class RobotRows:
         for joint in robot.joints.values():
             self._joints_by_parent.setdefault(joint.parent, []).append(joint.name)
         self._links_with_shapes = {link.name for link in robot.links.values() if link.visuals or link.collisions}
-        self._found: dict[tuple[str, bool], list[str]] = {}
+        self._visible_links: dict[tuple[str, bool], list[str]] = {}
 
     def specs(self, style: str) -> tuple[PropertySpec, ...]:
         """Return the groups of links and of joints, each in alphabetical order."""
@@ -117,10 +117,10 @@ class RobotRows:
 
     def _links_of(self, joint: Joint, style: str) -> list[str]:
         key = (joint.name, style in _TREE_STYLES)
-        if key not in self._found:
+        if key not in self._visible_links:
             links = self._links_below(joint) if style in _TREE_STYLES else [joint.child]
-            self._found[key] = [name for name in links if name in self._links_with_shapes]
-        return self._found[key]
+            self._visible_links[key] = [name for name in links if name in self._links_with_shapes]
+        return self._visible_links[key]
 
     def _links_below(self, joint: Joint) -> list[str]:
         link_names, pending = [], [joint.child]

@@ -123,28 +123,28 @@ class WorldDisplay(TopicDisplay):
     def start(self) -> None:
         """Subscribe to the description and to the poses."""
         super().start()
-        self._follow()
+        self._subscribe_poses()
 
     def stop(self) -> None:
         """Unsubscribe, and end the pages' access to the files of the world."""
         super().stop()
         self._poses_topic.close()
         self._rays.close()
-        self.context.transforms.place(self.id, None)
+        self.context.transforms.set_placed_frame(self.id, None)
         self.context.meshes.replace(self.id, {})
 
     def changed(self, path: Path) -> None:
         """Subscribe to other topics, or to the rays of other lidars."""
         super().changed(path)
         if path == (_POSES_PROPERTY,):
-            self._follow()
+            self._subscribe_poses()
         elif path in ((_RAYS_PROPERTY,), (_RAYS_TOPIC_PROPERTY,)):
             self._follow_rays()
 
     def enabled_changed(self) -> None:
         """Subscribe if the display is enabled, or unsubscribe."""
         super().enabled_changed()
-        self._follow()
+        self._subscribe_poses()
         self._follow_rays()
 
     def time_changed(self) -> None:
@@ -178,7 +178,7 @@ class WorldDisplay(TopicDisplay):
 
         Once it is placed, each message with poses updates its pose.
         """
-        world_frame = self.context.transforms.own(WORLD)
+        world_frame = self.context.transforms.placed_frame(WORLD)
         is_placed = (
             self._world_pose[1] is not None
             if not self._places_tf_frames
@@ -205,7 +205,7 @@ class WorldDisplay(TopicDisplay):
             )
         self._report_problems()
 
-    def _follow(self) -> None:
+    def _subscribe_poses(self) -> None:
         self._poses_topic.close()
         topic = self.properties.text(_POSES_PROPERTY).strip()
         if not self.enabled or not topic:
@@ -347,15 +347,15 @@ class WorldDisplay(TopicDisplay):
         frames = self.context.transforms.names()
         self._places_tf_frames = self.host.frames.fixed_frame == WORLD and WORLD not in frames
         if not self._places_tf_frames:
-            self.context.transforms.place(self.id, None)
+            self.context.transforms.set_placed_frame(self.id, None)
         anchor = self._find_anchor(frames) if self._places_tf_frames or WORLD not in frames else None
         if self._places_tf_frames or WORLD in frames:
             self._world_pose = (WORLD, None)
             self.set_status_row(_FRAME_ROW, "ok", phrase("The world is placed at the frame '{world}'", world=WORLD))
             if anchor is not None:
                 self._place_frames(*anchor)
-            elif self._places_tf_frames and self.context.transforms.own(WORLD) is None:
-                self.context.transforms.place(self.id, PlacedFrame(WORLD))
+            elif self._places_tf_frames and self.context.transforms.placed_frame(WORLD) is None:
+                self.context.transforms.set_placed_frame(self.id, PlacedFrame(WORLD))
         elif anchor is not None:
             row, frame, pose = anchor
             self._world_pose = ("", np.array(compose(pose, invert(tuple(self._poses[row])))))
@@ -389,13 +389,13 @@ class WorldDisplay(TopicDisplay):
         """
         pose_in_world = np.array(compose(tuple(self._poses[row]), invert(pose)))
         transforms, root = self.context.transforms, self._root(frame)
-        previous_frame = transforms.own(WORLD)
+        previous_frame = transforms.placed_frame(WORLD)
         if (
             previous_frame is None
             or previous_frame.parent != root
             or np.abs(previous_frame.pose - pose_in_world).max() > _MOVE_TOLERANCE
         ):
-            transforms.place(self.id, PlacedFrame(WORLD, root, pose_in_world))
+            transforms.set_placed_frame(self.id, PlacedFrame(WORLD, root, pose_in_world))
         self.set_status_row(
             _FRAME_ROW,
             "ok",

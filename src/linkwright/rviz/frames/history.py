@@ -95,7 +95,7 @@ class FrameHistory:
         """
         if frame == fixed_frame:
             return _IDENTITY
-        own = self.own(fixed_frame)
+        own = self.placed_frame(fixed_frame)
         if own is not None and own.parent is not None:
             return compose(own.pose, self.pose(own.parent, frame, stamp_ns))
         pose_values, _ = self._buffer.lookup(fixed_frame, frame, stamp_ns)
@@ -105,7 +105,7 @@ class FrameHistory:
         """Return the names of all frames in the transforms received so far."""
         return frozenset(self._buffer.frame_names())
 
-    def own(self, name: str) -> PlacedFrame | None:
+    def placed_frame(self, name: str) -> PlacedFrame | None:
         """Return the frame that a display has placed under a name, or None.
 
         None is also returned if tf has a frame with this name.
@@ -113,7 +113,7 @@ class FrameHistory:
         placed_frame = next((own for own in self._placed_frames.values() if own.name == name), None)
         return None if placed_frame is None or name in self._buffer.frame_names() else placed_frame
 
-    def known(self, frame: str, pose: ArrayLike) -> tuple[str, NDArray[np.float64]]:
+    def in_known_frame(self, frame: str, pose: ArrayLike) -> tuple[str, NDArray[np.float64]]:
         """Return a frame that other programs can use and the pose in it, for a pose in any frame.
 
         If a display has placed the given frame, the pose is converted to a frame of tf. Otherwise frame and pose are
@@ -123,12 +123,12 @@ class FrameHistory:
             frame: the frame that the pose is in.
             pose: x, y, z, qx, qy, qz, qw.
         """
-        own = self.own(frame)
+        own = self.placed_frame(frame)
         if own is None or own.parent is None:
             return frame, np.asarray(pose, dtype=np.float64)
         return own.parent, compose(invert(own.pose), pose)
 
-    def place(self, display: str, placed_frame: PlacedFrame | None) -> None:
+    def set_placed_frame(self, display: str, placed_frame: PlacedFrame | None) -> None:
         """Place the frame of a display, or withdraw it.
 
         Args:

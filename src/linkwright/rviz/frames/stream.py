@@ -136,7 +136,7 @@ class TimeControl:
         self.paused, self.mode, self.source = paused, mode, source
         self._on_change()
 
-    def took(self, display: str, stamp_ns: int) -> None:
+    def record_stamp(self, display: str, stamp_ns: int) -> None:
         """Record the stamp, in nanoseconds, of a message that a display has received."""
         if display not in self.sources:
             self.sources.append(display)
@@ -190,7 +190,7 @@ class FrameAudience(Protocol):
 class FrameStream:
     """Maintains the viewer's tf buffer, and sends the changes of frame poses to pages.
 
-    A frame that is not in tf can be the Fixed Frame if a display places it (`FrameHistory.place`).
+    A frame that is not in tf can be the Fixed Frame if a display places it (`FrameHistory.set_placed_frame`).
 
     A robot with a single link has no transforms, so its frame is not in tf. If this frame is the Fixed Frame, it is
     sent with the identity as its pose, because RViz draws it too.
@@ -232,10 +232,10 @@ class FrameStream:
         self._buffer = TransformBuffer(node.get_logger().warning)
         self._loop = asyncio.get_running_loop()
         self._read_condition = node.create_guard_condition(self._read_if_scheduled)
-        self._wanted = False
+        self._is_update_scheduled = False
         self._read_timer: asyncio.TimerHandle | None = None
         self._age_timer: asyncio.Handle | None = None
-        self._due = self._last_read_time = float("-inf")
+        self._due_time = self._last_read_time = float("-inf")
         self._stamp_ns = 0
         self._structure: tuple[Any, ...] = ()
         self._table = FrameTable(0, [], [])
@@ -305,7 +305,7 @@ class FrameStream:
         """
         if self._read_timer is not None:
             self._read_timer.cancel()
-        self._look()
+        self._update()
 
     @property
     def opening(self) -> tuple[FrameTable, bytes]:
@@ -327,15 +327,15 @@ class FrameStream:
         self._schedule_read()
 
     def _schedule_read(self) -> None:
-        if self._wanted or not len(self._pages):
+        if self._is_update_scheduled or not len(self._pages):
             return
-        self._wanted = True
+        self._is_update_scheduled = True
         max_earliness = _MAX_EARLINESS / self.rate
-        due_time = max(self._due - max_earliness, self._last_read_time + _MIN_READ_INTERVAL)
+        due_time = max(self._due_time - max_earliness, self._last_read_time + _MIN_READ_INTERVAL)
         if due_time <= self._loop.time():
             self._read_condition.trigger()
         else:
-            self._read_timer = self._loop.call_at(due_time, self._look)
+            self._read_timer = self._loop.call_at(due_time, self._update)
 
     def _check_ages(self) -> None:
         self._age_timer = self._loop.call_later(_AGE_PERIOD, self._check_ages)
@@ -344,11 +344,11 @@ class FrameStream:
             self._schedule_read()
 
     def _read_if_scheduled(self) -> None:
-        if self._wanted:
-            self._look()
+        if self._is_update_scheduled:
+            self._update()
 
-    def _look(self) -> None:
-        self._wanted, self._read_timer = False, None
+    def _update(self) -> None:
+        self._is_update_scheduled, self._read_timer = False, None
         self._last_read_time = self._loop.time()
         fixed_frame = self.fixed_frame
         snapshot = self._snapshot(fixed_frame, self._paused_ns or self._clock.now_ns())
@@ -368,7 +368,7 @@ class FrameStream:
         A display may have placed the Fixed Frame.
         """
         # The buffer is asked first, because the history may not have received the latest transforms yet.
-        placed_frame = None if self._buffer.knows(fixed_frame) else self._history.own(fixed_frame)
+        placed_frame = None if self._buffer.has_frame(fixed_frame) else self._history.placed_frame(fixed_frame)
         if placed_frame is None or placed_frame.parent is None:
             return self._buffer.snapshot(fixed_frame, now_ns)
         snapshot = self._buffer.snapshot(placed_frame.parent, now_ns)
@@ -376,7 +376,7 @@ class FrameStream:
 
     def _is_unconnected(self, frame: str) -> bool:
         """Return whether a frame is a robot's, or is placed by a display without a connection to tf."""
-        placed_frame = self._history.own(frame)
+        placed_frame = self._history.placed_frame(frame)
         return frame in self._own_frames() or (placed_frame is not None and placed_frame.parent is None)
 
     def _poses_to_show(self, snapshot: FrameSnapshot, fixed_frame: str) -> NDArray[np.float64]:
@@ -428,7 +428,7 @@ class FrameStream:
 
     def _send(self, poses: NDArray[np.float32], ages: NDArray[np.float64]) -> None:
         self._poses, self._ages = poses, ages
-        self._due = self._next_due_time()
+        self._due_time = self._next_due_time()
         self._frame = pack_transforms(self._table.revision, self._stamp_ns / 1e9, poses, ages)
         self._pages.send_transforms(self._frame)
 
@@ -439,8 +439,8 @@ class FrameStream:
         not wait longer and longer.
         """
         period = _PERIOD_FACTOR / self.rate
-        is_on_time = self._last_read_time - self._due < period / 2
-        return (self._due if is_on_time else self._last_read_time) + period
+        is_on_time = self._last_read_time - self._due_time < period / 2
+        return (self._due_time if is_on_time else self._last_read_time) + period
 
     def _notify_displays(
         self, snapshot: FrameSnapshot, poses: NDArray[np.float32], fixed_frame: str, *, has_new_structure: bool

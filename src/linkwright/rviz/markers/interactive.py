@@ -49,13 +49,13 @@ class ClientEvents:
     Attributes:
         everything: called with all markers of the server, at the beginning and after a lost update.
         update: called with a visualization_msgs/msg/InteractiveMarkerUpdate.
-        gone: called when all markers must be removed, for example because the server has disappeared.
+        on_all_removed: called when all markers must be removed, for example because the server has disappeared.
         status: called with the state of the connection, for the display's status.
     """
 
     everything: Callable[[list[Any]], None]
     update: Callable[[Any], None]
-    gone: Callable[[], None]
+    on_all_removed: Callable[[], None]
     status: Callable[[StatusLevel, Phrase], None]
 
 
@@ -80,7 +80,7 @@ class InteractiveMarkerClient:
         self._sequence: int | None = None
         self._early_updates: list[Any] = []
         self._request: Any = None
-        self._look: asyncio.TimerHandle | None = None
+        self._check_timer: asyncio.TimerHandle | None = None
         self._subscription: Subscription[Any] = node.create_subscription(
             get_message("visualization_msgs/msg/InteractiveMarkerUpdate"),
             f"{self._namespace}/update",
@@ -103,9 +103,9 @@ class InteractiveMarkerClient:
 
     def close(self) -> None:
         """Disconnect from the server."""
-        if self._look is not None:
-            self._look.cancel()
-            self._look = None
+        if self._check_timer is not None:
+            self._check_timer.cancel()
+            self._check_timer = None
         self._request = None
         with suppress(ValueError):  # the node may already have been destroyed
             self._node.destroy_subscription(self._subscription)
@@ -113,7 +113,7 @@ class InteractiveMarkerClient:
             self._node.destroy_client(self._client)
 
     def _watch(self) -> None:
-        self._look = asyncio.get_running_loop().call_later(_CHECK_PERIOD, self._watch)
+        self._check_timer = asyncio.get_running_loop().call_later(_CHECK_PERIOD, self._watch)
         is_ready = self._client.service_is_ready()
         if not is_ready and (self._sequence is not None or self._request is not None):
             self._reset()
@@ -163,7 +163,7 @@ class InteractiveMarkerClient:
     def _reset(self) -> None:
         self._sequence = self._request = None
         self._early_updates.clear()
-        self._events.gone()
+        self._events.on_all_removed()
 
 
 _MODES: tuple[InteractionMode, ...] = get_args(InteractionMode)

@@ -315,7 +315,7 @@ class MarkerStore:
         self.key = f"data {display}"
         self._display = display
         self._markers: dict[str, tuple[int, MarkerShape]] = {}
-        self._gone: dict[str, int] = {}
+        self._removed_ids: dict[str, int] = {}
         self._revision = 0
         self._oldest_revision = 0
         self._packed: tuple[int, int, bytes] | None = None
@@ -334,7 +334,7 @@ class MarkerStore:
     def put(self, shape: MarkerShape) -> None:
         """Add a marker, replacing any marker with the same ID."""
         self._revision += 1
-        self._gone.pop(shape.id, None)
+        self._removed_ids.pop(shape.id, None)
         self._markers.pop(shape.id, None)  # so that the dict is ordered by revision
         self._markers[shape.id] = (self._revision, shape)
 
@@ -343,10 +343,10 @@ class MarkerStore:
         if self._markers.pop(identity, None) is None:
             return False
         self._revision += 1
-        self._gone.pop(identity, None)
-        self._gone[identity] = self._revision
-        if len(self._gone) > _MOST_GONE:
-            self._oldest_revision = self._gone.pop(next(iter(self._gone)))
+        self._removed_ids.pop(identity, None)
+        self._removed_ids[identity] = self._revision
+        if len(self._removed_ids) > _MOST_GONE:
+            self._oldest_revision = self._removed_ids.pop(next(iter(self._removed_ids)))
         return True
 
     def clear(self) -> None:
@@ -354,7 +354,7 @@ class MarkerStore:
         self._revision += 1
         self._oldest_revision = self._revision
         self._markers.clear()
-        self._gone.clear()
+        self._removed_ids.clear()
 
     def since(self, seen: int) -> tuple[bytes | None, int]:
         """Return the packed changes since a revision, or None, and the current revision.
@@ -375,7 +375,7 @@ class MarkerStore:
             self._display,
             MarkersChanged(
                 everything=sends_all,
-                gone=[] if sends_all else _newer(self._gone, page_revision),
+                gone=[] if sends_all else _newer(self._removed_ids, page_revision),
                 markers=[shape for revision, shape in self._markers.values() if sends_all or revision > page_revision],
             ),
         )

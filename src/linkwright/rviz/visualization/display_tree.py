@@ -186,7 +186,7 @@ class DisplayTree:
     def fill(self, config: RvizConfig) -> None:
         """Create the displays of a configuration, without starting them."""
         self._config = config
-        self.displays = [self._make(entry) for entry in config.walk()]
+        self.displays = [self._create_display(entry) for entry in config.walk()]
         self._notify_arrangement()
 
     def start(self) -> None:
@@ -238,7 +238,7 @@ class DisplayTree:
         """
         self._check_count([entry])
         _check_nesting(group, [entry])
-        display = self._make(entry)
+        display = self._create_display(entry)
         if prepare is not None:
             prepare(display)
         self._rearrange(EditName("add", entry.name), lambda: self._config.insert(entry, group), [display])
@@ -363,7 +363,7 @@ class DisplayTree:
         """Restore an arrangement, and return the arrangement that it replaced."""
         before, enabled = self._config.arrangement(), self._enabled_states()
         self._config.arrange(arrangement)
-        self._follow(enabled)
+        self._apply_config(enabled)
         return before
 
     def _rearrange(
@@ -371,13 +371,13 @@ class DisplayTree:
     ) -> None:
         before, enabled = self._config.arrangement(), self._enabled_states()
         change()
-        self._follow(enabled, new_displays)
+        self._apply_config(enabled, new_displays)
         self._history.add(Edit(name, self.arrange, before))
 
     def _enabled_states(self) -> dict[DisplayConfig, bool]:
         return {display.config: display.enabled for display in self.displays}
 
-    def _follow(self, enabled: dict[DisplayConfig, bool], new_displays: Sequence[ViewerDisplay] = ()) -> None:
+    def _apply_config(self, enabled: dict[DisplayConfig, bool], new_displays: Sequence[ViewerDisplay] = ()) -> None:
         """Create, start and stop displays to match the configuration.
 
         Args:
@@ -390,7 +390,7 @@ class DisplayTree:
         for entry in displays_by_entry.keys() - set(entries):
             displays_by_entry[entry].stop()
         self.displays = [
-            displays_by_entry.get(entry) or new_by_entry.get(entry) or self._make(entry) for entry in entries
+            displays_by_entry.get(entry) or new_by_entry.get(entry) or self._create_display(entry) for entry in entries
         ]
         self._notify_arrangement()
         self._rearranged()
@@ -415,7 +415,7 @@ class DisplayTree:
         if len(self.displays) + sum(1 for entry in entries for _ in entry.walk()) > MAXIMUM_DISPLAYS:
             raise ValueError(f"there can be no more than {MAXIMUM_DISPLAYS} displays")
 
-    def _make(self, entry: DisplayConfig) -> ViewerDisplay:
+    def _create_display(self, entry: DisplayConfig) -> ViewerDisplay:
         entry.identity = entry.identity or next(self._host.context.display_ids)
         return make_display(self._host, entry.identity, entry)
 

@@ -350,7 +350,7 @@ class VisualizationManager:
     def _show_global_status(self) -> None:
         frame, names = self.frames.fixed_frame, self.frames.names
         missing = phrase("Frame [{frame}] does not exist", frame=frame)
-        if frame in names or self.context.transforms.own(frame) is not None:
+        if frame in names or self.context.transforms.placed_frame(frame) is not None:
             row = StatusRow("Fixed Frame", "ok", phrase("OK"))
         elif names:
             row = StatusRow("Fixed Frame", "error", missing)
@@ -401,7 +401,7 @@ class Managers:
         self.shared = VisualizationManager(context, config, owner)
         self._owner = owner
         self._own_managers: dict[str, VisualizationManager] = {}
-        self._ends: dict[str, asyncio.TimerHandle] = {}
+        self._close_timers: dict[str, asyncio.TimerHandle] = {}
 
     def all(self) -> list[VisualizationManager]:
         """Return all managers, beginning with the shared manager."""
@@ -414,7 +414,7 @@ class Managers:
     def enter(self, page: Page) -> VisualizationManager:
         """Return the manager of a page that opens, and create it if it does not exist."""
         if page.own:
-            timer = self._ends.pop(page.own, None)
+            timer = self._close_timers.pop(page.own, None)
             if timer is not None:
                 timer.cancel()
             if page.own not in self._own_managers:
@@ -424,7 +424,7 @@ class Managers:
                 self._own_managers[page.own].start()
         return self.of(page)
 
-    def leave(self, page: Page) -> None:
+    def on_page_closed(self, page: Page) -> None:
         """Handle the closing of a page.
 
         A separate manager is closed if the page does not return.
@@ -432,9 +432,9 @@ class Managers:
         manager = self.of(page)
         manager.pages.discard(page)
         if manager is not self.shared and not len(manager.pages):
-            self._ends[page.own] = asyncio.get_running_loop().call_later(LINGERING, self._drop, page.own)
-            if len(self._ends) > MOST_LINGERING:
-                self._drop(next(iter(self._ends)))
+            self._close_timers[page.own] = asyncio.get_running_loop().call_later(LINGERING, self._drop, page.own)
+            if len(self._close_timers) > MOST_LINGERING:
+                self._drop(next(iter(self._close_timers)))
 
     def close(self) -> None:
         """Close all managers."""
@@ -443,7 +443,7 @@ class Managers:
         self.shared.close()
 
     def _drop(self, key: str) -> None:
-        timer = self._ends.pop(key, None)
+        timer = self._close_timers.pop(key, None)
         if timer is not None:
             timer.cancel()
         manager = self._own_managers.pop(key)

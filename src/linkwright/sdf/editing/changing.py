@@ -102,12 +102,12 @@ def copy(world: WorldText, names: Sequence[str], offset: Sequence[float]) -> tup
         raise EditError(phrase("an offset must have three finite numbers: x y z"))
     edits: list[Replacement] = []
     poses: dict[str, Pose] = {}
-    used_names = set(world.taken)
+    used_names = set(world.used_names)
     for name in dict.fromkeys(names):
         entity = world.entity(name)
         free_name = world.free_name(name, used_names)
         used_names.add(free_name)
-        x, y, z = (a + b for a, b in zip(entity.place[:3], offset, strict=True))
+        x, y, z = (a + b for a, b in zip(entity.world_pose[:3], offset, strict=True))
         poses[free_name] = Pose((x, y, z), pose_of_entity(entity).rpy)
         edits.append(_copied(entity, free_name))
     return _with_poses(world.edited(edits), poses), list(poses)
@@ -157,10 +157,10 @@ def pose_of_entity(entity: Entity) -> Pose:
     if (
         written_pose.pose.quaternion is None
         and not written_pose.relative_to
-        and transform_of(written_pose.pose) == entity.place
+        and transform_of(written_pose.pose) == entity.world_pose
     ):
         return written_pose.pose
-    return writing.pose_from(entity.place)
+    return writing.pose_from(entity.world_pose)
 
 
 def moved(world: WorldText, entity: Entity, pose: Pose) -> list[Replacement]:
@@ -172,13 +172,13 @@ def moved(world: WorldText, entity: Entity, pose: Pose) -> list[Replacement]:
         EditError: the frame of the entity's pose does not exist.
     """
     new_transform = transform_of(pose)
-    edits = place(entity, _local(world, entity, pose))
+    edits = set_pose(entity, _local(world, entity, pose))
     for entry in state_of(world, entity.name):
-        edits += _move_state_edits(entry, entity.place, new_transform, pose)
+        edits += _move_state_edits(entry, entity.world_pose, new_transform, pose)
     return edits
 
 
-def place(entity: Entity, pose: Pose) -> list[Replacement]:
+def set_pose(entity: Entity, pose: Pose) -> list[Replacement]:
     """Return the edits that write the ``<pose>`` of an entity, in its declared frame."""
     element = entity.element.first("pose")
     if element is not None:
@@ -357,7 +357,7 @@ def _with_names(world: WorldText, names: dict[str, str]) -> WorldText:
     for old, new in names.items():
         entity = world.entity(old)
         world.check_name(new)
-        edits += _named(entity, new)
+        edits += _set_name(entity, new)
         for entry in state_of(world, old):
             edits += writing.set_attribute(entry, "name", new)
     if len(set(names.values())) < len(names):
@@ -365,7 +365,7 @@ def _with_names(world: WorldText, names: dict[str, str]) -> WorldText:
     return world.edited([*edits, *rename_references(world, names)])
 
 
-def _named(entity: Entity, name: str) -> list[Replacement]:
+def _set_name(entity: Entity, name: str) -> list[Replacement]:
     if isinstance(entity.written, Include):
         return writing.set_child(entity.element, "name", name, after=("uri",))
     return writing.set_attribute(entity.element, "name", name)
@@ -378,7 +378,7 @@ def _copied(entity: Entity, name: str) -> Replacement:
     """
     text, (start, end) = writing.text_of(entity.element), writing.range_of(entity.element)
     copy = text[start:end]
-    for edit in sorted(_named(entity, name), key=lambda edit: edit.start, reverse=True):
+    for edit in sorted(_set_name(entity, name), key=lambda edit: edit.start, reverse=True):
         copy = copy[: edit.start - start] + edit.text + copy[edit.end - start :]
     indent = indentation(text, start)
     between = "" if indent is None else f"{line_ending(text)}{indent}"

@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 from linkwright.diagnostics import phrase
 from linkwright.geometry.single import Pose, Transform, compose
 from linkwright.sdf.editing import writing
-from linkwright.sdf.editing.changing import place, pose_of_entity, referenced_name, rename_references, state_of
+from linkwright.sdf.editing.changing import pose_of_entity, referenced_name, rename_references, set_pose, state_of
 from linkwright.sdf.editing.errors import EditError
 from linkwright.sdf.editing.shapes import lengths, new_element
 from linkwright.sdf.editing.text import Entity, WorldText
@@ -45,7 +45,8 @@ def group(world: WorldText, names: Sequence[str], name: str) -> WorldText:
     world.check_name(name)
     member_names = frozenset(entity.name for entity in entities)
     x, y, z = (
-        round(sum(entity.place[axis] for entity in entities) / len(entities), _POSITION_DIGITS) for axis in range(3)
+        round(sum(entity.world_pose[axis] for entity in entities) / len(entities), _POSITION_DIGITS)
+        for axis in range(3)
     )
     origin: Transform = (x, y, z, 0.0, 0.0, 0.0, 1.0)
     edits: list[Replacement] = []
@@ -96,16 +97,16 @@ def ungroup(world: WorldText, name: str) -> tuple[WorldText, list[str]]:
     model = entity.written
     if not isinstance(model, Model):
         raise EditError(phrase("'{name}' is not a group that is written in this file", name=name))
-    if not entity.parts or model.joints or model.frames or model.plugins or model.links:
+    if not entity.member_names or model.joints or model.frames or model.plugins or model.links:
         raise EditError(phrase("'{name}' cannot be ungrouped: it contains more than models", name=name))
     member_elements = [element for element in entity.element.elements() if element.tag in ("model", "include")]
-    if len(member_elements) != len(entity.parts):
+    if len(member_elements) != len(entity.member_names):
         raise EditError(phrase("'{name}' cannot be ungrouped: one of its includes does not exist", name=name))
     new_names = _free_member_names(world, entity, member_elements)
     edits: list[Replacement] = [writing.removed(entry) for entry in state_of(world, name)]
     frames = world.frames.inside(name)
     for element, old in zip(member_elements, _old_names(entity, member_elements), strict=True):
-        edits += _release_edits(world, entity, element, old, new_names, compose(entity.place, frames.pose(old)))
+        edits += _release_edits(world, entity, element, old, new_names, compose(entity.world_pose, frames.pose(old)))
     for element, attribute in writing.references(world.element):
         head, colon, tail = referenced_name(element, attribute).partition(SEPARATOR)
         member_name, separator, nested_name = tail.partition(SEPARATOR)
@@ -172,7 +173,7 @@ def _relative_pose_edits(world: WorldText, entity: Entity, origin: Transform) ->
     if placement_frame:
         placement_transform = compose(transform_of(local_pose), world.frames.inside(entity.name).pose(placement_frame))
         local_pose = writing.pose_from(placement_transform)
-    edits = place(entity, local_pose)
+    edits = set_pose(entity, local_pose)
     pose = entity.element.first("pose")
     if pose is not None:
         edits += [edit for name in ("relative_to", "frame") for edit in writing.remove_attribute(pose, name)]
@@ -191,7 +192,7 @@ def _old_names(entity: Entity, parts: Sequence[Element]) -> list[str]:
 
 def _free_member_names(world: WorldText, entity: Entity, parts: Sequence[Element]) -> dict[str, str]:
     names: dict[str, str] = {}
-    used_names = world.taken - {entity.name}
+    used_names = world.used_names - {entity.name}
     for old in _old_names(entity, parts):
         names[old] = world.free_name(old, used_names)
         used_names |= {names[old]}
@@ -246,7 +247,7 @@ def _release_edits(
     member = Entity(
         old_name, "model", element, Include("") if element.tag == "include" else model, model, None, world_pose, None
     )
-    edits += place(member, member_pose)
+    edits += set_pose(member, member_pose)
     if pose is not None:
         edits += [edit for name in ("relative_to", "frame") for edit in writing.remove_attribute(pose, name)]
     return edits

@@ -44,7 +44,7 @@ class Entity:
         written: the entity as declared in the file, before includes and saved states are applied.
         model: the model, with its includes resolved; None for a light, and for an include that cannot be resolved.
         light: the light; None for a model.
-        place: the pose of the entity's frame in the world.
+        world_pose: the pose of the entity's frame in the world.
         shape: the only shape of the model, which is simple; None for a light, an include or any other model.
     """
 
@@ -54,7 +54,7 @@ class Entity:
     written: Model | Light | Include
     model: Model | None
     light: Light | None
-    place: Transform
+    world_pose: Transform
     shape: SimpleShape | None
 
     @property
@@ -70,7 +70,7 @@ class Entity:
         return isinstance(self.written, Include) and bool(self.written.static)
 
     @property
-    def parts(self) -> tuple[str, ...]:
+    def member_names(self) -> tuple[str, ...]:
         """The names of the nested models in a group, or no names for any other entity."""
         if not isinstance(self.written, Model) or self.model is None or self.written.links:
             return ()
@@ -120,7 +120,7 @@ class WorldText:
         self.entities: Mapping[str, Entity] = dict(self._entities())
 
     @cached_property
-    def taken(self) -> frozenset[str]:
+    def used_names(self) -> frozenset[str]:
         """The names that a new entity cannot have."""
         world, state = self.world, self.world.states[-1] if self.world.states else None
         deleted_names = state.deletions.names if state is not None else ()
@@ -172,7 +172,7 @@ class WorldText:
 
         `used_names` are the names in use; None for those of this world.
         """
-        used_names = self.taken if used_names is None else used_names
+        used_names = self.used_names if used_names is None else used_names
         if preferred_name not in used_names:
             return preferred_name
         numbered_match = _MATCH_NUMBERED_NAME(preferred_name)
@@ -192,7 +192,7 @@ class WorldText:
             raise EditError(phrase("a name cannot be empty"))
         if SEPARATOR in name or name == WORLD or (name.startswith("__") and name.endswith("__")):
             raise EditError(phrase("'{name}' cannot be used as a name: SDF reserves it", name=name))
-        if name in self.taken:
+        if name in self.used_names:
             raise EditError(phrase("an entity named '{name}' already exists", name=name))
 
     def _entities(self) -> Iterator[tuple[str, Entity]]:
@@ -215,17 +215,17 @@ class WorldText:
         if isinstance(found, Model):
             model = self._models.get(found.name, found)
             shape = simple_shape(written) if isinstance(written, Model) else None
-            return Entity(found.name, "model", element, written, model, None, self._place(model), shape)
+            return Entity(found.name, "model", element, written, model, None, self._world_pose(model), shape)
         if isinstance(found, Light):
             light = self._lights.get(found.name, found)
-            return Entity(found.name, "light", element, written, None, light, self._place(light), None)
+            return Entity(found.name, "light", element, written, None, light, self._world_pose(light), None)
         if isinstance(written, Include) and found is None:
             name = written.name or written.uri.strip().rstrip("/").rpartition("/")[2]
             pose = written.pose or AT_ORIGIN
             return Entity(name, "model", element, written, None, None, transform_of(pose.pose), None)
         return None  # Actors cannot be edited.
 
-    def _place(self, entity: Model | Light) -> Transform:
+    def _world_pose(self, entity: Model | Light) -> Transform:
         try:
             return self.frames.pose(entity.name) if isinstance(entity, Model) else self.frames.placed(entity.pose)
         except FrameError:

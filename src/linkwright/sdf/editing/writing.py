@@ -56,7 +56,7 @@ def content_of(element: Element) -> tuple[int, int]:
     start, end = range_of(element)
     tag = find_start_tag(element)
     assert tag is not None, "its range is known"
-    return (tag.end, tag.end) if tag.is_whole else (tag.end, text_of(element).rindex("</", start, end))
+    return (tag.end, tag.end) if tag.is_empty_element else (tag.end, text_of(element).rindex("</", start, end))
 
 
 def set_text(element: Element, value: str) -> list[Replacement]:
@@ -64,7 +64,7 @@ def set_text(element: Element, value: str) -> list[Replacement]:
     text, (start, end) = text_of(element), content_of(element)
     tag = find_start_tag(element)
     assert tag is not None, "its content is known"
-    if tag.is_whole:
+    if tag.is_empty_element:
         return [Replacement(tag.insertion_offset, tag.end, f">{escaped(value)}</{element.tag}>")]
     old = text[start:end]
     if "<" not in old and old.strip():

@@ -23,7 +23,7 @@ from linkwright.graph.names.rules import join
 from linkwright.graph.parameters.qos_overrides import QoSOverridingOptions
 from linkwright.graph.qos.profile import QoSPolicyKind
 from linkwright.messages import get_message
-from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
 from linkwright.nodes.standstill import VELOCITIES, send_stop
 from linkwright.perception.nodes.compressed import compressed
 from linkwright.simulation.nodes.conversions import DEFAULT_ROS_TYPES, conversion
@@ -198,7 +198,7 @@ class ParameterBridge(_Bridge):
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         self._node, arguments = create_node(graph, options, self.DEFAULT_NAME)
-        with starting(self._node):
+        with handle_start_errors(self._node):
             path = str(self._node.declare_parameter("config_file", "").value)
             self._lazy = bool(self._node.declare_parameter("lazy", False).value)
             self._expands_gz_names = bool(self._node.declare_parameter("expand_gz_topic_names", False).value)

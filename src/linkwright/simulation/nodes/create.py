@@ -7,7 +7,7 @@ from typing import Any
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 from linkwright.graph import Graph, Parameter
-from linkwright.nodes.options import NodeOptions, create_node, starting
+from linkwright.nodes.options import NodeOptions, create_node, handle_start_errors
 from linkwright.simulation.nodes.spawner import Entity, EntitySpawner, read_description
 
 _TEXT_OPTIONS = ("world", "file", "topic", "string", "param", "name")
@@ -27,7 +27,7 @@ class Create(EntitySpawner):
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         self._node, arguments = create_node(graph, options, self.DEFAULT_NAME)
-        with starting(self._node):
+        with handle_start_errors(self._node):
             options_by_name = self._parameter_options(options.parameters) | dict(_options(arguments))
             pose = {name: _parse_number(name, options_by_name.get(name, 0.0)) for name in _NUMBER_OPTIONS}
             name = str(options_by_name.get("name", ""))

@@ -14,7 +14,7 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
 from linkwright.geometry.single import quaternion_from_rpy
 from linkwright.graph import Graph
 from linkwright.messages import get_message, get_service
-from linkwright.nodes.options import NodeOptions, create_node, starting
+from linkwright.nodes.options import NodeOptions, create_node, handle_start_errors
 from linkwright.simulation.nodes.spawner import SimulatorClient
 
 _DELETE, _SET_STATE = "gazebo_msgs/srv/DeleteEntity", "gazebo_msgs/srv/SetEntityState"
@@ -33,7 +33,7 @@ class Remove(SimulatorClient):
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
-        with starting(self._node):
+        with handle_start_errors(self._node):
             self._connect(self._node)
             self._node.declare_parameter("world", "")
             name = str(self._node.declare_parameter("entity_name", "").value)
@@ -49,7 +49,7 @@ class Remove(SimulatorClient):
             self._remove(name)
 
     def _remove(self, name: str) -> None:
-        self._ask(_DELETE, "delete_entity", get_service(_DELETE).Request(name=name), self._on_response)
+        self._call_service(_DELETE, "delete_entity", get_service(_DELETE).Request(name=name), self._on_response)
 
     def _on_response(self, response: Any) -> None:
         """Log the result in a response, and end with status 0 if the request succeeded, else with 1."""
@@ -71,7 +71,7 @@ class DeleteEntity(Remove):
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         self._node, arguments = create_node(graph, options, self.DEFAULT_NAME)
-        with starting(self._node):
+        with handle_start_errors(self._node):
             self._connect(self._node)
             self._remove(_read(_create_parser("delete_entity"), arguments).name)
 
@@ -89,7 +89,7 @@ class SetEntityPose(Remove):
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         self._node, command_line = create_node(graph, options, self.DEFAULT_NAME)
-        with starting(self._node):
+        with handle_start_errors(self._node):
             self._connect(self._node)
             parser = _create_parser("set_entity_pose")
             parser.add_argument("--pos", nargs=3, type=float, default=(0.0, 0.0, 0.0))
@@ -103,7 +103,7 @@ class SetEntityPose(Remove):
             rotation = arguments.quat or quaternion_from_rpy(tuple(arguments.euler))
             orientation.x, orientation.y, orientation.z, orientation.w = rotation
             request = get_service(_SET_STATE).Request(state=state)
-            self._ask(_SET_STATE, "set_entity_state", request, self._on_response)
+            self._call_service(_SET_STATE, "set_entity_state", request, self._on_response)
 
 
 class _Parser(argparse.ArgumentParser):

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity
 from linkwright.geometry.single import Transform, quaternion_from_rpy
 from linkwright.graph import Graph, Parameter, SetParametersResult
-from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
 
 if TYPE_CHECKING:
     from linkwright.nodes.followed_files import FileFollower
@@ -96,7 +96,7 @@ class Simulator(SingleNode):
         self._node, arguments = create_node(graph, options, self.DEFAULT_NAME)
         loop = asyncio.get_running_loop()
         self.finished: asyncio.Future[int] = loop.create_future()
-        with starting(self._node):
+        with handle_start_errors(self._node):
             parameters = {name: self._node.declare_parameter(name, value).value for name, value in _PARAMETERS.items()}
             world_text = parameters["world_sdf_string"] or None
             world_file = "world_sdf_string" if world_text else parameters["world_sdf_file"] or parameters["world"]
@@ -163,14 +163,14 @@ class Simulator(SingleNode):
 
         An invalid description is rejected with the reason.
         """
-        from linkwright.simulation.plugins.entities import in_one_line
+        from linkwright.simulation.plugins.entities import finding_line
 
         for parameter in parameters:
             if parameter.name == _DESCRIPTION:
                 try:
                     self.services.renew(parameter.value, robot)
                 except LinkwrightError as error:
-                    return SetParametersResult(successful=False, reason=in_one_line(error.diagnostics[0]))
+                    return SetParametersResult(successful=False, reason=finding_line(error.diagnostics[0]))
         return SetParametersResult(successful=True)
 
     def _finish(self, status: int) -> None:

@@ -9,7 +9,7 @@ from typing import NoReturn
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
 from linkwright.graph import Graph
 from linkwright.messages import get_service
-from linkwright.nodes.options import NodeOptions, create_node, starting
+from linkwright.nodes.options import NodeOptions, create_node, handle_start_errors
 from linkwright.simulation.nodes.spawner import Entity, EntitySpawner, read_description, read_stdin
 
 
@@ -26,7 +26,7 @@ class SpawnEntity(EntitySpawner):
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         self._node, arguments = create_node(graph, options, self.DEFAULT_NAME)
-        with starting(self._node):
+        with handle_start_errors(self._node):
             wanted = self._arguments = parse(arguments)
             self._environment = options.environment
             namespace = self._node.get_namespace() if wanted.robot_namespace is None else wanted.robot_namespace
@@ -83,7 +83,7 @@ class SpawnEntity(EntitySpawner):
     def _spawned(self) -> None:
         if self._arguments.unpause:
             service_type = "std_srvs/srv/Empty"
-            self._ask(
+            self._call_service(
                 service_type, "unpause_physics", get_service(service_type).Request(), lambda _: self._stay_or_end()
             )
         else:

@@ -79,7 +79,7 @@ class SimulatorClient(SingleNode):
         self._service_namespace = service_namespace.rstrip("/")
         self.finished = asyncio.get_running_loop().create_future()
 
-    def _ask(self, kind: str, name: str, request: Any, on_response: Callable[[Any], None]) -> None:
+    def _call_service(self, kind: str, name: str, request: Any, on_response: Callable[[Any], None]) -> None:
         """Call a service of the simulator, and pass the response to `on_response`.
 
         If the service is not available within the timeout, log an error and end with status 1.
@@ -152,11 +152,11 @@ class EntitySpawner(SimulatorClient):
         if self._described:
             return
         self._described = True
-        self._ask(SPAWN_SERVICE, "spawn_entity", spawn_request(self._entity, text), self._answered)
+        self._call_service(SPAWN_SERVICE, "spawn_entity", spawn_request(self._entity, text), self._answered)
 
     def _request_names(self, on_names: Callable[[list[str]], None]) -> None:
         """Request the names of the world's models, and pass them to a function."""
-        self._ask(
+        self._call_service(
             _LIST_SERVICE,
             "get_model_list",
             get_service(_LIST_SERVICE).Request(),

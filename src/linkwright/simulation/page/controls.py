@@ -117,13 +117,13 @@ class SimulationFeature(PageFeature):
             case ControlSimulation(action):
                 service_type, name = _ACTIONS[action]
                 fields = {"steps": 1} if action == "step" else {}
-                self._services.ask(page, service_type, name, fields)
+                self._services.call_service(page, service_type, name, fields)
             case SpawnModel(address, position):
                 task = asyncio.get_running_loop().create_task(self._spawn(page, address, position))
                 self._spawn_tasks.add(task)
                 task.add_done_callback(self._spawn_tasks.discard)
             case DeleteModel(model):
-                self._services.ask(page, "gazebo_msgs/srv/DeleteEntity", "/delete_entity", {"name": model})
+                self._services.call_service(page, "gazebo_msgs/srv/DeleteEntity", "/delete_entity", {"name": model})
             case DragModel():
                 self._drag(page, message)
             case PushLink():
@@ -209,8 +209,10 @@ class SimulationFeature(PageFeature):
             else:
                 request_spawn(partial(_report_added, page, name, name))
 
-        request_spawn = partial(self._services.ask, page, "gazebo_msgs/srv/SpawnEntity", "/spawn_entity", fields)
-        self._services.ask(page, "gazebo_msgs/srv/GetModelList", "/get_model_list", {}, listed)
+        request_spawn = partial(
+            self._services.call_service, page, "gazebo_msgs/srv/SpawnEntity", "/spawn_entity", fields
+        )
+        self._services.call_service(page, "gazebo_msgs/srv/GetModelList", "/get_model_list", {}, listed)
 
     def _model_at(self, address: str) -> tuple[str, str] | None:
         """Return the name and description of the model at an address.
@@ -237,7 +239,7 @@ class SimulationFeature(PageFeature):
         if message.begins:
             drag = self._drags[page] = _Drag(message.model)
             fields = {"name": message.model, "reference_frame": "world"}
-            self._services.ask(
+            self._services.call_service(
                 page,
                 "gazebo_msgs/srv/GetEntityState",
                 "/get_entity_state",
@@ -247,14 +249,14 @@ class SimulationFeature(PageFeature):
         known = self._drags.get(page)
         if known is not None and known.model == message.model and _is_vector(message.offset):
             known.pending_offset = message.offset
-            self._put(page, known)
+            self._send_pose(page, known)
 
     def _on_drag_state(self, page: Page, drag: _Drag, response: Any) -> None:
         if response is not None and response.success:
             drag.initial_state = response.state
-            self._put(page, drag)
+            self._send_pose(page, drag)
 
-    def _put(self, page: Page, drag: _Drag) -> None:
+    def _send_pose(self, page: Page, drag: _Drag) -> None:
         """Send the newest pose, or wait until the simulation has answered the previous request."""
         if drag.initial_state is None or drag.pending_offset is None or drag.is_calling:
             return
@@ -267,12 +269,12 @@ class SimulationFeature(PageFeature):
 
         def put(_: Any) -> None:
             drag.is_calling = False
-            self._put(page, drag)
+            self._send_pose(page, drag)
 
         failure_message = phrase(
             "'{model}' cannot be moved: it is fixed to the world, or no longer exists", model=drag.model
         )
-        self._services.ask(
+        self._services.call_service(
             page, "gazebo_msgs/srv/SetEntityState", "/set_entity_state", {"state": state}, put, failure_message
         )
 
@@ -284,7 +286,7 @@ class SimulationFeature(PageFeature):
         wrench.force.x, wrench.force.y, wrench.force.z = message.force
         fields = {"link_name": message.link, "reference_frame": "world", "reference_point": point, "wrench": wrench}
         fields["duration"] = get_message("builtin_interfaces/msg/Duration")(0, _PUSH_NS)
-        self._services.ask(page, "gazebo_msgs/srv/ApplyLinkWrench", "/apply_link_wrench", fields)
+        self._services.call_service(page, "gazebo_msgs/srv/ApplyLinkWrench", "/apply_link_wrench", fields)
 
 
 def _report_added(page: Page, name: str, actual_name: str, response: Any) -> None:

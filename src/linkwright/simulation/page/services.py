@@ -25,7 +25,7 @@ class SimulationServices:
         self._node = context.node
         self._clients: dict[str, Client[Any, Any]] = {}
 
-    def ask(
+    def call_service(
         self,
         page: Page,
         kind: str,

@@ -87,7 +87,12 @@ class ClassicAckermann(SimulatedPlugin[AckermannParameters]):
         )
         commander = node.commander(self._stop_motion)
         node.subscribe(
-            "geometry_msgs/msg/Twist", "cmd_vel", self._on_command, 1, commander=commander, rest=self._stop_motion
+            "geometry_msgs/msg/Twist",
+            "cmd_vel",
+            self._on_command,
+            1,
+            commander=commander,
+            stop_motion=self._stop_motion,
         )
         self._begin()
         self.every(parameters.update_rate, self._update)

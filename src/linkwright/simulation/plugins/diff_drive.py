@@ -99,12 +99,12 @@ class _WheelPair:
 class _DiffDrive(SimulatedPlugin[P], Generic[P]):
     """A differential drive that follows a commanded velocity, with wheel odometry."""
 
-    CARRIED: ClassVar[tuple[str, ...]] = ("_wanted", "_now", "_place")
+    CARRIED: ClassVar[tuple[str, ...]] = ("_command", "_now", "_place")
     _pairs: tuple[_WheelPair, ...]
     _topics: OdometryTopics
 
     def _begin(self) -> None:
-        self._wanted = self._now = (0.0, 0.0)
+        self._command = self._now = (0.0, 0.0)
         self._place = PlanarPose()
         self._wheel_angles = self._read_angles()
 
@@ -142,12 +142,12 @@ class _DiffDrive(SimulatedPlugin[P], Generic[P]):
         self._begin()
 
     def _on_command(self, twist: Any) -> None:
-        self._wanted = (float(twist.linear.x), float(twist.angular.z))
+        self._command = (float(twist.linear.x), float(twist.angular.z))
 
-    def _rest(self) -> bool:
+    def _stop_motion(self) -> bool:
         """Stop the robot, and return whether it was commanded to move."""
-        old_command, self._wanted = self._wanted, (0.0, 0.0)
-        return old_command != self._wanted
+        old_command, self._command = self._command, (0.0, 0.0)
+        return old_command != self._command
 
     def _turn_wheels(self) -> None:
         forward, angular = self._now
@@ -210,14 +210,14 @@ class ClassicDiffDrive(_DiffDrive[ClassicParameters]):
             parameters.odometry_frame, parameters.robot_base_frame, odometry, transforms, variances
         )
         self._uses_true_pose = parameters.odometry_source.strip().lower() in (str(_WORLD_SOURCE), "world")
-        commander = node.commander(self._rest)
+        commander = node.commander(self._stop_motion)
         node.subscribe(
             "geometry_msgs/msg/Twist",
             parameters.command_topic,
             self._on_command,
             1,
             commander=commander,
-            rest=self._rest,
+            stop_motion=self._stop_motion,
         )
         self.every(parameters.update_rate, self._update)
         if parameters.publish_wheel_tf:
@@ -257,7 +257,7 @@ class ClassicDiffDrive(_DiffDrive[ClassicParameters]):
 
         The limit applies to the rims of the wheels.
         """
-        forward, angular = self._wanted
+        forward, angular = self._command
         for index, pair in enumerate(self._pairs):
             target_speeds, current_speeds = pair.drive.wheel_speeds(forward, angular), self._wheel_speeds[index]
             if current_speeds == target_speeds:

@@ -95,7 +95,7 @@ class Entities:
         message.twist.angular = Vector3(*rotate(to_reference[3:], tuple(angular.tolist())))
         return message
 
-    def put(self, state: Any) -> None:
+    def set_state(self, state: Any) -> None:
         """Set the pose and twist of a model from a message ``gazebo_msgs/msg/EntityState``.
 
         Raises:
@@ -123,7 +123,7 @@ class Entities:
 
         `log`, such as a logger's method, receives the reason for a failure.
         """
-        return _respond_without_message(response, partial(self.put, request.state), service, log)
+        return _respond_without_message(response, partial(self.set_state, request.state), service, log)
 
     def _full_name(self, name: str, full_names: Collection[str]) -> str:
         if name in full_names:
@@ -147,7 +147,7 @@ def fill_response(response: Any, work: Callable[[], str]) -> Any:
     try:
         response.success, response.status_message = True, work()
     except LinkwrightError as error:
-        response.success, response.status_message = False, in_one_line(error.diagnostics[0])
+        response.success, response.status_message = False, finding_line(error.diagnostics[0])
     return response
 
 
@@ -175,7 +175,7 @@ def refusal_text(service: str, error: LinkwrightError) -> Phrase:
     return phrase("{service}: {problem}", service=service, problem=finding.message)
 
 
-def in_one_line(finding: Diagnostic) -> str:
+def finding_line(finding: Diagnostic) -> str:
     """Return a finding on one line: location, message and hint."""
     location = f"{finding.span}: " if finding.span else ""
     hint = f" ({finding.hint})" if finding.hint else ""

@@ -53,7 +53,7 @@ class ClassicForce(SimulatedPlugin[ForceParameters]):
             parameters.topic_name,
             self._receive,
             commander=commander,
-            rest=self._stop_motion,
+            stop_motion=self._stop_motion,
         )
         self.every(0.0, self._apply_wrench)
 

@@ -110,7 +110,7 @@ class GzAckermann(SimulatedPlugin[SteeringParameters]):
     def _subscribe_to_angles(self) -> None:
         parameters = self.parameters
         topic = parameters.topic or f"/model/{self.place.path}/{parameters.sub_topic or 'steer_angle'}"
-        self.node.subscribe("std_msgs/msg/Float64", topic, self._on_angle, rest=lambda: None)
+        self.node.subscribe("std_msgs/msg/Float64", topic, self._on_angle, stop_motion=lambda: None)
 
     def _on_angle(self, message: Any) -> None:
         self._angle = float(message.data)

@@ -52,7 +52,7 @@ class DriveCommands:
 
     def restart(self) -> None:
         """Set the velocity and the command to zero."""
-        self._wanted = (0.0, 0.0, 0.0)
+        self._command = (0.0, 0.0, 0.0)
         for limiter in self._limiters:
             limiter.restart()
 
@@ -61,30 +61,30 @@ class DriveCommands:
 
         Both instances have equal limits.
         """
-        self.is_enabled, self._wanted, self._limiters = previous.is_enabled, previous._wanted, previous._limiters
+        self.is_enabled, self._command, self._limiters = previous.is_enabled, previous._command, previous._limiters
 
     def set_command(self, twist: Any) -> None:
         """Set the command from a ``geometry_msgs/msg/Twist``, unless the drive is disabled."""
         if self.is_enabled:
-            self._wanted = (float(twist.linear.x), float(twist.linear.y), float(twist.angular.z))
+            self._command = (float(twist.linear.x), float(twist.linear.y), float(twist.angular.z))
 
-    def rest(self) -> bool:
+    def stop(self) -> bool:
         """Set the command to zero, and return whether it was nonzero."""
-        old_command, self._wanted = self._wanted, (0.0, 0.0, 0.0)
-        return old_command != self._wanted
+        old_command, self._command = self._command, (0.0, 0.0, 0.0)
+        return old_command != self._command
 
     def enable(self, message: Any) -> None:
         """Enable the drive, or disable and stop it, as a ``std_msgs/msg/Bool`` requests."""
         self.is_enabled = bool(message.data)
         if not self.is_enabled:
-            self.rest()
+            self.stop()
 
     def next_velocity(self) -> tuple[float, float, float]:
         """Advance the limited velocity towards the command, and return the new velocity.
 
         Call this `GZ_RATE` times per simulated second.
         """
-        limited_targets = zip(self._limiters, self._wanted, strict=True)
+        limited_targets = zip(self._limiters, self._command, strict=True)
         forward, left, angular = (limiter.follow(target, 1.0 / GZ_RATE) for limiter, target in limited_targets)
         return forward, left, angular
 
@@ -101,13 +101,13 @@ def connect_drive(
     )
     transforms = node.publisher(TRANSFORMS, parameters.tf_topic or f"/model/{model}/tf", TRANSFORMS_DEPTH, usual="/tf")
     topic = parameters.topic or f"/model/{model}/cmd_vel"
-    commander = node.commander(commands.rest)
+    commander = node.commander(commands.stop)
     node.subscribe(
         "geometry_msgs/msg/Twist",
         topic,
         commands.set_command,
         usual="/cmd_vel",
         commander=commander,
-        rest=commands.rest,
+        stop_motion=commands.stop,
     )
     return OdometryTopics(frame, child_frame, odometry, transforms)

@@ -78,11 +78,11 @@ P = TypeVar("P", bound=ControllerParameters)
 
 
 class _JointController(SimulatedPlugin[P], Generic[P]):
-    """A plugin that keeps joints at the commanded value `_wanted`: a position, or a velocity."""
+    """A plugin that keeps joints at the commanded value `_command`: a position, or a velocity."""
 
     IGNORED = ("use_actuator_msg", "actuatorNumber")
 
-    _wanted: float
+    _command: float
 
     def _begin(self) -> None:
         """Create a PID controller for each joint."""
@@ -109,14 +109,16 @@ class _JointController(SimulatedPlugin[P], Generic[P]):
             parameters.topic
             or f"/model/{self.place.path}/{parameters.sub_topic or f'joint/{parameters.joint_name[0]}/{topic_suffix}'}"
         )
-        commander = self.node.commander(self._rest)
-        self.node.subscribe("std_msgs/msg/Float64", topic, self._commanded, commander=commander, rest=self._rest)
+        commander = self.node.commander(self._stop_motion)
+        self.node.subscribe(
+            "std_msgs/msg/Float64", topic, self._commanded, commander=commander, stop_motion=self._stop_motion
+        )
         self._begin()
 
     def _commanded(self, message: Any) -> None:
-        self._wanted = float(message.data)
+        self._command = float(message.data)
 
-    def _rest(self) -> bool:
+    def _stop_motion(self) -> bool:
         """Stop a commanded motion, and return whether there was one.
 
         By default nothing stops, because a commanded position is held.
@@ -130,7 +132,7 @@ class _JointController(SimulatedPlugin[P], Generic[P]):
         """
         seconds = self.simulation.step / NANOSECONDS_PER_SECOND
         for joint, controller in zip(self._joints, self._controllers, strict=True):
-            error = self._wanted - self.simulation.joint_state(joint)[state_index]
+            error = self._command - self.simulation.joint_state(joint)[state_index]
             self.simulation.push_joint(joint, controller.force(error, seconds))
 
 
@@ -142,7 +144,7 @@ class GzJointPosition(_JointController[PositionParameters]):
     """
 
     PARAMETERS = PositionParameters
-    CARRIED = ("_wanted",)
+    CARRIED = ("_command",)
 
     def start(self) -> None:
         """Find the joints, and hold them at the initial position."""
@@ -164,7 +166,7 @@ class GzJointPosition(_JointController[PositionParameters]):
 
     def _begin(self) -> None:
         super()._begin()
-        self._wanted = self.parameters.initial_position
+        self._command = self.parameters.initial_position
         for servo in self._servos:
             servo.restart()
 
@@ -172,7 +174,7 @@ class GzJointPosition(_JointController[PositionParameters]):
         if not self._servos:
             self._apply_forces(0)
         for servo in self._servos:
-            servo.move(self._wanted, self.simulation.step / NANOSECONDS_PER_SECOND)
+            servo.move(self._command, self.simulation.step / NANOSECONDS_PER_SECOND)
 
 
 class GzJointVelocity(_JointController[VelocityParameters]):
@@ -200,18 +202,18 @@ class GzJointVelocity(_JointController[VelocityParameters]):
     def resume(self, before: SimulatedPlugin[VelocityParameters]) -> None:
         """Take over the velocity of the previous instance."""
         assert isinstance(before, GzJointVelocity)
-        self._set_velocity(before._wanted)
+        self._set_velocity(before._command)
 
     def _commanded(self, message: Any) -> None:
         self._set_velocity(float(message.data))
 
-    def _rest(self) -> bool:
-        was_moving = self._wanted != 0.0
+    def _stop_motion(self) -> bool:
+        was_moving = self._command != 0.0
         self._set_velocity(0.0)
         return was_moving
 
     def _set_velocity(self, velocity: float) -> None:
-        self._wanted = velocity
+        self._command = velocity
         for joint, motor in zip(self._joints, self._motors, strict=False):
             max_speed = self.simulation.scene.speed_limit(joint)
             motor.target = min(max(velocity, -max_speed), max_speed)

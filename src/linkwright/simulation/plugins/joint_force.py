@@ -35,7 +35,7 @@ class GzJointForce(SimulatedPlugin[JointForceParameters]):
         topic = f"/model/{self.place.path}/joint/{name}/cmd_force"
         commander = self.node.commander(self._stop_motion)
         self.node.subscribe(
-            "std_msgs/msg/Float64", topic, self._on_command, commander=commander, rest=self._stop_motion
+            "std_msgs/msg/Float64", topic, self._on_command, commander=commander, stop_motion=self._stop_motion
         )
         self.every(0.0, self._apply_force)
 

@@ -36,7 +36,11 @@ class ClassicJointPoses(SimulatedPlugin[JointPoseParameters]):
         """Subscribe to the trajectories."""
         self.reset()
         self.node.subscribe(
-            "trajectory_msgs/msg/JointTrajectory", self.parameters.topic_name, self._receive, 1, rest=lambda: None
+            "trajectory_msgs/msg/JointTrajectory",
+            self.parameters.topic_name,
+            self._receive,
+            1,
+            stop_motion=lambda: None,
         )
         self.every(self.parameters.update_rate, self._move)
 

@@ -153,7 +153,7 @@ class GzJointTrajectory(SimulatedPlugin[TrajectoryParameters]):
             simulation.keep_awake(simulation.scene.joints[joint].child)
         topic = parameters.topic or f"/model/{self.place.path}/joint_trajectory"
         self._progress = self.node.publisher("std_msgs/msg/Float32", f"{topic}_progress")
-        self.node.subscribe("trajectory_msgs/msg/JointTrajectory", topic, self._on_trajectory, rest=lambda: None)
+        self.node.subscribe("trajectory_msgs/msg/JointTrajectory", topic, self._on_trajectory, stop_motion=lambda: None)
         self.reset()
         self.every(0.0, self._move)
 

@@ -176,7 +176,7 @@ class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
             topic_prefix + parameters.command_topic,
             self._receive,
             commander=commander,
-            rest=self._stop_motion,
+            stop_motion=self._stop_motion,
         )
         self.node.subscribe("std_msgs/msg/Bool", topic_prefix + parameters.enable_topic, self._on_enable)
         self.every(0.0, self._command_rotors)

@@ -75,14 +75,14 @@ class PluginNode(SteppedNode):
         qos: QoSProfile | int = 10,
         *,
         commander: Commander | None = None,
-        rest: Callable[[], object] | None = None,
+        stop_motion: Callable[[], object] | None = None,
         usual: str = "",
     ) -> None:
         """Subscribe to a topic.
 
         The arguments are those of `publisher` and of `SteppedNode.subscribe`.
         """
-        received = self._make_callback(topic, callback, rest, commander)
+        received = self._make_callback(topic, callback, stop_motion, commander)
         self._subscribe_to(msg_type, self._topic_names(topic, usual), received, qos, commander)
 
     def close(self) -> None:

@@ -99,7 +99,7 @@ class PlanarMove(PlanarDrive[PlanarMoveParameters]):
             self._on_command,
             1,
             commander=commander,
-            rest=self._stop_motion,
+            stop_motion=self._stop_motion,
         )
         self.every(0.0, self._move)
         if odometry is not None or transforms is not None:

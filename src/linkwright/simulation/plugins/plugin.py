@@ -112,7 +112,7 @@ class Environment(Protocol):
         """Whether plugins reproduce known mistakes of Gazebo."""
 
     @property
-    def left(self) -> dict[str, Any]:
+    def stored_values(self) -> dict[str, Any]:
         """The values that plugins store by name for later instances.
 
         Later instances read the values after a model is changed.
@@ -185,9 +185,9 @@ class SimulatedPlugin(Generic[P]):
         """Clean up resources other than the node and the functions registered with `every`."""
 
     @property
-    def left(self) -> dict[str, Any]:
+    def stored_values(self) -> dict[str, Any]:
         """The values that previous instances stored by name before the model was changed."""
-        return self._environment.left
+        return self._environment.stored_values
 
     # --- methods for plugins to call ----------------------------------------------------------------------------------
 
@@ -227,7 +227,7 @@ class SimulatedPlugin(Generic[P]):
         Raises:
             LinkwrightError: SIM133, there is no such link.
         """
-        return self._found(name, self.simulation.scene.bodies, "SIM133")
+        return self._full_name(name, self.simulation.scene.bodies, "SIM133")
 
     def joint(self, name: str) -> str:
         """Return the full name of a movable joint of the plugin's model, as used in the simulation.
@@ -235,7 +235,7 @@ class SimulatedPlugin(Generic[P]):
         Raises:
             LinkwrightError: SIM134, there is no such joint.
         """
-        return self._found(name, self.simulation.scene.joints, "SIM134")
+        return self._full_name(name, self.simulation.scene.joints, "SIM134")
 
     @property
     def first_link(self) -> str:
@@ -263,7 +263,7 @@ class SimulatedPlugin(Generic[P]):
         self.node.calls.close(self.stop, on_error)
         self.node.close()
 
-    def _found(self, name: str, known_names: Collection[str], code: str) -> str:
+    def _full_name(self, name: str, known_names: Collection[str], code: str) -> str:
         """Return the full name in `known_names` for a name that may omit the model or nested models.
 
         Raises:

@@ -30,7 +30,7 @@ class GzVelocityControl(PlanarDrive[VelocityControlParameters]):
 
     PARAMETERS = VelocityControlParameters
     IGNORED = ("link_name",)
-    CARRIED = ("_wanted",)
+    CARRIED = ("_command",)
 
     def start(self) -> None:
         """Subscribe to the velocity commands.
@@ -41,30 +41,38 @@ class GzVelocityControl(PlanarDrive[VelocityControlParameters]):
         self.require_free_model()
         self.reset()
         topic = self.parameters.topic or f"/model/{self.place.path}/cmd_vel"
-        commander = self.node.commander(self._rest)
+        commander = self.node.commander(self._stop_motion)
         self.node.subscribe(
-            "geometry_msgs/msg/Twist", topic, self._receive, usual="/cmd_vel", commander=commander, rest=self._rest
+            "geometry_msgs/msg/Twist",
+            topic,
+            self._receive,
+            usual="/cmd_vel",
+            commander=commander,
+            stop_motion=self._stop_motion,
         )
         self.every(0.0, self._move)
 
     def reset(self) -> None:
         """Set the commanded velocity to the initial velocity in the parameters, or to none."""
         parameters = self.parameters
-        self._wanted: tuple[Vector3, Vector3] | None = None
+        self._command: tuple[Vector3, Vector3] | None = None
         if parameters.initial_linear is not None or parameters.initial_angular is not None:
-            self._wanted = (parameters.initial_linear or (0.0, 0.0, 0.0), parameters.initial_angular or (0.0, 0.0, 0.0))
+            self._command = (
+                parameters.initial_linear or (0.0, 0.0, 0.0),
+                parameters.initial_angular or (0.0, 0.0, 0.0),
+            )
 
     def _receive(self, twist: Any) -> None:
-        self._wanted = (numbers(twist.linear), numbers(twist.angular))
+        self._command = (numbers(twist.linear), numbers(twist.angular))
 
-    def _rest(self) -> bool:
+    def _stop_motion(self) -> bool:
         zero_velocity = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
-        previous_velocity, self._wanted = self._wanted, zero_velocity
+        previous_velocity, self._command = self._command, zero_velocity
         return previous_velocity != zero_velocity
 
     def _move(self) -> None:
-        if self._wanted is None:
+        if self._command is None:
             return
         orientation = self.simulation.model_pose(self.place.path)[3:]
-        linear, angular = (rotate(orientation, velocity) for velocity in self._wanted)
+        linear, angular = (rotate(orientation, velocity) for velocity in self._command)
         self.simulation.set_model_velocity(self.place.path, linear, angular)

@@ -63,7 +63,7 @@ class OpenGlRenderer:
     """
 
     def __init__(self, simulation: Simulation, backend: str) -> None:
-        self.way: Phrase = phrase("OpenGL with {backend}", backend=_BACKEND_NAMES[backend])
+        self.method: Phrase = phrase("OpenGL with {backend}", backend=_BACKEND_NAMES[backend])
         self._simulation = simulation
         self._mujoco = mujoco = load_mujoco()
         self._thread = threading.get_ident()

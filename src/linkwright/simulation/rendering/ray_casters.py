@@ -36,7 +36,7 @@ class Hits:
 class Caster(Protocol):
     """The interface of ray casters for images."""
 
-    way: Phrase
+    method: Phrase
 
     def cast(self, view: View, *, normals: bool) -> Hits:
         """Cast the rays of an image into the current world, from the camera's near clip plane.
@@ -50,7 +50,7 @@ class Caster(Protocol):
 class MujocoCaster:
     """Exact but slow ray casting with MuJoCo."""
 
-    way = phrase("slow ray casting with MuJoCo, because EGL, OSMesa and embreex are not available")
+    method = phrase("slow ray casting with MuJoCo, because EGL, OSMesa and embreex are not available")
 
     def __init__(self, simulation: Simulation) -> None:
         self._simulation = simulation
@@ -149,7 +149,7 @@ class EmbreeCaster:
         ImportError: embreex is not installed.
     """
 
-    way = phrase("ray casting with Embree, because neither EGL nor OSMesa is available")
+    method = phrase("ray casting with Embree, because neither EGL nor OSMesa is available")
 
     def __init__(self, simulation: Simulation) -> None:
         import embreex  # type: ignore[import-not-found, import-untyped, unused-ignore]  # noqa: F401 - is it installed?

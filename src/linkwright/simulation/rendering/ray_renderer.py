@@ -30,7 +30,7 @@ class RayRenderer:
     """
 
     def __init__(self, simulation: Simulation, caster: Caster) -> None:
-        self.way = caster.way
+        self.method = caster.method
         self._simulation = simulation
         self._caster = caster
         self._colours: Any = None

@@ -51,7 +51,7 @@ class Renderer(Protocol):
     All methods are called in the thread of the simulation.
     """
 
-    way: Phrase
+    method: Phrase
     """The method of rendering, as a phrase for log messages."""
 
     def render(self, optics: Optics, pose: Transform, channels: Channels) -> RenderedImage:

@@ -40,7 +40,7 @@ class SharedRenderer:
             self._renderer, self._thread = make_renderer(self._simulation), threading.get_ident()
         if not self._reported:
             self._reported = True
-            report(self._renderer.way)
+            report(self._renderer.method)
         return self._renderer.render(optics, pose, channels)
 
     def release(self) -> None:

@@ -115,7 +115,7 @@ def move_actors(figures: Iterable[Figure], model: Any, data: Any, seconds: float
             continue
         pose = figure.pose_at(seconds)
         for placed_link in figure.links:
-            _put(int(model.body(placed_link.name).mocapid[0]), compose(pose, placed_link.pose), data)
+            _set_mocap_pose(int(model.body(placed_link.name).mocapid[0]), compose(pose, placed_link.pose), data)
 
 
 def set_kinematic_poses(structure: Structure, moved: Transform, model: Any, data: Any) -> bool:
@@ -133,14 +133,14 @@ def set_kinematic_poses(structure: Structure, moved: Transform, model: Any, data
     kinematic_links = {int(model.body(link.name).mocapid[0]): link for link in links}
     kinematic_links.pop(-1, None)
     for mocap_id, link in kinematic_links.items():
-        _put(mocap_id, compose(moved, link.pose), data)
+        _set_mocap_pose(mocap_id, compose(moved, link.pose), data)
     return bool(kinematic_links)
 
 
-def _put(place: int, pose: Transform, data: Any) -> None:
+def _set_mocap_pose(mocap_index: int, pose: Transform, data: Any) -> None:
     x, y, z, qx, qy, qz, qw = pose
-    data.mocap_pos[place] = x, y, z
-    data.mocap_quat[place] = qw, qx, qy, qz
+    data.mocap_pos[mocap_index] = x, y, z
+    data.mocap_quat[mocap_index] = qw, qx, qy, qz
 
 
 def _skin_origin(actor: Actor, meshes: MeshLibrary) -> Vector3 | None:

@@ -250,7 +250,7 @@ class Scene:
                 scene_model.parts += gearbox_coupling(
                     self.spec, joint, self._movable_joints((name, *connected.hangs_on))
                 )
-        scene_model.parts += self._strangers(structure)
+        scene_model.parts += self._self_collision_exclusions(structure)
         scene_model.parts += self._neighbour_exclusions(connected)
         return scene_model
 
@@ -521,7 +521,7 @@ class Scene:
         equality.name1, equality.name2 = link_names[0], "" if link_names[1] == WORLD else link_names[1]
         return equality
 
-    def _strangers(self, structure: Structure) -> Iterator[Any]:
+    def _self_collision_exclusions(self, structure: Structure) -> Iterator[Any]:
         """Add and yield contact exclusions for links of a model without ``<self_collide>``.
 
         A pair of links may collide only if both have ``<self_collide>``.

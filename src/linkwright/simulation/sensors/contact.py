@@ -49,7 +49,9 @@ class ContactSensor:
     def __init__(self, mount: Mount, collisions: Sequence[str] = ()) -> None:
         self._mount = mount
         self._simulation = mount.simulation
-        self._wanted = {f"{mount.link}{SEPARATOR}{collision.rpartition(SEPARATOR)[2]}" for collision in collisions}
+        self._collision_names = {
+            f"{mount.link}{SEPARATOR}{collision.rpartition(SEPARATOR)[2]}" for collision in collisions
+        }
         self._is_sensed_table = GeomTable(self._simulation, self._is_sensed_by_geom)
 
     def _is_sensed_by_geom(self, names: list[str]) -> list[float]:
@@ -59,7 +61,11 @@ class ContactSensor:
         name, mark, _ = part.partition(_COLLISION_MARK)
         if not mark:
             return False
-        return name in self._wanted if self._wanted else name.rpartition(SEPARATOR)[0] == self._mount.link
+        return (
+            name in self._collision_names
+            if self._collision_names
+            else name.rpartition(SEPARATOR)[0] == self._mount.link
+        )
 
     def measure(self) -> list[Contact]:
         """Return the current contacts, one for each pair of collisions.

@@ -29,7 +29,7 @@ class AddedModel:
         pose: the initial pose of the model's frame in the world.
         namespace: the default namespace for the nodes of the model's plugins.
         motion: the motion of the model that this model replaces; None if it replaces no model.
-        here: whether the model keeps the current pose and velocity of the model that it replaces.
+        keeps_motion: whether the model keeps the current pose and velocity of the model that it replaces.
     """
 
     model: Model
@@ -37,7 +37,7 @@ class AddedModel:
     pose: Transform
     namespace: str = ""
     motion: Motion | None = None
-    here: bool = False
+    keeps_motion: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,26 +45,26 @@ class Changes:
     """The changes from one world to another.
 
     Attributes:
-        gone: the names of the models to remove.
+        removed_names: the names of the models to remove.
         moved: the new poses in the world of the models that differ only in their pose, by name.
         renewed: the models that replace running models with the same names.
-        new: the models to add.
+        added: the models to add.
     """
 
-    gone: tuple[str, ...]
+    removed_names: tuple[str, ...]
     moved: dict[str, Transform]
     renewed: tuple[AddedModel, ...]
-    new: tuple[AddedModel, ...]
+    added: tuple[AddedModel, ...]
 
     def with_all_replaced(self, running: Mapping[str, SceneModel], namespaces: Mapping[str, str]) -> Changes:
         """Return these changes with all other running models replaced, too.
 
         The replacements are at their current or new poses.
         """
-        changed_names = {*self.gone, *(change.name for change in self.renewed)}
+        changed_names = {*self.removed_names, *(change.name for change in self.renewed)}
         poses = {name: self.moved.get(name, model.pose) for name, model in running.items() if name not in changed_names}
         replacements = (
-            AddedModel(running[name].model, name, pose, namespaces.get(name, ""), here=name not in self.moved)
+            AddedModel(running[name].model, name, pose, namespaces.get(name, ""), keeps_motion=name not in self.moved)
             for name, pose in poses.items()
         )
         return replace(self, moved={}, renewed=(*self.renewed, *replacements))
@@ -117,7 +117,7 @@ def changes_to(world: World, running: Mapping[str, SceneModel], world_models: Co
             hint = phrase("that model was added to the running simulation; delete it there, or rename this model")
             raise LinkwrightError(Diagnostic("SIM102", message, span, hint=hint))
         elif running_model.is_outdated or not alike(_without_pose(running_model.model), _without_pose(model)):
-            renewed.append(AddedModel(model, model.name, pose, here=pose == running_model.pose))
+            renewed.append(AddedModel(model, model.name, pose, keeps_motion=pose == running_model.pose))
         elif pose != running_model.pose:
             moved[model.name] = pose
     gone = tuple(name for name in running if name in world_models and name not in names)

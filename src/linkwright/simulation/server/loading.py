@@ -14,7 +14,7 @@ from typing import Any
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, phrase
 from linkwright.messages import get_message
-from linkwright.simulation.plugins.entities import in_one_line
+from linkwright.simulation.plugins.entities import finding_line
 from linkwright.simulation.server.server import SimulationServer
 from linkwright.simulation.server.worlds import LoadedWorld, load_world
 from linkwright.xmltree.decoding import decoded
@@ -115,7 +115,7 @@ class WorldLoader:
         except LinkwrightError as error:
             finding = error.diagnostics[0]
             response.result.result = _result_code(finding)
-            response.result.error_message = in_one_line(finding)
+            response.result.error_message = finding_line(finding)
             return response
         response.result.result = _OK
         response.world.name = self.loaded.world.name

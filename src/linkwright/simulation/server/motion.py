@@ -42,7 +42,7 @@ def motion_of(simulation: Simulation, name: str) -> Motion:
     return Motion(pose, tuple(linear.tolist()), tuple(angular.tolist()), joints)
 
 
-def resume(simulation: Simulation, name: str, motion: Motion, *, here: bool) -> None:
+def resume(simulation: Simulation, name: str, motion: Motion, *, keeps_pose: bool) -> None:
     """Apply the motion of a replaced model to the model that replaces it.
 
     A joint keeps its positions and velocities if both models have a joint of this name and type.
@@ -51,7 +51,7 @@ def resume(simulation: Simulation, name: str, motion: Motion, *, here: bool) -> 
         simulation: the simulation of the world.
         name: the name of the new model.
         motion: the motion of the replaced model.
-        here: whether a free model also gets the pose and velocity of the replaced model.
+        keeps_pose: whether a free model also gets the pose and velocity of the replaced model.
 
     Raises:
         KeyError: there is no such model.
@@ -63,11 +63,11 @@ def resume(simulation: Simulation, name: str, motion: Motion, *, here: bool) -> 
             view = simulation.data.joint(index)
             view.qpos[:], view.qvel[:] = position, velocity
     simulation.set_moved()
-    if here and free_joints:
-        _put(simulation, name, motion, free_joints)
+    if keeps_pose and free_joints:
+        _set_state(simulation, name, motion, free_joints)
 
 
-def _put(simulation: Simulation, name: str, motion: Motion, free_joints: dict[str, str]) -> None:
+def _set_state(simulation: Simulation, name: str, motion: Motion, free_joints: dict[str, str]) -> None:
     """Set the poses of the free links and the velocity of the model.
 
     The first link and new links get their initial poses relative to the model's frame; other links keep their poses and

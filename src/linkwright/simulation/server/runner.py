@@ -62,7 +62,7 @@ class Runner:
         self._factor = 1.0
         self._remaining_ns = None if seconds is None else round(seconds * NANOSECONDS_PER_SECOND)
         self._watch, self._on_state, self._on_end = watch, on_state, on_end
-        self._ends = False
+        self._must_end = False
         server.on_change.append(self._restart_timing)
         self._reference_times = (0.0, 0)
         self._last_measurement = (0.0, 0)
@@ -74,7 +74,7 @@ class Runner:
 
     def close(self) -> None:
         """Stop the thread after its current iteration, and wait until it has ended."""
-        self._ends = True
+        self._must_end = True
         self._server.exchange.close()
         if self._thread.is_alive() and self._thread is not threading.current_thread():
             self._thread.join()
@@ -112,7 +112,7 @@ class Runner:
     def _run(self) -> None:
         exchange, dispatcher = self._server.exchange, self._server.node.graph.dispatcher
         self._restart_timing()
-        while not self._ends:
+        while not self._must_end:
             self._call_logged(exchange.run_commands)
             wait_s = _PAUSED_PERIOD
             if not self.paused:

@@ -84,7 +84,8 @@ class SimulationServer:
         on_reset: called after a reset.
         on_findings: called after `findings` have changed.
         on_failure: called with the exception of a plugin's code, after it was logged.
-        left: the values that plugins store by name for later instances, which read them after a model is changed.
+        stored_values: the values that plugins store by name for later instances, which read them after a model is
+            changed.
     """
 
     def __init__(self, simulation: Simulation, node: Node, options: ServerOptions | None = None) -> None:
@@ -99,7 +100,7 @@ class SimulationServer:
         self._used_usual_names: set[str] | None = set() if self._options.usual_names else None
         self._bridged = BridgedTopics(node, self.exchange)
         self._plugins: dict[str, list[SimulatedPlugin[object]]] = {}
-        self.left: dict[str, Any] = {}
+        self.stored_values: dict[str, Any] = {}
         self._namespaces: dict[str, str] = {}
         self._world_models = set(simulation.scene.models)
         self._node_names: set[str] = set()
@@ -170,7 +171,7 @@ class SimulationServer:
                 moved, and nothing has changed.
         """
         old_model = self._model(name)
-        added = AddedModel(model, name, old_model.pose, self._namespaces.get(name, ""), here=True)
+        added = AddedModel(model, name, old_model.pose, self._namespaces.get(name, ""), keeps_motion=True)
         check(self.simulation.world, self.simulation, (added,), self.simulation.finder)
         self._exchange((), (replace(added, motion=motion_of(self.simulation, name)),))
         self.report(collision_warnings(self.simulation, name), name)
@@ -196,19 +197,19 @@ class SimulationServer:
         if surroundings(old_world) != surroundings(new_world):
             changes = changes.with_all_replaced(simulation.scene.models, self._namespaces)
         changes = changes.with_connected_replaced(simulation.scene.models, self._namespaces)
-        allow(check(new_world, simulation, (*changes.renewed, *changes.new), finder))
+        allow(check(new_world, simulation, (*changes.renewed, *changes.added), finder))
         renewed = tuple(replace(change, motion=motion_of(simulation, change.name)) for change in changes.renewed)
         simulation.set_world(world, finder)
         simulation.place(changes.moved)
-        self._exchange(changes.gone, (*renewed, *changes.new))
-        self.report(overlaps(simulation, {*changes.moved, *(change.name for change in changes.new)}))
+        self._exchange(changes.removed_names, (*renewed, *changes.added))
+        self.report(overlaps(simulation, {*changes.moved, *(change.name for change in changes.added)}))
         self._world_models = {model.name for model in new_world.models}
         if not alike(old_world.plugins, new_world.plugins):
             self._close_plugins(self._plugins.pop(_WORLD_OWNER, []))
             self._load(_WORLD_OWNER, world_plugins(new_world, self._options.systems), "")
 
     def _exchange(self, gone: Iterable[str], added: Sequence[AddedModel]) -> None:
-        """Remove the models in `gone`, and add the models in `added`.
+        """Remove the models in `removed_names`, and add the models in `added`.
 
         An added model replaces a running model of the same name. Models attached to a removed or replaced model are
         also replaced.
@@ -227,12 +228,12 @@ class SimulationServer:
             add_models(simulation, added)
         for change in added:
             if change.motion is not None:
-                resume(simulation, change.name, change.motion, here=change.here)
+                resume(simulation, change.name, change.motion, keeps_pose=change.keeps_motion)
         self.report(simulation.scene.diagnostics[old_count:])
         for change in added:
             self._namespaces[change.name] = change.namespace
             places = model_plugins(simulation.world, change.model, change.name)
-            is_continued = change.here and change.motion is not None
+            is_continued = change.keeps_motion and change.motion is not None
             self._load(change.name, places, change.namespace, old_plugins[change.name] if is_continued else ())
         self._call_on_change()
 
@@ -243,12 +244,14 @@ class SimulationServer:
         """
         models = self.simulation.scene.models
         for name in {
-            item: None for one in names & models.keys() for item in self.simulation.scene.attached_models(one)
+            item: None
+            for removed_name in names & models.keys()
+            for item in self.simulation.scene.attached_models(removed_name)
         }:
             if name not in names:
                 motion = motion_of(self.simulation, name)
                 scene_model, namespace = models[name], self._namespaces.get(name, "")
-                yield AddedModel(scene_model.model, name, scene_model.pose, namespace, motion, here=True)
+                yield AddedModel(scene_model.model, name, scene_model.pose, namespace, motion, keeps_motion=True)
 
     def delete(self, name: str) -> None:
         """Stop the plugins of a model, and remove the model.
@@ -260,7 +263,7 @@ class SimulationServer:
         """
         self._model(name)
         self._exchange((name,), ())
-        self.left.clear()
+        self.stored_values.clear()
         self._world_models.discard(name)
 
     def _model(self, name: str) -> SceneModel:

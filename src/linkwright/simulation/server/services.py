@@ -19,7 +19,7 @@ from linkwright.sdf.poses import WORLD
 from linkwright.simulation.plugins.entities import (
     Entities,
     fill_response,
-    in_one_line,
+    finding_line,
     numbers,
     refusal_text,
     transform_in,
@@ -119,9 +119,9 @@ class Services:
         Raises:
             LinkwrightError: the description has errors, or the model cannot be added.
         """
-        return self._put(read_entity(text, self._server.simulation.finder, self._library), name, pose, namespace)
+        return self._add_model(read_entity(text, self._server.simulation.finder, self._library), name, pose, namespace)
 
-    def _put(self, entity: Entity, name: str, pose: Transform, namespace: str) -> str:
+    def _add_model(self, entity: Entity, name: str, pose: Transform, namespace: str) -> str:
         world_pose = compose(pose, transform_of(entity.model.pose.pose))
         name = name or entity.model.name
         self._server.spawn(entity.model, name, world_pose, namespace)
@@ -149,7 +149,7 @@ class Services:
                 self._server.renew(entity.model, name)
                 self._server.report(entity.diagnostics, name)
             except LinkwrightError as error:
-                self._server.node.get_logger().error(in_one_line(error.diagnostics[0]))
+                self._server.node.get_logger().error(finding_line(error.diagnostics[0]))
 
         self._server.exchange.post(renew)
 
@@ -159,7 +159,7 @@ class Services:
             entity = read_entity(request.xml, self._server.simulation.finder, self._library)
             if entity.unread:
                 raise LinkwrightError(*entity.unread)
-            name = self._put(entity, request.name, pose, request.robot_namespace)
+            name = self._add_model(entity, request.name, pose, request.robot_namespace)
             for function in self.on_spawned:
                 function(name, request.xml)
             return f"SpawnEntity: Successfully spawned entity [{request.name}]"

@@ -62,7 +62,7 @@ def load_world(name: str, text: str | None = None, environment: Mapping[str, str
     finder = PackageFinder(start=[path.absolute().parent, Path.cwd()])
     resources = ResourceFinder(finder, environment)
     if text is None:
-        path = _found(name, resources)
+        path = _find_world(name, resources)
     if path.suffix != ".xacro" and (text is not None or path.is_file()):
         _check_link_count(read_bytes(path) if text is None else text)
     description = examine_world(
@@ -86,7 +86,7 @@ def _check_link_count(text: bytes | str) -> None:
         raise LinkwrightError(Diagnostic("SIM105", message, hint=too_many_links_hint()))
 
 
-def _found(name: str, finder: ResourceFinder) -> Path:
+def _find_world(name: str, finder: ResourceFinder) -> Path:
     path = finder.world(name)
     if path is not None:
         return path

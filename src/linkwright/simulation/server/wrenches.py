@@ -19,15 +19,15 @@ class Wrench:
         force: the force in N, in the axes of the world.
         torque: the torque in N m, in the axes of the world.
         point: the point of application of the force, in the frame of the link.
-        begin: the simulated time in nanoseconds from which the wrench acts.
-        end: the simulated time in nanoseconds until which the wrench acts; None for no end.
+        start_ns: the simulated time in nanoseconds from which the wrench acts.
+        end_ns: the simulated time in nanoseconds until which the wrench acts; None for no end.
     """
 
     force: Vector3
     torque: Vector3
     point: Vector3
-    begin: int
-    end: int | None
+    start_ns: int
+    end_ns: int | None
 
 
 class Wrenches:
@@ -60,14 +60,14 @@ class Wrenches:
     def _apply_wrenches(self) -> None:
         now, simulation = self._simulation.time, self._simulation
         for link, wrenches in tuple(self._wrenches.items()):
-            remaining = [wrench for wrench in wrenches if wrench.end is None or now < wrench.end]
+            remaining = [wrench for wrench in wrenches if wrench.end_ns is None or now < wrench.end_ns]
             self._wrenches[link] = remaining
             if not remaining or link not in simulation.scene.bodies:
                 del self._wrenches[link]
                 if link in simulation.scene.bodies:
                     simulation.push(link, (0.0, 0.0, 0.0))
                 continue
-            force, torque = self._total_wrench(link, [wrench for wrench in remaining if wrench.begin <= now])
+            force, torque = self._total_wrench(link, [wrench for wrench in remaining if wrench.start_ns <= now])
             simulation.push(link, force.tolist(), torque.tolist())
 
     def _total_wrench(self, link: str, wrenches: list[Wrench]) -> tuple[Array, Array]:

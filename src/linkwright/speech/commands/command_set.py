@@ -76,14 +76,14 @@ class CommandSet:
     Attributes:
         commands: the commands in the order of the file.
         names: for each slot that a name replaces (``place``, ``object``), the names by their spoken forms.
-        said: for each slot that the file lists, its possible spoken values by language.
+        slot_values: for each slot that the file lists, its possible spoken values by language.
         places: the places by name.
         answers: for ``yes`` and ``no``, the spoken forms by language.
     """
 
     commands: tuple[Command, ...]
     names: Names
-    said: Mapping[str, Mapping[str, tuple[str, ...]]]
+    slot_values: Mapping[str, Mapping[str, tuple[str, ...]]]
     places: Mapping[str, Place]
     answers: Mapping[str, Mapping[str, tuple[Template, ...]]]
 
@@ -147,7 +147,7 @@ class CommandSet:
         """Return the spoken values of each slot in a language."""
         return {
             slot: tuple(text for name in (language, ANY) for text in texts.get(name, ()))
-            for slot, texts in {**GRAMMAR_VALUES, **self.said}.items()
+            for slot, texts in {**GRAMMAR_VALUES, **self.slot_values}.items()
         }
 
     def _templates(self, language: str) -> list[Template]:

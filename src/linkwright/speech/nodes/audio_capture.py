@@ -16,7 +16,7 @@ import numpy as np
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 from linkwright.diagnostics.translation import localized
 from linkwright.graph import Graph
-from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
 from linkwright.speech.nodes.audio_topics import NAMESPACE, AudioTopics
 from linkwright.speech.sound.microphone import Microphone
 from linkwright.speech.sound.samples import BLOCK, RATE, Samples
@@ -50,7 +50,7 @@ class AudioCapture(SingleNode):
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
         self._microphone: Microphone | None = None
-        with starting(self._node):
+        with handle_start_errors(self._node):
             self._start()
 
     def close(self) -> None:

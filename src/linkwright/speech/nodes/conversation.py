@@ -111,7 +111,7 @@ class Conversation:
             self._report_command(stop.intent)
             self._respond(choose_text(stop.response, self._language) or text)
 
-    def rest(self, reason: Phrase) -> None:
+    def stop_driving(self, reason: Phrase) -> None:
         """Stop driving, and answer with the reason."""
         self._driver.stop()
         self.answer(reason)
@@ -182,7 +182,7 @@ class Conversation:
     def _end_other_motion(self, match: Match) -> None:
         """End the motion that a command replaces, and notify other nodes."""
         action = match.command.action
-        self._requests.leave(but=action.action if isinstance(action, GoTo) else "")
+        self._requests.cancel(except_action=action.action if isinstance(action, GoTo) else "")
         if not isinstance(action, Drive) and self._driver.is_moving:
             self._driver.stop()
         if not isinstance(action, Publish):  # the subscriber of this message may start a motion itself

@@ -44,7 +44,7 @@ class Driver:
     def __init__(
         self, node: Node, topic: VelocityTopic, speed: float, turn_speed: float, on_end: Callable[[Ending], None]
     ) -> None:
-        self._node, self._topic, self._ended = node, topic, on_end
+        self._node, self._topic, self._on_end = node, topic, on_end
         self._speed, self._turn_speed = speed, turn_speed
         self._initial_speed, self._scale = speed, 1.0
         self._drive: Drive | None = None
@@ -103,7 +103,7 @@ class Driver:
             2.0 * (orientation.w * orientation.z + orientation.x * orientation.y),
             1.0 - 2.0 * (orientation.y * orientation.y + orientation.z * orientation.z),
         )
-        self._odometer.hear(self._now_ns(), position.x, position.y, yaw)
+        self._odometer.add_message(self._now_ns(), position.x, position.y, yaw)
 
     def _step(self) -> None:
         if self._drive is None:
@@ -133,7 +133,7 @@ class Driver:
 
     def _finish(self, ending: Ending) -> None:
         self.stop()
-        self._ended(ending)
+        self._on_end(ending)
 
     def _progress_rate(self) -> float:
         """Return the rate at which the distance or angle is covered, in m/s or rad/s."""
@@ -167,7 +167,7 @@ class _Odometer:
         self._pose: tuple[float, float, float] | None = None
         self._motion = {"distance": 0.0, "angle": 0.0}
 
-    def hear(self, now_ns: int, x: float, y: float, yaw: float) -> None:
+    def add_message(self, now_ns: int, x: float, y: float, yaw: float) -> None:
         if self._pose is not None:
             self._motion["distance"] += hypot(x - self._pose[0], y - self._pose[1])
             self._motion["angle"] += abs((yaw - self._pose[2] + pi) % tau - pi)

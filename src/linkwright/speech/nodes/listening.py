@@ -44,7 +44,7 @@ class Listener:
         on_problem: Callable[[Diagnostic], None],
         on_error: Callable[[LinkwrightError], None],
     ) -> None:
-        self._make, self._heard, self._finished, self._warn, self._failed = (
+        self._make_engine, self._on_result, self._on_finish, self._on_problem, self._on_error = (
             make_engine,
             on_result,
             on_finish,
@@ -54,12 +54,12 @@ class Listener:
         self._sample_count = 0
         self._gaps: deque[tuple[float, float]] = deque(maxlen=_MAX_GAPS)  # position and length of each gap
         self._blocks: SimpleQueue[Samples | bool | None] = SimpleQueue()
-        self._found: deque[_ThreadResult] = deque()
+        self._results: deque[_ThreadResult] = deque()
         self._ready = node.create_guard_condition(self._run_callbacks)
         self._thread = threading.Thread(target=self._run, name="speech engine", daemon=True)
         self._thread.start()
 
-    def hear(self, samples: Samples) -> bool:
+    def add_sound(self, samples: Samples) -> bool:
         """Pass a block of sound to the engine, and return whether it was accepted.
 
         A block is dropped if the engine lags far behind.
@@ -102,7 +102,7 @@ class Listener:
             self._queue_result(LinkwrightError(Diagnostic("VOICE307", message)))
 
     def _serve(self) -> None:
-        engine = self._make()
+        engine = self._make_engine()
         problem = None
         try:
             while True:
@@ -122,17 +122,17 @@ class Listener:
             engine.close()
 
     def _queue_result(self, result: _ThreadResult) -> None:
-        self._found.append(result)
+        self._results.append(result)
         self._ready.trigger()
 
     def _run_callbacks(self) -> None:
-        while self._found:
-            result = self._found.popleft()
+        while self._results:
+            result = self._results.popleft()
             if isinstance(result, LinkwrightError):
-                self._failed(result)
+                self._on_error(result)
             elif isinstance(result, Diagnostic):
-                self._warn(result)
+                self._on_problem(result)
             elif result is None:
-                self._finished()
+                self._on_finish()
             else:
-                self._heard(result)
+                self._on_result(result)

@@ -45,7 +45,7 @@ class Goals:
     """
 
     def __init__(self, node: Node, type_name: str, name: str, on_end: Callable[[bool, str], None]) -> None:
-        self._ended = on_end
+        self._on_end = on_end
         self._client = ActionClient(node, type_name, name)
         self._cancel_client = node.create_client("action_msgs/srv/CancelGoal", f"{name}/_action/cancel_goal")
         self._number = 0
@@ -63,7 +63,7 @@ class Goals:
         self.is_active = True
         self._client.send_goal_async(goal).add_done_callback(partial(self._receive_response, self._number))
 
-    def leave(self) -> None:
+    def cancel(self) -> None:
         """Cancel the goal of this client."""
         handle, self._handle = self._handle, None
         self._number += 1
@@ -73,7 +73,7 @@ class Goals:
 
     def cancel_all(self) -> None:
         """Cancel all goals of the action, including those of other clients."""
-        self.leave()
+        self.cancel()
         if self._cancel_client.service_is_ready():
             self._cancel_client.call_async(self._cancel_client.srv_type.Request())
 
@@ -95,7 +95,7 @@ class Goals:
 
     def _finish(self, is_reached: bool, reason: str) -> None:
         self._handle, self.is_active = None, False
-        self._ended(is_reached, reason)
+        self._on_end(is_reached, reason)
 
 
 def make_pose_goal(node: Node, place: Place) -> Any:
@@ -118,7 +118,7 @@ class Requests:
     """
 
     def __init__(self, node: Node, on_goal_end: Callable[[bool, str], None], respond: Callable[[str], None]) -> None:
-        self._node, self._ended, self._respond = node, on_goal_end, respond
+        self._node, self._on_goal_end, self._respond = node, on_goal_end, respond
         self._goals: dict[str, Goals] = {}
         self._publishers: dict[str, Publisher[Any]] = {}
         self._launch_process: subprocess.Popen[bytes] | None = None
@@ -136,9 +136,9 @@ class Requests:
         need.
         """
         if isinstance(action, GoTo):
-            self._goals.setdefault(action.action, Goals(self._node, NAVIGATE, action.action, self._ended))
+            self._goals.setdefault(action.action, Goals(self._node, NAVIGATE, action.action, self._on_goal_end))
         elif isinstance(action, SendGoal) and action.action not in self._goals:
-            self._goals[action.action] = Goals(self._node, action.type_name, action.action, self._ended)
+            self._goals[action.action] = Goals(self._node, action.type_name, action.action, self._on_goal_end)
         elif isinstance(action, Publish) and action.topic not in self._publishers:
             message_class = get_message(action.type_name)
             self._publishers[action.topic] = self._node.create_publisher(message_class, action.topic, _QUEUE_DEPTH)
@@ -187,11 +187,11 @@ class Requests:
         command = python_command(["-m", "linkwright", "launch", action.package, action.file, *launch_arguments])
         self._launch_process = subprocess.Popen(command, stdin=subprocess.DEVNULL)  # noqa: S603 - fixed words, no shell
 
-    def leave(self, but: str = "") -> None:
-        """Cancel the goals of these requests, except goals of the action `but`, and end the launch file."""
+    def cancel(self, except_action: str = "") -> None:
+        """Cancel the goals of these requests, except goals of the action `except_action`, and end the launch file."""
         for name, goals in self._goals.items():
-            if name != but:
-                goals.leave()
+            if name != except_action:
+                goals.cancel()
         self._end_launch()
 
     def cancel_all(self) -> None:
@@ -205,7 +205,7 @@ class Requests:
 
     def close(self) -> None:
         """Cancel all goals, end the launch file, and wait for its end."""
-        self.leave()
+        self.cancel()
         if self._end_thread is not None:
             self._end_thread.join()
 

@@ -24,11 +24,11 @@ class SampleStamps:
     """The stamps of the blocks of a stream, in nanoseconds of a clock."""
 
     def __init__(self) -> None:
-        self._next: int | None = None
+        self._next_ns: int | None = None
 
     def restart(self) -> None:
         """Start a new stream, whose stamps do not continue those of the previous one."""
-        self._next = None
+        self._next_ns = None
 
     def stamp(self, samples: int, now: int, lost: float = 0.0) -> int:
         """Return the stamp of a block's first sample.
@@ -41,11 +41,11 @@ class SampleStamps:
         """
         length = samples * NANOSECONDS_PER_SECOND // RATE
         start = max(0, now - length)
-        if self._next is not None and -_MAX_AHEAD < (behind := start - self._next) < _MAX_BEHIND:
+        if self._next_ns is not None and -_MAX_AHEAD < (behind := start - self._next_ns) < _MAX_BEHIND:
             max_correction = round(_MAX_DRIFT * length)
             jump = min(round(lost * NANOSECONDS_PER_SECOND), max(behind, 0) + _MAX_AHEAD)
-            start = self._next + min(max(behind, -max_correction), max_correction) + jump
-        self._next = start + length
+            start = self._next_ns + min(max(behind, -max_correction), max_correction) + jump
+        self._next_ns = start + length
         return start
 
 

@@ -17,7 +17,7 @@ from linkwright.diagnostics.translation import ENGLISH, language_of, localized
 from linkwright.graph import LATCHED_QOS, Clock, ClockType, Graph, ParameterType, Publisher, Subscription
 from linkwright.graph.endpoints.base import EndpointInfo
 from linkwright.graph.endpoints.commander import Commander
-from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
 from linkwright.nodes.settings import bad_value, log_unknown, positive
 from linkwright.nodes.velocity_topic import VelocityTopic
 from linkwright.speech.commands.command_file import DEFAULT_FILE, read_command_file
@@ -84,7 +84,7 @@ class VoiceCommander(SingleNode):
         self._is_voice_command = False
         self._has_stopped_early = False
         self._proposed = False
-        with starting(self._node):
+        with handle_start_errors(self._node):
             self._start()
 
     def close(self) -> None:
@@ -184,7 +184,7 @@ class VoiceCommander(SingleNode):
             _BOOL, "voice/listen", lambda message: self._on_listen(message.data), _QUEUE_DEPTH
         )
         button.watch_lost(lambda _: self._on_listen(False))
-        node.create_timer(_SOURCE_CHECK_SECONDS, self._look, clock=clock)
+        node.create_timer(_SOURCE_CHECK_SECONDS, self._check_audio_source, clock=clock)
 
     def _on_info(self, info: Any) -> None:
         try:
@@ -208,7 +208,7 @@ class VoiceCommander(SingleNode):
                 phrase("{seconds} s of sound were lost in transmission", seconds=f"{missing:.1f}"),
                 throttle_duration_sec=5.0,
             )
-        if not self._listener.hear(samples):
+        if not self._listener.add_sound(samples):
             self._presses.note_gap()
             self._node.get_logger().warning(
                 phrase("this machine is too slow for the speech engine, so sound is dropped"), throttle_duration_sec=5.0
@@ -327,9 +327,9 @@ class VoiceCommander(SingleNode):
     def _on_silence(self) -> None:
         self._silence_timer.cancel()
         if self._driver.is_endless:
-            self._conversation.rest(phrase("I hear nothing, so I stop"))
+            self._conversation.stop_driving(phrase("I hear nothing, so I stop"))
 
-    def _look(self) -> None:
+    def _check_audio_source(self) -> None:
         """Stop if the audio source is lost during a drive without a limit that was commanded by voice."""
         if self._is_voice_command and self._driver.is_endless and not self._audio_subscription.get_publisher_count():
             self._stop_without_sound()

@@ -162,7 +162,7 @@ class VoiceFeature(PageFeature):
         if not budget.spend(block.samples.size / RATE, block.lost):
             self._muted_pages.add(page)
             self._set_mode(page, Talk("off"))
-        elif self._word_book.hear(page, block.samples):  # the sound is an example of a word
+        elif self._word_book.record_sound(page, block.samples):  # the sound is an example of a word
             if self._audio_topics is not None:
                 self._audio_topics.restart()
         elif page is self._floor.talker and self._audio_topics is not None:

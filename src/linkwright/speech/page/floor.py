@@ -34,14 +34,14 @@ class Floor:
     @property
     def holder(self) -> Page | None:
         """The page that holds its button and talks, or None if no button is held."""
-        return self._first("held")
+        return self._first_page("held")
 
     @property
     def talker(self) -> Page | None:
         """The page whose sound is published, or None if no microphone is open."""
-        return self.holder or self._first("open")
+        return self.holder or self._first_page("open")
 
-    def _first(self, mode: TalkMode) -> Page | None:
+    def _first_page(self, mode: TalkMode) -> Page | None:
         return next((page for page, page_mode in self._modes.items() if page_mode == mode), None)
 
 

@@ -87,7 +87,7 @@ class WordBook:
             case AskWordsFile():
                 self._send_file(page)
 
-    def hear(self, page: Page, samples: Samples) -> bool:
+    def record_sound(self, page: Page, samples: Samples) -> bool:
         """Add sound to the recording of a page, and return whether the page is recording a word."""
         recording = self._recordings.get(page)
         if recording is not None:

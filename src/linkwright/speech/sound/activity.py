@@ -72,7 +72,7 @@ class VoiceActivity:
             self.speaking = True
         elif self.quiet_frames >= HANGOVER:
             self.speaking = False
-        self._follow(smoothed, loud=is_loud)
+        self._update_floor(smoothed, loud=is_loud)
         return self.speaking
 
     def end(self) -> None:
@@ -80,7 +80,7 @@ class VoiceActivity:
         self.speaking = False
         self._loud_frames = 0
 
-    def _follow(self, smoothed: NDArray[np.float64], *, loud: bool) -> None:
+    def _update_floor(self, smoothed: NDArray[np.float64], *, loud: bool) -> None:
         is_lower = smoothed < self.floor
         rate = np.where(is_lower, _FALL_RATE, 0.0 if loud else max(_RISE_RATE, 1.0 / self._frame_count))
         self.floor = self.floor + rate * (smoothed - self.floor)

@@ -140,8 +140,8 @@ def is_same(document: minidom.Document, tree: Document) -> bool:
     return True
 
 
-def _dom_tree(owner: minidom.Document, root: Element, kept: DomElement | None) -> DomElement:
-    dom_root, namespaces = _create(owner, root, {}, kept)
+def _dom_tree(owner: minidom.Document, root: Element, reused: DomElement | None) -> DomElement:
+    dom_root, namespaces = _create(owner, root, {}, reused)
     pending = [(root, dom_root, namespaces)]
     while pending:
         original, dom_parent, namespaces = pending.pop()
@@ -157,11 +157,11 @@ def _dom_tree(owner: minidom.Document, root: Element, kept: DomElement | None) -
 
 
 def _create(
-    owner: minidom.Document, element: Element, namespaces: Mapping[str, str], kept: DomElement | None
+    owner: minidom.Document, element: Element, namespaces: Mapping[str, str], reused: DomElement | None
 ) -> tuple[DomElement, Mapping[str, str]]:
     """Create the minidom element for an element, without its children.
 
-    If `kept` is not None, it is emptied and reused.
+    If `reused` is not None, it is emptied and reused.
 
     Returns:
         The minidom element, and the XML namespaces by prefix that apply to its content.
@@ -171,13 +171,13 @@ def _create(
         namespaces = {**namespaces, **{name.partition(":")[2]: value for name, value in declarations.items()}}
     prefix, colon, local_name = element.tag.rpartition(":")
     namespace = namespaces.get(prefix if colon else _NO_PREFIX)
-    node = kept if kept is not None else DomElement(element.tag, namespace, prefix or None, local_name)
-    if kept is not None:
-        kept.tagName = kept.nodeName = element.tag
-        for name in list(kept.attributes.keys()):
-            kept.removeAttribute(name)
-        for child in list(kept.childNodes):
-            kept.removeChild(child)
+    node = reused if reused is not None else DomElement(element.tag, namespace, prefix or None, local_name)
+    if reused is not None:
+        reused.tagName = reused.nodeName = element.tag
+        for name in list(reused.attributes.keys()):
+            reused.removeAttribute(name)
+        for child in list(reused.childNodes):
+            reused.removeChild(child)
     node.ownerDocument = owner
     node.place = (element.source, element.offset) if element.source else None
     for name, value in element.attributes.items():

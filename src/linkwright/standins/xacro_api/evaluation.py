@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 from linkwright.diagnostics import LinkwrightError, phrase
 from linkwright.standins.xacro_api.errors import XacroException, translate_error
 from linkwright.standins.xacro_api.stacks import STATE, abs_filename_spec
-from linkwright.xacro.expressions import yamldata
+from linkwright.xacro.expressions import yaml_data
 from linkwright.xacro.expressions.scope import Namespace, Scope, truth
 from linkwright.xacro.expressions.symbols import tokenize
 from linkwright.xacro.expressions.template import substitute
@@ -111,12 +111,12 @@ def create_global_symbols() -> dict[str, Any]:
 class ConstructUnits(enum.Enum):
     """The YAML tags for values with units, each with the size of the unit in metres or radians."""
 
-    radians = ("!radians", yamldata.UNITS["!radians"])
-    degrees = ("!degrees", yamldata.UNITS["!degrees"])
-    meters = ("!meters", yamldata.UNITS["!meters"])
-    millimeters = ("!millimeters", yamldata.UNITS["!millimeters"])
-    foot = ("!foot", yamldata.UNITS["!foot"])
-    inches = ("!inches", yamldata.UNITS["!inches"])
+    radians = ("!radians", yaml_data.UNITS["!radians"])
+    degrees = ("!degrees", yaml_data.UNITS["!degrees"])
+    meters = ("!meters", yaml_data.UNITS["!meters"])
+    millimeters = ("!millimeters", yaml_data.UNITS["!millimeters"])
+    foot = ("!foot", yaml_data.UNITS["!foot"])
+    inches = ("!inches", yaml_data.UNITS["!inches"])
 
 
 class YamlDictWrapper(dict[Any, Any]):
@@ -158,7 +158,7 @@ class _SymbolView(dict[str, Any]):
     def __getitem__(self, name: str) -> Any:
         value = self._table[name]
         if isinstance(value, (YamlDictWrapper, YamlListWrapper)):
-            return yamldata.dotted(value)
+            return yaml_data.dotted(value)
         if isinstance(value, dict) and hasattr(value, "unevaluated"):  # the value is the symbol table of a namespace
             return Namespace(None, self._session, _SymbolView(value, self._session))
         return value

@@ -240,7 +240,7 @@ def _expand(tree: Document, file: str | None, mappings: Mapping[str, Any] | None
     session = StackSession(inputs)
     STATE.arguments = session.arguments
     if descriptions is not None and call is not None:
-        descriptions.begin(call)
+        descriptions.record_read_time(call)
     try:
         with recursion_limit_for(inputs.limits):
             document = StackExpander(session, session.directives, session.call).document(tree)

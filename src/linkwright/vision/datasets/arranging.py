@@ -34,13 +34,13 @@ class Shot:
     Attributes:
         optics: the camera's projection.
         pose: the camera's pose; the camera looks along x, with z up.
-        shown: the objects that were placed; some may be out of view.
+        placed_props: the objects that were placed; some may be out of view.
         structures: the geoms of the surroundings that are not hidden.
     """
 
     optics: Optics
     pose: Transform
-    shown: tuple[Prop, ...]
+    placed_props: tuple[Prop, ...]
     structures: tuple[int, ...]
 
 
@@ -176,7 +176,7 @@ def _choose_props(stage: Stage, options: Options, generator: np.random.Generator
     for prop in stage.props:
         by_class.setdefault(prop.label, []).append(prop)
     chosen: list[Prop] = []
-    for _ in range(int(generator.integers(1, options.most + 1))):
+    for _ in range(int(generator.integers(1, options.max_objects + 1))):
         classes = [label for label, props in by_class.items() if props]
         if not classes:
             break
@@ -189,7 +189,7 @@ def _distance_range(prop: Prop, focal: float, options: Options) -> tuple[float, 
     """Return the distances in m at which an object is neither too large nor too small in an image."""
     spans = np.sort(prop.corners.max(axis=0) - prop.corners.min(axis=0))
     nearest = max(focal * spans[2] / (_MAX_LENGTH * options.width), _MIN_DISTANCE)
-    farthest = min(spans[2] / (_MIN_LENGTH * options.width), spans[1] / (1.2 * max(options.least_size, 1))) * focal
+    farthest = min(spans[2] / (_MIN_LENGTH * options.width), spans[1] / (1.2 * max(options.min_size, 1))) * focal
     return float(min(nearest, _MAX_DISTANCE / 2)), float(np.clip(farthest, 1.5 * nearest, _MAX_DISTANCE))
 
 
@@ -239,7 +239,7 @@ def _place_prop(stage: Stage, prop: Prop, place: tuple[float, float], generator:
     if prop.is_round:  # the bounding box of a rotated ball is larger than the ball
         center = (prop.corners.min(axis=0) + prop.corners.max(axis=0)) / 2
         height = float(center[2] - (rotation @ center)[2])
-    stage.put(
+    stage.place_prop(
         prop,
         np.array([place[0] + offset[0], place[1] + offset[1], stage.floor + height + height_above_floor]),
         rotation,

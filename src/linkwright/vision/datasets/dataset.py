@@ -78,7 +78,7 @@ def make_dataset(
         folder = DatasetFolder(path, studio.classes, (options.width, options.height), tuple(formats), options.form)
         folder.open(force=force, append=append)
         card = _run_card(source, studio)
-        numbers = range(folder.first, folder.first + images)
+        numbers = range(folder.first_number, folder.first_number + images)
         in_this_process = workers == 1 or images <= IMAGES_PER_PATTERN_SET
         samples = map(studio.make, numbers) if in_this_process else make_in_processes(source, numbers, workers)
         sheet_samples: list[LabelledImage] = []
@@ -87,7 +87,7 @@ def make_dataset(
             for sample in _yield_and_close(samples):
                 folder.add(sample)
                 added += 1
-                if sample.index < folder.first + MOST:
+                if sample.index < folder.first_number + MOST:
                     sheet_samples.append(sample)
                 progress(added)
         except KeyboardInterrupt:
@@ -124,6 +124,6 @@ def _run_card(source: Source, studio: Studio) -> dict[str, Any]:
         "version": __version__,
         "worlds": worlds,
         "added": list(source.added),
-        "renderer": str(studio.way),
+        "renderer": str(studio.render_method),
         "options": asdict(source.options),
     }

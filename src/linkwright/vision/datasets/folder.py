@@ -39,7 +39,7 @@ class DatasetFolder:
 
     Attributes:
         path: the folder.
-        first: the number of the first image of this run.
+        first_number: the number of the first image of this run.
         count: the number of images in all splits.
     """
 
@@ -47,7 +47,7 @@ class DatasetFolder:
         self, path: Path, classes: Sequence[str], size: tuple[int, int], formats: Sequence[str], form: str
     ) -> None:
         self.path = path
-        self.first = 0
+        self.first_number = 0
         self._classes, self._size, self._formats, self._form = tuple(classes), size, tuple(formats), form
         self._images: dict[str, list[dict[str, Any]]] = {split: [] for split in SPLITS}
         self._annotations: dict[str, list[dict[str, Any]]] = {split: [] for split in SPLITS}
@@ -137,7 +137,7 @@ class DatasetFolder:
         return None
 
     def _write(self, card: Mapping[str, Any]) -> None:
-        this_run = {**card, "first": self.first, "images": self.count - sum(run["images"] for run in self._runs)}
+        this_run = {**card, "first": self.first_number, "images": self.count - sum(run["images"] for run in self._runs)}
         splits = {split: len(images) for split, images in self._images.items()}
         content = {
             "form": _FORMAT_VERSION,
@@ -216,7 +216,7 @@ class DatasetFolder:
             ]
         self._runs = card["made"]
         numbers = [image["id"] for images in self._images.values() for image in images]
-        self.first = max(numbers, default=-1) + 1
+        self.first_number = max(numbers, default=-1) + 1
 
     def _drop(self, count: int) -> None:
         """Remove the last images and their labels."""
@@ -254,7 +254,7 @@ def _coco(sample: LabelledImage, width: int, height: int) -> list[dict[str, Any]
     annotations = []
     for label in sample.labels:
         left, top, right, bottom = label.box
-        full_box = label.whole
+        full_box = label.full_box
         annotations.append(
             {
                 "image_id": sample.index,

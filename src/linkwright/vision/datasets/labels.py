@@ -29,7 +29,7 @@ class Label:
     Attributes:
         label: the index of its class.
         box: the box around its visible part, in pixels of the image.
-        whole: the box around the whole object, without occlusion; it may reach beyond the image.
+        full_box: the box around the whole object, without occlusion; it may reach beyond the image.
         area: the number of its visible pixels.
         visibility: the visible pixels divided by the pixels of the object without occlusion and truncation.
         truncated: whether the object reaches beyond the image.
@@ -39,7 +39,7 @@ class Label:
 
     label: int
     box: Box
-    whole: Box
+    full_box: Box
     area: int
     visibility: float
     truncated: bool
@@ -47,24 +47,24 @@ class Label:
     counts: tuple[int, ...]
 
 
-def label_image(stage: Stage, shot: Shot, geoms: Pixels, least_size: int, least_visible: float) -> list[Label]:
+def label_image(stage: Stage, shot: Shot, geoms: Pixels, min_size: int, min_visible: float) -> list[Label]:
     """Return the labels of all objects that are visible in an image.
 
     Args:
         stage: the world in the state of the image.
         shot: the camera and the objects.
         geoms: the geom at each pixel, -1 for none, shape (height, width).
-        least_size: the minimum length in pixels of a box's shorter side; a smaller object is ignored. For an object's
+        min_size: the minimum length in pixels of a box's shorter side; a smaller object is ignored. For an object's
                 largest geom half of it is enough.
-        least_visible: the minimum visible fraction of an object and of its largest geom; a less visible object is
+        min_visible: the minimum visible fraction of an object and of its largest geom; a less visible object is
             ignored.
     """
     numbers = np.zeros(stage.simulation.model.ngeom + 1, dtype=np.uint8)  # the last entry is for geom -1: none
-    for number, prop in enumerate(shot.shown, start=1):
+    for number, prop in enumerate(shot.placed_props, start=1):
         numbers[prop.geoms] = number
     objects = numbers[geoms]
     labels = []
-    for number, prop in enumerate(shot.shown, start=1):
+    for number, prop in enumerate(shot.placed_props, start=1):
         box = box_of(objects == number)
         if box is None:
             continue
@@ -74,11 +74,11 @@ def label_image(stage: Stage, shot: Shot, geoms: Pixels, least_size: int, least_
         full_box, full_count, main_count = _measure_whole(stage, shot, prop, box)
         full_count = max(full_count, area)
         main_mask = geoms[top:bottom, left:right] == prop.main
-        is_small = min(right - left, bottom - top) < least_size or _shorter_side(main_mask) < least_size / 2
+        is_small = min(right - left, bottom - top) < min_size or _shorter_side(main_mask) < min_size / 2
         is_truncated = (
             full_box[0] < 0 or full_box[1] < 0 or full_box[2] > geoms.shape[1] or full_box[3] > geoms.shape[0]
         )
-        is_hidden = area < least_visible * full_count or int(np.count_nonzero(main_mask)) < least_visible * main_count
+        is_hidden = area < min_visible * full_count or int(np.count_nonzero(main_mask)) < min_visible * main_count
         is_ignored = is_small or is_hidden
         labels.append(
             Label(prop.label, box, full_box, area, area / full_count, is_truncated, is_ignored, runs_of(mask))

@@ -38,7 +38,7 @@ def light(stage: Stage, generator: np.random.Generator) -> None:
 
 def paint(stage: Stage, shot: Shot, generator: np.random.Generator) -> None:
     """Recolour all objects and surroundings, where most objects keep their colour or get a similar one."""
-    for prop in shot.shown:
+    for prop in shot.placed_props:
         choice, new_colours = generator.random(), {}
         is_textured = generator.random() < 0.3
         number = int(generator.integers(1 << 16))

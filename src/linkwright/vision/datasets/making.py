@@ -77,7 +77,7 @@ class Studio:
         classes: the names of the classes.
         unused: the names of classes that have no object in any world.
         worlds: the files of the worlds.
-        way: the rendering method, for the card.
+        render_method: the rendering method, for the card.
 
     Raises:
         LinkwrightError: VISION202 there is nothing to label; VISION204 Pillow is missing; an error in a world.
@@ -107,7 +107,7 @@ class Studio:
             Stage(simulation, found, self._options.copies, self._options.distractors)
             for simulation, found in zip(simulations, objects, strict=True)
         ]
-        self.way = self._stages[0].renderer.way
+        self.render_method = self._stages[0].renderer.method
         self._pattern_sets: dict[int, int] = {}
         self._camera = Camera()
 
@@ -121,18 +121,18 @@ class Studio:
         generator = np.random.default_rng((options.seed, _IMAGE_STREAM, index))
         stage.begin()
         shot = arrange(stage, options, generator)
-        if "lights" not in options.kept:
+        if "lights" not in options.fixed_properties:
             light(stage, generator)
-        if "colours" not in options.kept:
+        if "colours" not in options.fixed_properties:
             paint(stage, shot, generator)
         image = stage.renderer.render(shot.optics, shot.pose, Channels.COLOUR | Channels.GEOMS)
         assert image.colour is not None
         assert image.geoms is not None
-        labels = label_image(stage, shot, image.geoms, options.least_size, options.least_visible)
+        labels = label_image(stage, shot, image.geoms, options.min_size, options.min_visible)
         colour = image.colour
-        if "lights" not in options.kept:
+        if "lights" not in options.fixed_properties:
             fill_backdrop(colour, image.geoms, generator)
-        if "lens" not in options.kept:
+        if "lens" not in options.fixed_properties:
             colour = self._camera.develop(colour, generator)
         return LabelledImage(index, split_of(index, options), self._encode(colour, generator), tuple(labels))
 
@@ -147,7 +147,7 @@ class Studio:
         if self._options.form == "png":
             image.save(file, "PNG", compress_level=1)
         else:
-            quality = 92 if "lens" in self._options.kept else int(generator.integers(60, 96))
+            quality = 92 if "lens" in self._options.fixed_properties else int(generator.integers(60, 96))
             image.save(file, "JPEG", quality=quality)
         return file.getvalue()
 

@@ -19,11 +19,12 @@ class Options:
         splits: the fractions of train, val and test.
         copies: the minimum number of objects of each class.
         distractors: the number of objects without a label in each world.
-        most: the maximum number of objects placed in an image.
-        kept: what is not randomised: any of ``lights``, ``colours`` (with patterns) and ``lens`` (with sensor).
-        least_size: the minimum length in pixels of a box's shorter side; smaller objects are ignored. For an object's
+        max_objects: the maximum number of objects placed in an image.
+        fixed_properties: what is not randomised: any of ``lights``, ``colours`` (with patterns) and ``lens`` (with
+            sensor).
+        min_size: the minimum length in pixels of a box's shorter side; smaller objects are ignored. For an object's
             largest geom half of it is enough.
-        least_visible: the minimum visible fraction of an object and of its largest geom; a less visible object is
+        min_visible: the minimum visible fraction of an object and of its largest geom; a less visible object is
             ignored.
         form: the image format, ``jpg`` or ``png``.
     """
@@ -34,8 +35,8 @@ class Options:
     splits: tuple[float, float, float] = (0.8, 0.1, 0.1)
     copies: int = 3
     distractors: int = 6
-    most: int = 8
-    kept: tuple[str, ...] = ()
-    least_size: int = 12
-    least_visible: float = 0.5
+    max_objects: int = 8
+    fixed_properties: tuple[str, ...] = ()
+    min_size: int = 12
+    min_visible: float = 0.5
     form: str = "jpg"

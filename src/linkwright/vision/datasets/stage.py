@@ -133,7 +133,7 @@ class Stage:
         """Hide geoms by moving them far away."""
         self.simulation.data.geom_xpos[geoms] = _HIDDEN_POSITION
 
-    def put(self, prop: Prop, position: Array, rotation: Array) -> None:
+    def place_prop(self, prop: Prop, position: Array, rotation: Array) -> None:
         """Place an object.
 
         Args:

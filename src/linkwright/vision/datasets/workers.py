@@ -46,8 +46,8 @@ def make_in_processes(source: Source, numbers: range, workers: int) -> Iterator[
                 sample = worker.result()
                 if isinstance(sample, LabelledImage):
                     yield sample
-                    worker.left -= 1
-                if not worker.left:
+                    worker.remaining_count -= 1
+                if not worker.remaining_count:
                     if pending_ranges:
                         worker.assign(pending_ranges.popleft())
                     else:
@@ -70,7 +70,7 @@ class _Worker:
     def __init__(self, source: Source) -> None:
         spawn = multiprocessing.get_context("spawn")
         self.connection, child_connection = spawn.Pipe()
-        self.left = 0
+        self.remaining_count = 0
         self._process = spawn.Process(target=_run_worker, args=(source, child_connection), daemon=True)
         previous_handler = signal.signal(signal.SIGINT, signal.SIG_IGN)  # inherited: only the parent handles Ctrl-C
         try:
@@ -81,7 +81,7 @@ class _Worker:
 
     def assign(self, numbers: range) -> None:
         """Send the process the numbers of the images to make next."""
-        self.left = len(numbers)
+        self.remaining_count = len(numbers)
         with suppress(OSError):  # the process has died, which `result` reports
             self.connection.send(numbers)
 

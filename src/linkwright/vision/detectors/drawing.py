@@ -33,7 +33,7 @@ def colour_of(name: str) -> tuple[int, int, int]:
     return red, green, blue
 
 
-def drawn(image: NDArray[np.uint8], detections: Detections) -> NDArray[np.uint8]:
+def draw_detections(image: NDArray[np.uint8], detections: Detections) -> NDArray[np.uint8]:
     """Return a copy of the image with a box, a name and a score for each detection.
 
     Args:

@@ -70,7 +70,7 @@ class EfficientDetDetector(Detector):
     def detect(self, image: NDArray[np.uint8], limits: Limits) -> Detections:
         """Detect objects in an image, stretched to the input size as in TFLite's own library."""
         if not image.size:
-            return Detections.none(self._names)
+            return Detections.empty(self._names)
         cv2 = load_opencv()
         self._interpreter.set_tensor(self._input, cv2.resize(image, self._size)[np.newaxis])
         self._interpreter.invoke()

@@ -60,16 +60,16 @@ class LineDetector(Detector):
         height = image.shape[0]
         rows = round(height * self._part)
         if not image.size or rows < 1:
-            return Detections.none(_NAMES)
+            return Detections.empty(_NAMES)
         searched_region = np.ascontiguousarray(image[height - rows :])
         mask = mask_of(cv2.cvtColor(searched_region, cv2.COLOR_RGB2HSV), self._colour)
         count, labels, statistics, _ = cv2.connectedComponentsWithStats(mask, connectivity=8)
         if count < 2:
-            return Detections.none(_NAMES)
+            return Detections.empty(_NAMES)
         largest = 1 + int(statistics[1:, cv2.CC_STAT_AREA].argmax())
         left, top, width, line_height, area = statistics[largest].tolist()
         if area < self._least_area:
-            return Detections.none(_NAMES)
+            return Detections.empty(_NAMES)
         row_share = float((labels == largest).any(axis=1).mean())
         image_top = height - rows + top
         return select_detections(

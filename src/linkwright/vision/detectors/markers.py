@@ -61,7 +61,7 @@ class MarkerDetector(Detector):
     def detect(self, image: NDArray[np.uint8], limits: Limits) -> Detections:
         """Detect the markers of the dictionary."""
         if min(image.shape[:2]) < _MIN_IMAGE_SIDE:
-            return Detections.none(self._names)
+            return Detections.empty(self._names)
         corners, ids, _ = self._detector.detectMarkers(_grey(image))
         classes = [] if ids is None else [int(number) for number in np.ravel(ids)]
         marker_corners = [np.asarray(corner, np.float32).reshape(4, 2) + 0.5 for corner in corners]
@@ -103,7 +103,7 @@ class QrDetector(Detector):
     def detect(self, image: NDArray[np.uint8], limits: Limits) -> Detections:
         """Detect and read QR codes."""
         if min(image.shape[:2]) < _MIN_IMAGE_SIDE:
-            return Detections.none(())
+            return Detections.empty(())
         grey = _grey(image)
         has_codes, texts, corners, _ = self._detector.detectAndDecodeMulti(grey)
         codes = [np.asarray(corner, np.float32).reshape(4, 2) for corner in corners] if has_codes else []

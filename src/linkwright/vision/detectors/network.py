@@ -80,7 +80,7 @@ class NetworkDetector(Detector):
             LinkwrightError: VISION105 the network fails, VISION106 its outputs contain NaN or infinite values.
         """
         if not image.size:
-            return Detections.none(self._names)
+            return Detections.empty(self._names)
         pixels, letterbox = letterbox_image(image, self._size, self._stride)
         candidates = self._candidates(
             np.asarray(self._run(to_tensor(pixels, self._kind))[0], np.float32), limits.threshold
@@ -92,9 +92,11 @@ class NetworkDetector(Detector):
             boxes, scores, classes = boxes[is_wanted], scores[is_wanted], classes[is_wanted]
         if self._layout.form is Form.FINAL:
             has_name = (classes >= 0) & (classes < len(self._names))
-            kept_indices = np.flatnonzero(has_name)[np.argsort(-scores[has_name], kind="stable")][: limits.most]
+            kept_indices = np.flatnonzero(has_name)[np.argsort(-scores[has_name], kind="stable")][
+                : limits.max_detections
+            ]
         else:
-            kept_indices = non_maximum_suppression(boxes, scores, classes, limits.iou, limits.most)
+            kept_indices = non_maximum_suppression(boxes, scores, classes, limits.iou, limits.max_detections)
         return Detections(
             letterbox.boxes_in_image(boxes[kept_indices]), scores[kept_indices], classes[kept_indices], self._names
         )

@@ -33,7 +33,7 @@ def select_detections(
         for index, score in enumerate(scores)
         if score >= limits.threshold and (limits.classes is None or names[classes[index]] in limits.classes)
     ]
-    selected = sorted(allowed, key=lambda index: -scores[index])[: limits.most]
+    selected = sorted(allowed, key=lambda index: -scores[index])[: limits.max_detections]
     return Detections(
         np.array([boxes[index] for index in selected], np.float32).reshape(-1, 4),
         np.array([scores[index] for index in selected], np.float32),

@@ -19,7 +19,7 @@ from linkwright.geometry.single import Transform, compose, rotate
 from linkwright.graph import DEFAULT_QOS, SENSOR_DATA_QOS, Graph
 from linkwright.messages import get_message
 from linkwright.nodes.frame_poses import FramePoses
-from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
 from linkwright.nodes.settings import log_unknown, positive
 from linkwright.perception.nodes.depthimage_to_laserscan import read_depths
 from linkwright.vision.detectors.drawing import colour_of
@@ -63,7 +63,7 @@ class Detect3DNode(SingleNode):
         self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
         node = self._node
         declare = node.declare_parameter
-        with starting(node):
+        with handle_start_errors(node):
             self._target_frame: str = declare("target_frame", "base_link").value
             divisor = positive(node, "depth_image_units_divisor", declare("depth_image_units_divisor", 1000).value)
             self._max_depth_difference = positive(
@@ -198,7 +198,7 @@ def _make_markers(form: DetectionFormat, found: Any, positions: list[Place]) -> 
     marker_array.markers.append(marker_class(header=found.header, action=marker_class.DELETEALL))
     for number, (detection, position) in enumerate(zip(found.detections, positions, strict=True)):
         name, _ = form.best(detection)
-        box_3d = form.place(detection)
+        box_3d = form.box_3d(detection)
         box, label = (
             marker_class(header=found.header, ns=ns, id=number, type=shape, action=marker_class.ADD)
             for ns, shape in (("boxes", marker_class.CUBE), ("labels", marker_class.TEXT_VIEW_FACING))

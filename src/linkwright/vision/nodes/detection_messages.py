@@ -13,17 +13,17 @@ from linkwright.vision.detections import Detections
 from linkwright.vision.nodes.dialects import VISION, YOLO
 
 
-def vision_message(header: Any, found: Detections) -> Any:
+def vision_message(header: Any, detections: Detections) -> Any:
     """Convert detections to vision_msgs/msg/Detection2DArray, with the class name as ``class_id``."""
     detection_class, hypothesis_class = (
         get_message("vision_msgs/msg/Detection2D"),
         get_message("vision_msgs/msg/ObjectHypothesisWithPose"),
     )
     detection_messages = []
-    for index, (x, y, width, height) in enumerate(_centres_and_sizes(found)):
+    for index, (x, y, width, height) in enumerate(_centres_and_sizes(detections)):
         result = hypothesis_class()
-        result.hypothesis.class_id = found.name(index)
-        result.hypothesis.score = float(found.scores[index])
+        result.hypothesis.class_id = detections.name(index)
+        result.hypothesis.score = float(detections.scores[index])
         detection = detection_class(header=header, results=[result])
         detection.bbox.center.position.x, detection.bbox.center.position.y = x, y
         detection.bbox.size_x, detection.bbox.size_y = width, height
@@ -31,13 +31,13 @@ def vision_message(header: Any, found: Detections) -> Any:
     return get_message(VISION)(header=header, detections=detection_messages)
 
 
-def yolo_message(header: Any, found: Detections) -> Any:
+def yolo_message(header: Any, detections: Detections) -> Any:
     """Convert detections to yolo_msgs/msg/DetectionArray."""
     detection_class = get_message("yolo_msgs/msg/Detection")
     detection_messages = []
-    for index, (x, y, width, height) in enumerate(_centres_and_sizes(found)):
-        detection = detection_class(class_id=int(found.classes[index]), class_name=found.name(index))
-        detection.score = float(found.scores[index])
+    for index, (x, y, width, height) in enumerate(_centres_and_sizes(detections)):
+        detection = detection_class(class_id=int(detections.classes[index]), class_name=detections.name(index))
+        detection.score = float(detections.scores[index])
         detection.bbox.center.position.x, detection.bbox.center.position.y = x, y
         detection.bbox.size.x, detection.bbox.size.y = width, height
         detection_messages.append(detection)

@@ -55,7 +55,7 @@ class DetectionFormat(ABC):
         """Return a detection with a box in metres, whose pose is in the frame of the header."""
 
     @abstractmethod
-    def place(self, detection: Any) -> Any:
+    def box_3d(self, detection: Any) -> Any:
         """Return the box in metres of a detection: a message with ``center`` and ``size``."""
 
 
@@ -82,7 +82,7 @@ class _Vision(DetectionFormat):
             positioned.results.append(result)
         return positioned
 
-    def place(self, detection: Any) -> Any:
+    def box_3d(self, detection: Any) -> Any:
         return detection.bbox
 
 
@@ -101,7 +101,7 @@ class _Yolo(DetectionFormat):
         _set_box(positioned.bbox3d, pose, size)
         return positioned
 
-    def place(self, detection: Any) -> Any:
+    def box_3d(self, detection: Any) -> Any:
         return detection.bbox3d
 
 

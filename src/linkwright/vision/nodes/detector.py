@@ -53,12 +53,12 @@ from linkwright.graph.loop.node_handle import MutuallyExclusiveCallbackGroup
 from linkwright.graph.parameters.parameter import Range
 from linkwright.images import BadImageError, ImageSource, RangeFinder, Unpacker, decode_image
 from linkwright.messages import get_message, get_service
-from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
 from linkwright.nodes.settings import bad_value, log_unknown
 from linkwright.perception.nodes.lazy import LazySubscriptions
 from linkwright.vision.detections import Detections
 from linkwright.vision.detector import Detector, Limits
-from linkwright.vision.detectors.drawing import drawn
+from linkwright.vision.detectors.drawing import draw_detections
 from linkwright.vision.detectors.options import MAX_SIZE, DetectorOptions
 from linkwright.vision.detectors.registry import DEFAULT_DETECTOR, make_detector
 from linkwright.vision.detectors.settings import setting_error
@@ -107,7 +107,7 @@ class DetectorNode(SingleNode):
         self._graph = graph
         self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
         node, dialect = self._node, self.DIALECT
-        with starting(node):
+        with handle_start_errors(node):
             self._declare(dialect)
             settings = self._detector_options(dialect)
             self._limits = self._make_limits({}, None)
@@ -130,7 +130,7 @@ class DetectorNode(SingleNode):
         set_classes, callback_group = get_service("yolo_msgs/srv/SetClasses"), MutuallyExclusiveCallbackGroup()
         node.create_service(set_classes, "set_classes", self._on_set_classes, callback_group=callback_group)
         node.add_on_set_parameters_callback(self._check)
-        node.add_post_set_parameters_callback(lambda _: self._follow())
+        node.add_post_set_parameters_callback(lambda _: self._update_limits())
         self._result_condition = node.create_guard_condition(self._run_results)
         self._subscriptions: LazySubscriptions | None = None
         load = partial(self._load, self._value(dialect.model), settings)
@@ -152,7 +152,7 @@ class DetectorNode(SingleNode):
         node.declare_parameter("imgsz_width", 0, _SIDE_DESCRIPTOR)
         node.declare_parameter(dialect.threshold, dialect.default_threshold, _SHARE_DESCRIPTOR)
         node.declare_parameter(dialect.iou, dialect.default_iou, _SHARE_DESCRIPTOR)
-        node.declare_parameter(dialect.most, dialect.default_max_detections)
+        node.declare_parameter(dialect.max_detections_parameter, dialect.default_max_detections)
         node.declare_parameter(_CLASSES_PARAMETER, [""], _ANY_TYPE)
         node.declare_parameter("enable", True)
         node.declare_parameter("max_rate", 0.0, _RATE_DESCRIPTOR)
@@ -217,18 +217,18 @@ class DetectorNode(SingleNode):
         dialect = self.DIALECT
         threshold, iou, max_detections, classes = (
             new_values.get(name, self._value(name))
-            for name in (dialect.threshold, dialect.iou, dialect.most, _CLASSES_PARAMETER)
+            for name in (dialect.threshold, dialect.iou, dialect.max_detections_parameter, _CLASSES_PARAMETER)
         )
         if max_detections < 1:
-            raise bad_value(dialect.most, max_detections, self._node.get_name())
+            raise bad_value(dialect.max_detections_parameter, max_detections, self._node.get_name())
         return Limits(
             threshold,
             iou,
             max_detections,
-            None if detector_classes is None else self._wanted(classes, detector_classes),
+            None if detector_classes is None else self._requested_classes(classes, detector_classes),
         )
 
-    def _wanted(self, classes: Any, detector_classes: Sequence[str]) -> frozenset[str] | None:
+    def _requested_classes(self, classes: Any, detector_classes: Sequence[str]) -> frozenset[str] | None:
         entries = classes if isinstance(classes, Sequence) and not isinstance(classes, str) else [classes]
         requested = []
         for class_name in entries:
@@ -258,7 +258,7 @@ class DetectorNode(SingleNode):
             )
         return SetParametersResult(True)
 
-    def _follow(self) -> None:
+    def _update_limits(self) -> None:
         self._limits = self._make_limits({}, self._names)
 
     def _on_enable(self, request: Any, response: Any) -> Any:
@@ -277,7 +277,7 @@ class DetectorNode(SingleNode):
         return [self._node.create_subscription(message_class, self._source.topic, self._receive, self._qos)]
 
     def _receive(self, message: Any) -> None:
-        self._watch.came()
+        self._watch.record_image()
         if not self._value("enable") or self._is_too_early():
             return
         draws_boxes = any(publisher.get_subscription_count() for publisher in self._image_publishers)
@@ -307,15 +307,15 @@ class DetectorNode(SingleNode):
             self._queue_result(partial(self._fail, _detector_failure(error)))
             return None
         self._queue_result(partial(self._begin, detector))
-        return partial(self._look, detector)
+        return partial(self._detect, detector)
 
-    def _look(self, detector: Detector, task: _Task) -> None:
+    def _detect(self, detector: Detector, task: _Task) -> None:
         """Detect objects in an image, and queue the result for the node's callback."""
         try:
             message = self._unpacker.image(task.message, self._source.transport)
             image = decode_image(message, self._ranges).rgb()
             detections = detector.detect(image, task.limits)
-            image_with_boxes = drawn(image, detections) if task.draws_boxes else None
+            image_with_boxes = draw_detections(image, detections) if task.draws_boxes else None
         except (BadImageError, LinkwrightError) as error:
             self._queue_result(partial(self._log_error, str(error)))
         except Exception as error:  # noqa: BLE001 - a detector of another package may raise anything

@@ -24,8 +24,8 @@ class Dialect:
         default_threshold: the default of `threshold`.
         iou: the parameter for the maximum overlap of boxes of the same class.
         default_iou: the default of `iou`.
-        most: the parameter for the maximum number of detections in an image.
-        default_max_detections: the default of `most`.
+        max_detections_parameter: the parameter for the maximum number of detections in an image.
+        default_max_detections: the default of `max_detections_parameter`.
         image_topic: the parameter for the topic of images.
         images: the default of `image_topic`, or the fixed topic if there is no such parameter.
         output_topic: the parameter for the topic of detections.
@@ -40,7 +40,7 @@ class Dialect:
     default_threshold: float = 0.5
     iou: str = "iou"
     default_iou: float = 0.5
-    most: str = "max_det"
+    max_detections_parameter: str = "max_det"
     default_max_detections: int = 300
     image_topic: str = "input_image_topic"
     images: str = "image_raw"
@@ -58,7 +58,7 @@ YOLOV5_ROS = Dialect(
     default_threshold=0.25,
     iou="iou_threshold",
     default_iou=0.45,
-    most="maximum_detections",
+    max_detections_parameter="maximum_detections",
     default_max_detections=1000,
     output_topic="output_topic",
     debug_images=("image_out",),

@@ -36,13 +36,13 @@ class ImageWatch:
         self._quiet, self._allowed_periods = 0, 1  # both in timer periods
         # Use the steady clock: simulated time may be paused, which would delay the warning.
         clock = Clock(clock_type=ClockType.STEADY_TIME, timebase=node.get_clock().timebase)
-        node.create_timer(_PERIOD_SECONDS, self._look, clock=clock)
+        node.create_timer(_PERIOD_SECONDS, self._check_images, clock=clock)
 
-    def came(self) -> None:
+    def record_image(self) -> None:
         """Record that an image has arrived."""
         self._has_new_image = True
 
-    def _look(self) -> None:
+    def _check_images(self) -> None:
         has_new_image, self._has_new_image = self._has_new_image, False
         if has_new_image or not self._is_waiting():
             self._quiet = 0

@@ -21,7 +21,7 @@ class Nav2Trip:
     """
 
     def __init__(self, node: Node, on_end: Callable[[bool], None]) -> None:
-        self._node, self._ended = node, on_end
+        self._node, self._on_end = node, on_end
         self._client = ActionClient(node, _ACTION, "navigate_to_pose")
         self._active_trip: object | None = None
         self._goal_handle: Any = None
@@ -78,4 +78,4 @@ class Nav2Trip:
     def _finish(self, trip: object, status: int) -> None:
         if trip is self._active_trip:
             self._active_trip = self._goal_handle = None
-            self._ended(status == GoalStatus.SUCCEEDED)
+            self._on_end(status == GoalStatus.SUCCEEDED)

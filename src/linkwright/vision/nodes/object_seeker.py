@@ -21,13 +21,13 @@ from linkwright.graph import SENSOR_DATA_QOS, EndpointInfo, Graph
 from linkwright.graph.endpoints.commander import Commander, describe_lost_publisher
 from linkwright.messages import get_message
 from linkwright.nodes.frame_poses import FramePoses
-from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
 from linkwright.nodes.settings import bad_value, log_unknown, positive
 from linkwright.nodes.velocity_topic import VelocityTopic
 from linkwright.vision.nodes.nav2_trip import Nav2Trip
 from linkwright.vision.nodes.seen_objects import SeenObject, SeenObjects
 from linkwright.vision.places.seeking import Phase, Seeker, SeekSettings, View
-from linkwright.vision.places.words import Answer, ObjectRequest, Sighting, answer, described, requested
+from linkwright.vision.places.words import Answer, ObjectRequest, Sighting, answer_phrase, described, requested
 
 _QUEUE_DEPTH = 10
 _STEP_SECONDS = 0.05
@@ -54,7 +54,7 @@ class ObjectSeeker(SingleNode):
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
         node = self._node
-        with starting(node):
+        with handle_start_errors(node):
             self._declare()
             log_unknown(node)
         self._poses = FramePoses(node, "the position of the robot is unknown:")
@@ -174,7 +174,7 @@ class ObjectSeeker(SingleNode):
         """Send nav2 to the found object, or return False if nav2 is not configured or not available."""
         trip, target = self._trip, self._target
         pose = self._poses.pose(self._fixed, self._base, 0)
-        if trip is None or target is None or pose is None or self._seeker.follow or not trip.is_served:
+        if trip is None or target is None or pose is None or self._seeker.follows_object or not trip.is_served:
             return False
         distance = self._seeker.settings.distance + target.radius
         trip.begin(self._fixed, (pose[0], pose[1]), (target.x, target.y), distance)
@@ -220,7 +220,7 @@ class ObjectSeeker(SingleNode):
         candidates = [
             seen_object
             for seen_object in self._seen_objects.objects
-            if self._request.is_it(seen_object.name, seen_object.colour, seen_object.shape, seen_object.score)
+            if self._request.matches(seen_object.name, seen_object.colour, seen_object.shape, seen_object.score)
         ]
         previous = self._target
         if previous is not None:
@@ -253,7 +253,7 @@ class ObjectSeeker(SingleNode):
 
     def _answer(self, event: Answer) -> None:
         if self._request is not None:
-            self._speak(answer(event, self._request, self._answer_language))
+            self._speak(answer_phrase(event, self._request, self._answer_language))
 
     def _speak(self, text: str) -> None:
         self._node.get_logger().info(text)

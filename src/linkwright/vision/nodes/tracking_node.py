@@ -11,7 +11,7 @@ from typing import Any, ClassVar
 
 from linkwright.graph import Graph, ParameterDescriptor
 from linkwright.messages import get_message
-from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
 from linkwright.nodes.settings import bad_value, log_unknown, positive
 from linkwright.vision.nodes.detection_reading import VISION_FORMAT, YOLO_FORMAT, DetectionFormat
 from linkwright.vision.places.tracker import Tracker, TrackerSettings
@@ -43,7 +43,7 @@ class TrackingNode(SingleNode):
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
         node = self._node
-        with starting(node):
+        with handle_start_errors(node):
             for name in self.IGNORED:
                 node.declare_parameter(name, None, _ANY_TYPE)
             self._tracker = Tracker(self._settings())
@@ -57,7 +57,7 @@ class TrackingNode(SingleNode):
         return TrackerSettings(
             high=self._declare_share("track_high_thresh", defaults.high),
             low=self._declare_share("track_low_thresh", defaults.low),
-            new=self._declare_share("new_track_thresh", defaults.new),
+            new_track_score=self._declare_share("new_track_thresh", defaults.new_track_score),
             match=self._declare_share("match_thresh", defaults.match),
             max_age=self._declare_positive("track_buffer", round(defaults.max_age * _IMAGES_PER_SECOND))
             / _IMAGES_PER_SECOND,

@@ -90,13 +90,13 @@ class Seeker:
 
     Attributes:
         phase: the current phase.
-        follow: whether to follow the object after reaching it.
+        follows_object: whether to follow the object after reaching it.
     """
 
     def __init__(self, settings: SeekSettings | None = None) -> None:
         self.settings = settings or SeekSettings()
         self.phase = Phase.IDLE
-        self.follow = False
+        self.follows_object = False
         self._heading: float | None = None
         self._blocked_at: float | None = None
         self._turned_angle = self._turn_direction = 0.0
@@ -105,13 +105,13 @@ class Seeker:
     def stop(self) -> None:
         """Stop seeking, without an event."""
         self.phase = Phase.IDLE
-        self.follow = False
+        self.follows_object = False
         self._reset()
 
     def begin(self, *, follow: bool = False) -> None:
         """Begin to seek a new object."""
         self.stop()
-        self.phase, self.follow = Phase.LOOKING, follow
+        self.phase, self.follows_object = Phase.LOOKING, follow
 
     def step(self, view: View) -> Command:
         """Return the next velocity and event.
@@ -123,15 +123,15 @@ class Seeker:
         if view.silence > self.settings.lost_time:
             return self._finish(Answer.BLIND)
         if self.phase is Phase.LOOKING:
-            return self._look(view)
+            return self._turn_and_look(view)
         if view.age > self.settings.lost_time:
             self.phase = Phase.LOOKING
             self._reset()
             self._was_found = True
-            return self._look(view)
+            return self._turn_and_look(view)
         return self._approach(view)
 
-    def _look(self, view: View) -> Command:
+    def _turn_and_look(self, view: View) -> Command:
         if view.age < _MAX_AGE_SECONDS:
             is_first = not self._was_found
             self.phase = Phase.GOING
@@ -153,7 +153,7 @@ class Seeker:
         if remaining <= _DISTANCE_TOLERANCE:
             if abs(view.bearing) > _BEARING_TOLERANCE:
                 return Command(0.0, angular)
-            return Command(0.0, angular) if self.follow else self._finish(Answer.ARRIVED)
+            return Command(0.0, angular) if self.follows_object else self._finish(Answer.ARRIVED)
         if abs(view.bearing) > _MAX_DRIVING_BEARING:
             return Command(0.0, angular)
         speed = max(_MIN_SPEED, min(settings.speed, _SPEED_GAIN * remaining)) * (

@@ -31,7 +31,7 @@ class TrackerSettings:
     Attributes:
         high: detections with at least this score start tracks, and are matched first (``track_high_thresh``).
         low: detections with a lower score are ignored (``track_low_thresh``).
-        new: the minimum score that starts a track (``new_track_thresh``).
+        new_track_score: the minimum score that starts a track (``new_track_thresh``).
         match: the maximum of 1 - IoU for two boxes of the same object (``match_thresh``).
         max_age: how long a track is kept without a detection, seconds (``track_buffer``, 30 images at 30 Hz).
         min_hits: the number of consecutive images that must show an object before it gets an ID.
@@ -39,7 +39,7 @@ class TrackerSettings:
 
     high: float = 0.25
     low: float = 0.1
-    new: float = 0.25
+    new_track_score: float = 0.25
     match: float = 0.8
     max_age: float = 1.0
     min_hits: int = 2
@@ -138,7 +138,7 @@ class Tracker:
         track_by_detection |= self._correct_tracks(unmatched_tracks, low_indices, frame)
         self._tracks = [track for track in self._tracks if not self._is_gone(track, time)]
         for index in high_indices:
-            if index not in track_by_detection and scores[index] >= settings.new:
+            if index not in track_by_detection and scores[index] >= settings.new_track_score:
                 track_by_detection[index] = self._start_track(frame.names[index], frame.boxes[index], time)
                 self._tracks.append(track_by_detection[index])
         for track in track_by_detection.values():

@@ -105,7 +105,7 @@ class ObjectRequest:
         """The language of the request, one of `LANGUAGES`."""
         return ENGLISH if self.text.isascii() else CHINESE
 
-    def is_it(self, name: str, colour: str | None, shape: float = 1.0, score: float = 1.0) -> bool:
+    def matches(self, name: str, colour: str | None, shape: float = 1.0, score: float = 1.0) -> bool:
         """Return whether an object is the requested one.
 
         A class can have a colour in its name, as ``red_ball`` has. A class that is only a colour matches any object
@@ -180,7 +180,7 @@ def described(sightings: Iterable[Sighting], language: str) -> str:
     """Describe visible objects, the nearest first: *I see a red ball 1.2 m ahead and two crates*."""
     groups: dict[str, list[Sighting]] = {}
     for sighting in sorted(sightings, key=lambda sighting: hypot(sighting.ahead, sighting.left)):
-        groups.setdefault(named(sighting.name, sighting.colour, language), []).append(sighting)
+        groups.setdefault(name_with_colour(sighting.name, sighting.colour, language), []).append(sighting)
     if not groups:
         return localized(phrase("I see no objects."), language)
     if language == CHINESE:
@@ -188,7 +188,7 @@ def described(sightings: Iterable[Sighting], language: str) -> str:
     return f"I see {_join([_describe_in_english(group) for group in groups.values()], ', ', ' and ')}."
 
 
-def named(name: str, colour: str | None, language: str) -> str:
+def name_with_colour(name: str, colour: str | None, language: str) -> str:
     """Return the name of an object with its colour: *red ball*, 红色的球."""
     words = [word for word in words_of(name) if word not in SPELLINGS]
     colour_word = find_colour_word(name) or colour
@@ -200,15 +200,15 @@ def named(name: str, colour: str | None, language: str) -> str:
     return f"{colour_characters[colour_word]}色的{chinese}" if colour_word else chinese
 
 
-def answer(event: Answer, request: ObjectRequest, language: str) -> str:
+def answer_phrase(event: Answer, request: ObjectRequest, language: str) -> str:
     """Return the answer to a request. It names the object as the request does, or translates the name."""
-    name = request.text if request.language == language else named(request.noun, request.colour, language)
+    name = request.text if request.language == language else name_with_colour(request.noun, request.colour, language)
     return localized(_ANSWERS[event](name), language)
 
 
 def _describe_in_english(group: Sequence[Sighting]) -> str:
     sighting = group[0]
-    name = named(sighting.name, sighting.colour, ENGLISH)
+    name = name_with_colour(sighting.name, sighting.colour, ENGLISH)
     if len(group) > 1:
         return f"{_number_word(len(group), ENGLISH)} {_plural(name)}"
     article = "an" if name[0] in "aeiou" else "a"
@@ -217,7 +217,7 @@ def _describe_in_english(group: Sequence[Sighting]) -> str:
 
 def _describe_in_chinese(group: Sequence[Sighting]) -> str:
     sighting = group[0]
-    name = named(sighting.name, sighting.colour, CHINESE)
+    name = name_with_colour(sighting.name, sighting.colour, CHINESE)
     if len(group) > 1:
         return f"{_number_word(len(group), CHINESE)}个{name}"
     return f"{_direction(sighting, CHINESE)}{hypot(sighting.ahead, sighting.left):.1f}米处有一个{name}"

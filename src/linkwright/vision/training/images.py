@@ -21,7 +21,7 @@ _MIN_VISIBLE_SHARE = 0.3  # an object with a smaller share of its box left in th
 
 
 @dataclass(frozen=True, slots=True)
-class Lesson:
+class LabelledImages:
     """Images of one size, with the labels of each.
 
     Attributes:
@@ -50,7 +50,7 @@ def read_image(labelled: LabelledFile) -> NDArray[np.uint8]:
     return rgb
 
 
-def read_lesson(labelled: Sequence[LabelledFile], width: int, height: int) -> Lesson:
+def read_labelled_images(labelled: Sequence[LabelledFile], width: int, height: int) -> LabelledImages:
     """Read images into memory, letterboxed to one size with grey borders, as detectors do.
 
     Raises:
@@ -73,10 +73,10 @@ def read_lesson(labelled: Sequence[LabelledFile], width: int, height: int) -> Le
     with ThreadPoolExecutor(2) as pool:
         for future in [pool.submit(read, number) for number in range(len(labelled))]:
             future.result()
-    return Lesson(images, tuple(objects))
+    return LabelledImages(images, tuple(objects))
 
 
-def repeat_factors(lesson: Lesson, classes: int) -> NDArray[np.float64]:
+def repeat_factors(lesson: LabelledImages, classes: int) -> NDArray[np.float64]:
     """Return how often an epoch uses each image: once, or more often if it shows a rare class.
 
     A class is rare if the fraction f of images that show it is below the median m of these fractions. Its images are
@@ -101,8 +101,8 @@ def repeated_indices(factors: NDArray[np.float64], generator: np.random.Generato
     return np.repeat(np.arange(len(factors)), counts)
 
 
-def changed(
-    lesson: Lesson, place: int, view: View, generator: np.random.Generator
+def augmented(
+    lesson: LabelledImages, place: int, view: View, generator: np.random.Generator
 ) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
     """Return a sample with random augmentation: a random part of an image, with other light and colours.
 
@@ -115,7 +115,7 @@ def changed(
         generator: the random generator.
 
     Returns:
-        The part, shape ``(height, width, 3)``, and its objects as in `Lesson`.
+        The part, shape ``(height, width, 3)``, and its objects as in `LabelledImages`.
     """
     cv2 = load_opencv()
     image, objects = lesson.images[place], lesson.objects[place]

@@ -14,7 +14,7 @@ from linkwright.vision.evaluation import MOST, Evaluation, GroundTruth, evaluate
 from linkwright.vision.training.images import read_image
 from linkwright.vision.training.reading import LabelledFile
 
-EVALUATION_LIMITS = Limits(threshold=0.01, iou=0.6, most=MOST)
+EVALUATION_LIMITS = Limits(threshold=0.01, iou=0.6, max_detections=MOST)
 """The limits of evaluated detections. They include uncertain ones, because average precision rates their order."""
 
 

@@ -53,7 +53,7 @@ def train_network(options: Options, on_epoch: Callable[[Epoch], None]) -> Traini
         KeyboardInterrupt: training was interrupted before the first checkpoint.
     """
     need_pytorch()
-    from linkwright.vision.training.images import read_lesson
+    from linkwright.vision.training.images import read_labelled_images
     from linkwright.vision.training.learning.course import Course
     from linkwright.vision.training.learning.export import to_onnx
 
@@ -66,7 +66,12 @@ def train_network(options: Options, on_epoch: Callable[[Epoch], None]) -> Traini
     except OSError as error:
         raise _write_error(options.output, error) from None
     size = options.width, options.height
-    course = Course(dataset.names, options, read_lesson(training_images, *size), read_lesson(validation_images, *size))
+    course = Course(
+        dataset.names,
+        options,
+        read_labelled_images(training_images, *size),
+        read_labelled_images(validation_images, *size),
+    )
     if options.resume:
         course.load(options.output / "last.pt")
     elif options.weights is not None:
@@ -81,7 +86,7 @@ def train_network(options: Options, on_epoch: Callable[[Epoch], None]) -> Traini
     except OSError as error:
         raise _write_error(options.output, error) from None
     facts = _training_facts(options, dataset, training_images, course.epoch, course.best_epoch, course.network)
-    facts["time"] = f"{course.seconds / 60:.0f} minutes with {options.threads} threads, {course.place}"
+    facts["time"] = f"{course.seconds / 60:.0f} minutes with {options.threads} threads, {course.device_name}"
     network = options.output / f"{options.name}.onnx"
     metadata = {"description": f"{options.name}, trained by linkwright vision train", "seed": str(options.seed)}
     metadata["dataset"] = facts["images' sha256"]
@@ -105,7 +110,7 @@ def train_network(options: Options, on_epoch: Callable[[Epoch], None]) -> Traini
     return TrainingResult(network, card_file, tuple(examinations), interrupted)
 
 
-def judge(model: str, folder: Path, split: str | None) -> Evaluation:
+def evaluate_on_dataset(model: str, folder: Path, split: str | None) -> Evaluation:
     """Evaluate a detector on a dataset.
 
     Args:

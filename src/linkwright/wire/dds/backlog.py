@@ -26,7 +26,7 @@ class Backlog:
             in part.
         write: writes a sample.
         acknowledged: returns whether all readers have acknowledged all written samples.
-        matters: returns whether there is a reader that a replaced sample would harm.
+        has_vulnerable_reader: returns whether there is a reader that a replaced sample would harm.
         now: the steady clock, in seconds.
     """
 
@@ -36,14 +36,14 @@ class Backlog:
         fragment_size: int,
         write: Callable[[bytes], None],
         acknowledged: Callable[[], bool],
-        matters: Callable[[], bool],
+        has_vulnerable_reader: Callable[[], bool],
         now: Callable[[], float] = time.monotonic,
     ) -> None:
         self._depth = depth
         self._fragment_size = fragment_size
         self._write = write
         self._acknowledged = acknowledged
-        self._matters = matters
+        self._has_vulnerable_reader = has_vulnerable_reader
         self._now = now
         self._waiting: deque[bytes] = deque(maxlen=depth)
         self._unacknowledged_count = 0
@@ -77,7 +77,7 @@ class Backlog:
         if self._acknowledged():
             self._unacknowledged_count, self._late_since = 0, None
             return True
-        if not self._matters():
+        if not self._has_vulnerable_reader():
             return True
         if self._late_since is None:
             self._late_since = self._now()

@@ -60,7 +60,7 @@ class Departures:
         self._remote = remote
         self._now = now
         self._watchers: list[Callable[[EndpointInfo], None]] = []
-        self._gone: list[_MissingWriter] = []
+        self._missing_writers: list[_MissingWriter] = []
         self._dead_since: dict[bytes, float] = {}
         self._reported: set[bytes] = set()
         remote.departures = self
@@ -77,16 +77,16 @@ class Departures:
             node: the node that still announces the endpoint; None if the endpoint was withdrawn.
         """
         if self._watchers and endpoint.is_writer and node is not None and endpoint.participant not in self._reported:
-            self._gone.append(_MissingWriter(endpoint, node))
+            self._missing_writers.append(_MissingWriter(endpoint, node))
 
     def announced(self, participant: bytes, endpoints: Collection[bytes]) -> None:
         """Handle an announcement.
 
         Missing endpoints that the announcement does not contain were withdrawn.
         """
-        self._gone = [
+        self._missing_writers = [
             missing
-            for missing in self._gone
+            for missing in self._missing_writers
             if missing.endpoint.participant != participant or missing.endpoint.guid in endpoints
         ]
 
@@ -100,18 +100,18 @@ class Departures:
             return None
         self._review_missing_writers()
         processes = self._review_processes()
-        return POLL_SECONDS if self._gone or processes else None
+        return POLL_SECONDS if self._missing_writers or processes else None
 
     def _review_missing_writers(self) -> None:
         now, undecided = self._now(), []
-        for missing in self._gone:
+        for missing in self._missing_writers:
             if missing.deadline is None:
                 missing.deadline = now + WITHDRAWAL_TIMEOUT_S
             if now < missing.deadline:
                 undecided.append(missing)
             else:
                 self._report(missing.endpoint, missing.node)
-        self._gone = undecided
+        self._missing_writers = undecided
 
     def _review_processes(self) -> bool:
         """Check the processes of participants on this machine, and return whether there are any."""
@@ -121,7 +121,7 @@ class Departures:
         ]
         dead = {participant.guid for participant in local_participants if participant.has_died()}
         self._dead_since = {guid: self._dead_since.get(guid, now) for guid in dead}
-        self._reported &= dead | {missing.endpoint.participant for missing in self._gone}
+        self._reported &= dead | {missing.endpoint.participant for missing in self._missing_writers}
         for guid, since in self._dead_since.items():
             if now - since >= GRACE and guid not in self._reported:
                 self._reported.add(guid)

@@ -78,7 +78,7 @@ class Engine(AnyEngine):
         self._pacer = Pacer(self._fast_address)
         self._domain = Domain(self._participant, remote, types, settings.fragment_size, self._pacer)
         owner = self._participant.entity
-        self._control = WaitingThread("linkwright-dds", owner, self._report, self._idle)
+        self._control = WaitingThread("linkwright-dds", owner, self._report, self._process_pending)
         self._reception = WaitingThread("linkwright-dds-receive", owner, self._report)
         self._discovery = Discovery(self._participant, self._control, remote, types, settings.gid_size)
         self._nodes: dict[NodeIdentity, int] = {}
@@ -213,7 +213,7 @@ class Engine(AnyEngine):
 
     # --- between requests --------------------------------------------------------------------------------------------
 
-    def _idle(self) -> float | None:
+    def _process_pending(self) -> float | None:
         """Process requests, and handle the results of discovery.
 
         Returns:
@@ -250,7 +250,7 @@ class Engine(AnyEngine):
         if self._fast is None:
             self._discover_fast()
         else:
-            mirror.meet_fast(self._fast)
+            mirror.connect_fast(self._fast)
 
     def _discover_fast(self) -> None:
         """Create the participant for Fast DDS if needed, and look for newly discovered participants.
@@ -266,9 +266,9 @@ class Engine(AnyEngine):
                 self._logger.warning(f"Services and clients of nodes on Fast DDS are out of reach: {error}")
                 return
             for service in self._services.values():
-                service.meet_fast(self._fast)
+                service.connect_fast(self._fast)
             for client in self._clients.values():
-                client.meet_fast(self._fast)
+                client.connect_fast(self._fast)
         if self._fast is not None:
             self._fast.expect(fast_participants)
 

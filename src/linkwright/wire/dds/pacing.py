@@ -21,7 +21,7 @@ from queue import SimpleQueue
 from linkwright.wire.dds.local_sockets import waiting_bytes
 from linkwright.wire.dds.rtps.messages import FRAGMENT, fragment_count, fragment_start, info_timestamp, message
 from linkwright.wire.dds.rtps.values import PREFIX, UNKNOWN, Address
-from linkwright.wire.living_threads import guarded
+from linkwright.wire.guarded_calls import guarded
 
 _BUFFER = 212_992
 """Bytes of a receive buffer on Linux, unless a process asks for more."""

@@ -7,7 +7,7 @@ links them.
 
 rmw_fastrtps_cpp sends the same data outside the samples (inline QoS), which Cyclone neither passes on nor writes. For
 the clients and servers of rmw_fastrtps_cpp, each service and client has a second reader and writer
-(`linkwright.wire.dds.fast_services`).
+(`linkwright.wire.dds.fastdds_services`).
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ from linkwright.wire.dds.cyclone import (
     write,
 )
 from linkwright.wire.dds.domain import Domain
-from linkwright.wire.dds.fast_services import EarlyRequest, FastClient, FastServer
+from linkwright.wire.dds.fastdds_services import EarlyRequest, FastClient, FastServer
 from linkwright.wire.dds.names import Role, dds_topic
 from linkwright.wire.dds.qos import endpoint_qos
 from linkwright.wire.dds.remote import RemoteEndpoint, is_fast
@@ -131,12 +131,12 @@ class OutsideServer:
         self._dds = load()
         self.pair = Pair(client, domain, is_server=False)
         self._client_id = int.from_bytes(os.urandom(8), "little")
-        self._answers: dict[int, Callable[[Any], None]] = {}
+        self._response_callbacks: dict[int, Callable[[Any], None]] = {}
         self._is_ready = False
         self._uses_cyclone = False
         self._fast: FastClient | None = None
 
-    def meet_fast(self, participant: RtpsParticipant) -> None:
+    def connect_fast(self, participant: RtpsParticipant) -> None:
         """Start calling servers on Fast DDS, too."""
         self._fast = FastClient(self._client, participant, self._remote.is_dead)
 
@@ -144,7 +144,7 @@ class OutsideServer:
         """Write a request, and return a function that cancels it."""
         if self._fast is not None and not self._uses_cyclone:
             return self._fast.send(request, on_response)
-        self._answers[number] = on_response
+        self._response_callbacks[number] = on_response
         self.pair.write(self._client_id, number, request)
         return partial(self._forget, number)
 
@@ -156,7 +156,7 @@ class OutsideServer:
         for data, _ in self.pair.samples():
             count += 1
             client_id, number, body = _split_sample(data)
-            on_response = self._answers.pop(number, None) if client_id == self._client_id else None
+            on_response = self._response_callbacks.pop(number, None) if client_id == self._client_id else None
             if on_response is not None:
                 forward_response(body, self._client, on_response)
         return count == _MAX_SAMPLES
@@ -181,7 +181,7 @@ class OutsideServer:
     def close(self) -> None:
         """Delete the endpoints. Pending requests stay unanswered."""
         self._client.set_outside(None)
-        self._answers.clear()
+        self._response_callbacks.clear()
         if self._fast is not None:
             self._fast.close()
         self.pair.close()
@@ -191,7 +191,7 @@ class OutsideServer:
         self._client.outside = None
 
     def _forget(self, number: int) -> None:
-        self._answers.pop(number, None)
+        self._response_callbacks.pop(number, None)
 
     def _is_server_available(self) -> bool:
         request_readers = [self._remote.endpoint(handle) for handle in self._dds.matched(self.pair.writer, writer=True)]
@@ -235,7 +235,7 @@ class IncomingService:
                 forward_request(body, self._service, reply, RequestId(gid, number))
         return count == _MAX_SAMPLES
 
-    def meet_fast(self, participant: RtpsParticipant) -> None:
+    def connect_fast(self, participant: RtpsParticipant) -> None:
         """Start answering clients on Fast DDS, too."""
         self._fast = FastServer(self._service, participant)
         early_requests, self._early_requests = self._early_requests, []

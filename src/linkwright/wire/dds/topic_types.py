@@ -43,7 +43,7 @@ class TopicTypes:
 
     def __init__(self) -> None:
         self._dds = load()
-        self._made: dict[Any, int] = {}
+        self._type_addresses: dict[Any, int] = {}
         self._lock = Lock()
 
     def create_topic(self, participant: int, name: str, described_type: Any) -> int:
@@ -62,9 +62,9 @@ class TopicTypes:
         """
         operation = f"topic '{name}'"
         with self._lock:  # no other thread may see a type while it is created
-            address = self._made.get(described_type)
+            address = self._type_addresses.get(described_type)
             if address is None:
-                address = self._made[described_type] = self._new(participant, described_type, operation)
+                address = self._type_addresses[described_type] = self._new(participant, described_type, operation)
         pointer = c.c_void_p(self._dds.ddsi_sertype_ref(address))
         code = self._dds.dds_create_topic_sertype(participant, name.encode(), c.byref(pointer), None, None, None)
         if code < 0:
@@ -73,8 +73,8 @@ class TopicTypes:
 
     def free(self) -> None:
         """Free the types of a closed domain, after Cyclone has stopped referring to them."""
-        while self._made:
-            self._dds.ddsi_sertype_free(self._made.popitem()[1])
+        while self._type_addresses:
+            self._dds.ddsi_sertype_free(self._type_addresses.popitem()[1])
 
     def _new(self, participant: int, described_type: Any, operation: str) -> int:
         """Create a type and return its address.
@@ -84,7 +84,7 @@ class TopicTypes:
         without a lock (``ddsi_topic_descriptor_from_type``). Graphs of one process that joined at the same time
         then crashed.
         """
-        name = _TOPIC_NAME.format(len(self._made))
+        name = _TOPIC_NAME.format(len(self._type_addresses))
         unused_topic = check_call(self._dds.create_topic(participant, name, described_type, None, None), operation)
         pointer = c.c_void_p()
         check_call(self._dds.dds_get_entity_sertype(unused_topic, c.byref(pointer)), "asking for a type")

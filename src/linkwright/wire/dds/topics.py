@@ -153,7 +153,7 @@ class OutgoingTopic(MirroredTopic):
     ) -> None:
         super().__init__(publisher, domain, on_mismatch)
         self._publisher = publisher
-        self._waiting = on_waiting
+        self._on_waiting = on_waiting
         self._paced_writer = self._make_paced_writer(domain)
         self._backlog = self._make_backlog(domain.fragment_size)
         publisher.assert_outside = self._assert_liveliness
@@ -258,7 +258,7 @@ class OutgoingTopic(MirroredTopic):
             fragment_size,
             self._write,
             acknowledged=lambda: self._wait_for_acks(0),
-            matters=lambda: self._remote.is_read_by_fast(self.topic_name),
+            has_vulnerable_reader=lambda: self._remote.is_read_by_fast(self.topic_name),
         )
 
     def _sender(self) -> Callable[[Any], None]:
@@ -269,7 +269,7 @@ class OutgoingTopic(MirroredTopic):
             if backlog is None:
                 self._write(data)
             elif backlog.send(data):
-                self._waiting(self)
+                self._on_waiting(self)
 
         return send
 
@@ -299,7 +299,7 @@ class OutgoingTopic(MirroredTopic):
         code = self._hand_over(sample, published_ns)
         while code == TIMEOUT and must_retry and time.monotonic() < start + _PATIENCE and not self._participant.closed:
             code = self._hand_over(sample, published_ns)
-        self._failed(code)
+        self._log_failure(code)
         return code >= 0
 
     def _hand_over(self, sample: Sample, published_ns: int | None) -> int:
@@ -309,7 +309,7 @@ class OutgoingTopic(MirroredTopic):
             code = self._dds.dds_write_ts(self.entity, c.byref(sample), published_ns)
         return code
 
-    def _failed(self, code: int) -> None:
+    def _log_failure(self, code: int) -> None:
         """Log that a message was not sent, if writing failed.
 
         Further failures are logged only after some time.

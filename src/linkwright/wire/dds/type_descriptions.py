@@ -30,7 +30,7 @@ class WireTypes:
     """Creates and caches the descriptions of types. Any thread may use this object."""
 
     def __init__(self) -> None:
-        self._made: dict[object, Any] = {}
+        self._classes: dict[object, Any] = {}
         self._lock = RLock()
 
     def message(self, message_class: type[Any]) -> Any:
@@ -50,15 +50,15 @@ class WireTypes:
 
     def _describe_name(self, name: str) -> Any:
         with self._lock:
-            if name not in self._made:
-                self._made[name] = struct_class(name, {})
-            return self._made[name]
+            if name not in self._classes:
+                self._classes[name] = struct_class(name, {})
+            return self._classes[name]
 
     def _describe(self, structure: Structure) -> Any:
         with self._lock:
-            if structure not in self._made:
-                self._made[structure] = struct_class(dds_type(structure.type_name), self._members(structure))
-            return self._made[structure]
+            if structure not in self._classes:
+                self._classes[structure] = struct_class(dds_type(structure.type_name), self._members(structure))
+            return self._classes[structure]
 
     def _members(self, structure: Structure) -> dict[str, Any]:
         members: dict[str, Any] = {}

@@ -8,7 +8,7 @@ import time
 from collections.abc import Callable
 
 from linkwright.wire.dds.cyclone import INFINITY, check_call, load
-from linkwright.wire.living_threads import guarded
+from linkwright.wire.guarded_calls import guarded
 
 Handler = Callable[[], bool]
 """Handles pending work, and returns whether more is left.

@@ -58,7 +58,7 @@ class Departures:
         self._remote = remote
         self._now = now
         self._watchers: list[Callable[[EndpointInfo], None]] = []
-        self._gone: list[_MissingPublisher] = []
+        self._missing_publishers: list[_MissingPublisher] = []
         self._live_sessions: set[str] = set()
         self._departed_sessions: set[str] = set()
         self._ended_at: dict[str, float] = {}
@@ -75,7 +75,7 @@ class Departures:
         return bool(self._watchers)
 
     @property
-    def here(self) -> AbstractSet[str]:
+    def live_sessions(self) -> AbstractSet[str]:
         """The ids of Linkwright's live sessions. These sessions announce their departure."""
         return self._live_sessions
 
@@ -100,7 +100,7 @@ class Departures:
         if token.node_key in self._nodes_removed_at:
             self._unordered_nodes.add(token.node_key)
         if self._watchers and token.kind is EndpointKind.PUBLISHER:
-            self._gone.append(_MissingPublisher(key, token, self._now() + GRACE))
+            self._missing_publishers.append(_MissingPublisher(key, token, self._now() + GRACE))
 
     def review(self) -> float | None:
         """Report the publishers that have become lost since the last call.
@@ -109,16 +109,16 @@ class Departures:
             The seconds until the next call, or None if no call is needed.
         """
         now = self._now()
-        expired = [missing for missing in self._gone if missing.deadline <= now]
-        self._gone = [gone for gone in self._gone if gone.deadline > now]
+        expired = [missing for missing in self._missing_publishers if missing.deadline <= now]
+        self._missing_publishers = [gone for gone in self._missing_publishers if gone.deadline > now]
         for gone in expired:
             info = gone.token.described() if self._is_lost(gone) else None
             if info is not None:
                 for callback in self._watchers:
                     callback(info)
-        if not self._gone:
+        if not self._missing_publishers:
             self._forget(now)
-        return max(self._gone[0].deadline - now, 0.0) if self._gone else None
+        return max(self._missing_publishers[0].deadline - now, 0.0) if self._missing_publishers else None
 
     def _is_lost(self, missing: _MissingPublisher) -> bool:
         token = missing.token

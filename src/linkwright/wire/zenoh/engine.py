@@ -20,7 +20,7 @@ from linkwright.graph.names.rules import NodeIdentity
 from linkwright.messages import InterfaceNotFoundError, type_hash
 from linkwright.wire.engine import Engine as AnyEngine
 from linkwright.wire.engine import Work, ends_by_error
-from linkwright.wire.living_threads import guarded
+from linkwright.wire.guarded_calls import guarded
 from linkwright.wire.type_names import dds_type
 from linkwright.wire.zenoh import qos_text, tokens
 from linkwright.wire.zenoh.departures import Departures
@@ -270,7 +270,7 @@ class Engine(AnyEngine):
             self._has_changed = self._record_token(appeared=appeared, key=key) or self._has_changed
         must_follow = self._departures.is_watched and not self._interests.subscribes_to_all
         if must_follow and (self._has_changed or not self._is_following):
-            live_sessions = self._remote.sessions() | self._departures.here
+            live_sessions = self._remote.sessions() | self._departures.live_sessions
             self._interests.follow(self._remote.sessions(EndpointKind.PUBLISHER), live_sessions)
         self._is_following = must_follow
 

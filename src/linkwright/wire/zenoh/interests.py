@@ -33,7 +33,7 @@ class Interests:
     def __init__(self, session: zenoh.Session, domain_id: int, on_token: Callable[[zenoh.Sample], None]) -> None:
         self._liveliness = session.liveliness()
         self._on_token = on_token
-        self._all = f"{tokens.ROOT}/{domain_id}/**"
+        self._token_pattern = f"{tokens.ROOT}/{domain_id}/**"
         self._sessions = f"{OURS}/{domain_id}"
         self._counts: Counter[str] = Counter()
         self._declared: dict[str, Any] = {}
@@ -79,7 +79,7 @@ class Interests:
         self._followed_sessions = self._followed_sessions & live_sessions | publishing_sessions
 
     def _session_keys(self, session: str) -> tuple[str, str]:
-        return f"{self._sessions}/{session}/*", self._all.replace("**", f"{session}/**")
+        return f"{self._sessions}/{session}/*", self._token_pattern.replace("**", f"{session}/**")
 
     def add_all(self) -> None:
         """Subscribe to all tokens of the domain."""
@@ -88,7 +88,7 @@ class Interests:
         self.subscribes_to_all = True
         previous, self._declared = self._declared, {}
         self._declare(f"{self._sessions}/**")
-        self._declare(self._all)
+        self._declare(self._token_pattern)
         for subscriber in previous.values():
             subscriber.undeclare()
 
@@ -107,7 +107,7 @@ class Interests:
                 self._on_token(reply.ok)
 
         handler: Any = Callback(receive, on_answered, indirect=False)
-        self._liveliness.get(self._all, handler, timeout=seconds)
+        self._liveliness.get(self._token_pattern, handler, timeout=seconds)
 
     def close(self) -> None:
         """End all subscriptions."""

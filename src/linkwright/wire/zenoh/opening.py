@@ -91,7 +91,7 @@ class ObstacleReporter:
         self._config = config
         self._log = log
         self._is_connected = is_connected
-        self._over = threading.Event()
+        self._end_event = threading.Event()
         self._thread = threading.Thread(target=self._run, name="linkwright-zenoh-waits", daemon=True)
 
     def start(self) -> None:
@@ -100,11 +100,11 @@ class ObstacleReporter:
 
     def end(self) -> None:
         """Stop reporting. If the thread is trying an address, it ends a moment later."""
-        self._over.set()
+        self._end_event.set()
 
     def _run(self) -> None:
         pause_s = _LOG_DELAY_S
-        while not self._over.wait(pause_s):
+        while not self._end_event.wait(pause_s):
             if self._is_connected():
                 pause_s = _LOG_DELAY_S
                 continue
@@ -112,7 +112,7 @@ class ObstacleReporter:
                 joined(obstacles(self._config), "; ")
                 or f"{', '.join(configured_addresses(self._config))} accepts no session"
             )
-            if not self._over.is_set() and not self._is_connected():
+            if not self._end_event.is_set() and not self._is_connected():
                 self._log(reasons)
             pause_s = _LOG_INTERVAL_S
 

@@ -24,7 +24,7 @@ class RemoteGraph(Outside):
         self._lock = Lock()
         self._tokens: dict[str, Token] = {}
         self._counts: Counter[tuple[EndpointKind, str]] = Counter()
-        self._gone: dict[str, float] = {}
+        self._removal_times: dict[str, float] = {}
 
     # --- called by discovery -----------------------------------------------------------------------------------------
 
@@ -49,15 +49,17 @@ class RemoteGraph(Outside):
         If a session requests tokens that it already knows, Zenoh answers in a separate task, and the report of a
         token's end may overtake the answer. A token that reappears after a broken connection takes longer.
         """
-        return key in self._gone and time.monotonic() - self._gone[key] < _GONE_FOR
+        return key in self._removal_times and time.monotonic() - self._removal_times[key] < _GONE_FOR
 
     def remove(self, key: str) -> Token | None:
         """Remove a token and return it, or None if the token was not known."""
         now = time.monotonic()
-        for expired_key in [gone_key for gone_key in islice(self._gone, 2) if now - self._gone[gone_key] > _GONE_FOR]:
-            del self._gone[expired_key]  # removing two per call keeps the table small
-        self._gone.pop(key, None)
-        self._gone[key] = now
+        for expired_key in [
+            gone_key for gone_key in islice(self._removal_times, 2) if now - self._removal_times[gone_key] > _GONE_FOR
+        ]:
+            del self._removal_times[expired_key]  # removing two per call keeps the table small
+        self._removal_times.pop(key, None)
+        self._removal_times[key] = now
         with self._lock:
             token = self._tokens.pop(key, None)
             if token is not None and token.kind is not None:

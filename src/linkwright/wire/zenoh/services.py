@@ -45,7 +45,7 @@ class OutsideServer:
     ) -> None:
         self._client = client
         self.token = token
-        self._answers: dict[int, Callable[[Any], None]] = {}
+        self._response_callbacks: dict[int, Callable[[Any], None]] = {}
         self._is_ready = False
         self._has_warned = False
         client.gid = token.gid
@@ -61,7 +61,7 @@ class OutsideServer:
 
     def send(self, request: Any, on_response: Callable[[Any], None], number: int) -> Callable[[], None]:
         """Send a request, and return a function that cancels it."""
-        self._answers[number] = on_response
+        self._response_callbacks[number] = on_response
         handler: Any = Callback(partial(self._receive, number), partial(self._end, number), indirect=False)
         metadata = attachment.write(number, time.time_ns(), self.token.gid)
         self._querier.get(handler, payload=to_cdr(request), attachment=metadata)
@@ -81,7 +81,7 @@ class OutsideServer:
     def close(self) -> None:
         """Withdraw the client. Pending requests stay unanswered."""
         self._client.set_outside(None)
-        self._answers.clear()
+        self._response_callbacks.clear()
         self._listener.undeclare()
         self._querier.undeclare()
 
@@ -94,7 +94,7 @@ class OutsideServer:
         sample = reply.ok
         if sample is None:
             return
-        on_response = self._answers.pop(number, None)
+        on_response = self._response_callbacks.pop(number, None)
         if on_response is not None:
             forward_response(sample.payload.to_bytes(), self._client, on_response)
 
@@ -103,7 +103,11 @@ class OutsideServer:
 
         The future of such a request stays pending, as in rclpy.
         """
-        if self._answers.pop(number, None) is not None and not self._has_warned and not self._client.destroyed:
+        if (
+            self._response_callbacks.pop(number, None) is not None
+            and not self._has_warned
+            and not self._client.destroyed
+        ):
             self._has_warned = True
             self._client.node.logger.warning(
                 f"A request to service '{self._client.name}' was not answered: its server has left, failed, or took "
@@ -111,7 +115,7 @@ class OutsideServer:
             )
 
     def _forget(self, number: int) -> None:
-        self._answers.pop(number, None)
+        self._response_callbacks.pop(number, None)
 
 
 class IncomingService:

@@ -18,7 +18,7 @@ from linkwright.xacro.expressions import sandbox
 from linkwright.xacro.expressions.bounded import RefusalError, checked_keys
 from linkwright.xacro.expressions.functions import Function, bind_parameters, call, charge_value, cost
 from linkwright.xacro.expressions.scope import Environment
-from linkwright.xacro.expressions.yamldata import COPIED_TYPES, YamlDict, YamlMapping, wrapped
+from linkwright.xacro.expressions.yaml_data import COPIED_TYPES, YamlDict, YamlMapping, wrapped
 from linkwright.xacro.faults import Fault
 
 Closure = Callable[[Any], Any]
@@ -135,7 +135,7 @@ class Compiler:
 
     # locations and failures
 
-    def _place(self, node: Any) -> tuple[int, int]:
+    def _offsets(self, node: Any) -> tuple[int, int]:
         start, end = node.col_offset, node.end_col_offset
         if not self._is_plain:
             lines = re.findall(_LINE, self._source)  # the columns of ast nodes count UTF-8 bytes
@@ -153,7 +153,7 @@ class Compiler:
         return failure(error, self._segment(start, end), start, end)
 
     def _refusal(self, node: ast.AST) -> Fault:
-        start, end = self._place(node)
+        start, end = self._offsets(node)
         message = phrase("'{segment}' is not allowed in an expression", segment=self._segment(start, end))
         return Fault("XAC204", message, start, end)
 
@@ -163,7 +163,7 @@ class Compiler:
         Such an operand is a zero, a text, or a number with a unit. Constants get no hint.
         """
         for node, value in operands:
-            operand_text = self._segment(*self._place(node))
+            operand_text = self._segment(*self._offsets(node))
             if isinstance(node, ast.Constant) or len(operand_text) > 40:
                 continue
             if isinstance(error, ZeroDivisionError) and node is operands[-1][0]:
@@ -203,7 +203,7 @@ class Compiler:
         return look_up
 
     def _name(self, node: ast.Name) -> Closure:
-        return self.name(node.id, self._place(node)[0] - self._shift)
+        return self.name(node.id, self._offsets(node)[0] - self._shift)
 
     def _constant(self, node: ast.Constant) -> Closure:
         value = node.value
@@ -223,7 +223,7 @@ class Compiler:
     def _formattedvalue(self, node: ast.FormattedValue) -> Closure:
         value, conversion = self.compile(node.value), node.conversion
         specification = self.compile(node.format_spec) if node.format_spec else lambda _env: ""
-        start, end = self._place(node)
+        start, end = self._offsets(node)
 
         def formatted(env: Environment) -> Any:
             try:
@@ -251,7 +251,7 @@ class Compiler:
     def _binop(self, node: ast.BinOp) -> Closure:
         left, right = self.compile(node.left), self.compile(node.right)
         apply = sandbox.OPERATORS[node.op.__class__.__name__]
-        start, end = self._place(node)
+        start, end = self._offsets(node)
 
         def binary(env: Environment) -> Any:
             a, b = left(env), right(env)
@@ -270,7 +270,7 @@ class Compiler:
     def _unaryop(self, node: ast.UnaryOp) -> Closure:
         operand = self.compile(node.operand)
         apply = _UNARY[node.op.__class__.__name__]
-        start, end = self._place(node)
+        start, end = self._offsets(node)
 
         def unary(env: Environment) -> Any:
             value = operand(env)
@@ -301,7 +301,7 @@ class Compiler:
             (_COMPARISONS[op.__class__.__name__], self.compile(value))
             for op, value in zip(node.ops, node.comparators, strict=True)
         ]
-        start, end = self._place(node)
+        start, end = self._offsets(node)
 
         def compare(env: Environment) -> Any:
             left = first(env)
@@ -329,7 +329,7 @@ class Compiler:
 
     def _attribute(self, node: ast.Attribute) -> Closure:
         value, name = self.compile(node.value), node.attr
-        start, end = self._place(node)
+        start, end = self._offsets(node)
         start_of_name = end - len(name)
         if name.startswith("__"):
             raise Fault("XAC204", phrase("'.{name}' is not allowed in an expression", name=name), start_of_name, end)
@@ -354,7 +354,7 @@ class Compiler:
 
     def _subscript(self, node: ast.Subscript) -> Closure:
         value, key = self.compile(node.value), self.compile(node.slice)
-        start, end = self._place(node)
+        start, end = self._offsets(node)
 
         def subscript(env: Environment) -> Any:
             owner, index = value(env), key(env)
@@ -388,7 +388,7 @@ class Compiler:
         keyword_closures = [(keyword.arg, self.compile(keyword.value)) for keyword in node.keywords]
         is_simple = not keyword_closures and not any(is_starred for is_starred, _ in positional)
         argument_closures = [closure for _, closure in positional]
-        start, end = self._place(node)
+        start, end = self._offsets(node)
         if isinstance(node.func, ast.Attribute) and node.func.attr in _MUTATING_METHODS:
             self.may_change_values = True
 
@@ -433,7 +433,7 @@ class Compiler:
 
     def _display(self, node: ast.List | ast.Tuple | ast.Set, kind: Callable[[list[Any]], Any]) -> Closure:
         items = [self._argument(item) for item in node.elts]
-        start, end = self._place(node)
+        start, end = self._offsets(node)
 
         def display(env: Environment) -> Any:
             try:
@@ -448,7 +448,7 @@ class Compiler:
             (self.compile(key) if key else None, self.compile(value))
             for key, value in zip(node.keys, node.values, strict=True)
         ]
-        start, end = self._place(node)
+        start, end = self._offsets(node)
 
         def display(env: Environment) -> Any:
             result: dict[Any, Any] = {}
@@ -473,7 +473,7 @@ class Compiler:
         self, node: ast.ListComp | ast.SetComp, element: ast.expr, kind: Callable[[Iterator[Any]], Any]
     ) -> Closure:
         element_value, iterations = self.compile(element), self._iterations(node.generators)
-        start, end = self._place(node)
+        start, end = self._offsets(node)
 
         def comprehension(env: Environment) -> Any:
             try:
@@ -485,7 +485,7 @@ class Compiler:
 
     def _dictcomp(self, node: ast.DictComp) -> Closure:
         key, value, turns = self.compile(node.key), self.compile(node.value), self._iterations(node.generators)
-        start, end = self._place(node)
+        start, end = self._offsets(node)
 
         def comprehension(env: Environment) -> Any:
             try:

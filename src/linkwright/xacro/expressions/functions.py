@@ -15,7 +15,7 @@ from linkwright.loading.lean_typing import Any
 from linkwright.xacro.expressions import sandbox
 from linkwright.xacro.expressions.bounded import HASHING, check_codec, checked_keys
 from linkwright.xacro.expressions.scope import Environment, Local
-from linkwright.xacro.expressions.yamldata import YamlDict, YamlList, YamlMapping
+from linkwright.xacro.expressions.yaml_data import YamlDict, YamlList, YamlMapping
 from linkwright.xacro.limits import Budget
 
 _Closure = Callable[[Any], Any]
@@ -28,7 +28,7 @@ class Parameters(NamedTuple):
         positional: the names of the positional parameters.
         positional_only: the number of names in `positional` that are positional-only.
         keyword_only: the names of the keyword-only parameters.
-        rest: the name of the parameter for all further positional arguments, or None.
+        extra_name: the name of the parameter for all further positional arguments, or None.
         keywords: the name of the parameter for all further keyword arguments, or None.
         defaults: the default values of optional parameters, by name.
     """
@@ -36,7 +36,7 @@ class Parameters(NamedTuple):
     positional: tuple[str, ...]
     positional_only: int
     keyword_only: tuple[str, ...]
-    rest: str | None
+    extra_name: str | None
     keywords: str | None
     defaults: dict[str, Any]
 
@@ -48,7 +48,7 @@ class Parameters(NamedTuple):
         """
         values: dict[str, Any] = dict(zip(self.positional, arguments, strict=False))
         extra_arguments = arguments[len(self.positional) :]
-        if extra_arguments and self.rest is None:
+        if extra_arguments and self.extra_name is None:
             raise TypeError(
                 phrase(
                     "the lambda takes {count} arguments, but {other_count} are given",
@@ -56,8 +56,8 @@ class Parameters(NamedTuple):
                     other_count=len(arguments),
                 )
             )
-        if self.rest is not None:
-            values[self.rest] = extra_arguments
+        if self.extra_name is not None:
+            values[self.extra_name] = extra_arguments
         extra_keywords: dict[str, Any] = {}
         for name, value in keywords.items():
             is_parameter = name in self.positional[self.positional_only :] or name in self.keyword_only
@@ -124,7 +124,7 @@ def bind_parameters(
             positional=positional,
             positional_only=len(arguments.posonlyargs),
             keyword_only=keyword_only,
-            rest=arguments.vararg.arg if arguments.vararg else None,
+            extra_name=arguments.vararg.arg if arguments.vararg else None,
             keywords=arguments.kwarg.arg if arguments.kwarg else None,
             defaults={name: default(env) for name, default in defaults.items()},
         )

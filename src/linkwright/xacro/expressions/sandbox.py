@@ -16,7 +16,7 @@ from linkwright.loading.lean_typing import Any
 from linkwright.xacro.expressions import bounded
 from linkwright.xacro.expressions.bounded import RefusalError
 from linkwright.xacro.expressions.scope import Namespace
-from linkwright.xacro.expressions.yamldata import YamlDict, YamlList, YamlMapping
+from linkwright.xacro.expressions.yaml_data import YamlDict, YamlList, YamlMapping
 
 MAX_LENGTH = 1_000_000
 """The maximum number of characters in a string or of items in a list."""

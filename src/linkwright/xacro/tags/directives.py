@@ -41,7 +41,7 @@ def include(expander: Expander, site: Site) -> None:
     for container in contents:
         expander.splice(container, site)
     if needs_mark:
-        expander.sweeper.mark(output)
+        expander.sweeper.move_marker(output)
 
 
 def _target_tables(expander: Expander, site: Site) -> tuple[Scope, MacroTable]:
@@ -264,7 +264,7 @@ def expand_condition(expander: Expander, site: Site) -> None:
     output = site.parent.children
     marker_holder: list[Any] = []  # holds the marker until the end of the tag, unless a tag inside moves it
     if expander.sweeper.sweep(output, followed=site.has_followers):
-        expander.sweeper.mark(marker_holder)
+        expander.sweeper.move_marker(marker_holder)
     check_attributes(expander, node, ("value",), ())
     value = expander.value(node, "value", scope)
     try:
@@ -284,7 +284,7 @@ def expand_condition(expander: Expander, site: Site) -> None:
         expander.children(node, container, scope, site.macros)
         expander.splice(container, site)
     if marker_holder:
-        expander.sweeper.mark(output)
+        expander.sweeper.move_marker(output)
 
 
 def insert_block(expander: Expander, site: Site) -> None:

@@ -43,7 +43,7 @@ def define_macro(expander: Expander, site: Site) -> None:
         fault.place_in_attribute(node, "params")
         expander.fail(fault)
     macro = Macro(name, parameters, node)
-    if len(macro.known) < len(parameters):
+    if len(macro.parameter_names) < len(parameters):
         names = [parameter.name for parameter in parameters]
         duplicate = next(candidate for candidate in names if names.count(candidate) > 1)
         message = phrase("the macro '{name}' declares its parameter '{twice}' twice", name=name, twice=duplicate)
@@ -97,7 +97,7 @@ class _Call:
         expander.lift_namespaces(container, site)
         expander.splice(container, site)
         if mark:
-            expander.sweeper.mark(output)
+            expander.sweeper.move_marker(output)
 
     # finding the macro
 
@@ -147,13 +147,15 @@ class _Call:
         expander, node, caller = self._expander, self._node, self._site.scope
         attributes = node.attributes
         for name, text in attributes.items():
-            if name not in macro.known:
+            if name not in macro.parameter_names:
                 self._report_unknown_parameter(macro, name)
             value = expander.value(node, name, caller) if "$" in text else text
             warn_of_global(expander, node, name, name)
             scope.define(name, value)
         unbound = [parameter for parameter in macro.parameters if parameter.name not in attributes]
-        if len(macro.known) < len(macro.parameters):  # of two parameters with one name, only the first is bound
+        if len(macro.parameter_names) < len(
+            macro.parameters
+        ):  # of two parameters with one name, only the first is bound
             seen_names: set[str] = set()
             for parameter in macro.parameters:
                 if parameter.name in seen_names and parameter.name in attributes:

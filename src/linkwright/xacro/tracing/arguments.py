@@ -41,7 +41,7 @@ class Argument:
             its default, because the attributes of the root are evaluated before any declaration.
         used: whether any text uses the argument.
         value: the value with the passed arguments, or None if it is not known.
-        given: whether the argument was passed.
+        is_given: whether the argument was passed.
     """
 
     name: str
@@ -50,7 +50,7 @@ class Argument:
     required: bool
     used: bool = True
     value: str | None = None
-    given: bool = False
+    is_given: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -206,7 +206,7 @@ class _Findings:
             required=not is_passed and (name in missing_names or default is None),
             used=name in self.uses or name in self.session.used_names,
             value=None if name in missing_names else value,
-            given=is_passed,
+            is_given=is_passed,
         )
 
     def _undeclared_argument(self, name: str) -> Argument:
@@ -238,16 +238,16 @@ def _follow_includes(session: _Session) -> None:
 def _used_arguments(element: Element) -> Iterator[tuple[str, Span | None]]:
     """Yield the arguments that an element's attributes and own texts use, with locations."""
     for attribute, value in element.attributes.items():
-        for match in _found(value):
+        for match in _find_uses(value):
             name = match["plain"] or match["called"]
             yield name, attribute_span(element, attribute, *match.span())
     for child in element.children:
         if isinstance(child, Text) and not child.cdata:
-            for match in _found(child.data):
+            for match in _find_uses(child.data):
                 yield match["plain"] or match["called"], text_part(child, *match.span())
 
 
-def _found(text: str) -> Iterator[re.Match[str]]:
+def _find_uses(text: str) -> Iterator[re.Match[str]]:
     return _ARGUMENT_USE.finditer(text) if "arg" in text else iter(())
 
 
@@ -263,7 +263,7 @@ def arguments_data(arguments: tuple[Argument, ...]) -> list[dict[str, Any]]:
             "value": argument.value,
             "required": argument.required,
             "used": argument.used,
-            "given": argument.given,
+            "given": argument.is_given,
             "file": argument.span.file if argument.span else None,
             "line": argument.span.line if argument.span else None,
             "column": argument.span.column if argument.span else None,

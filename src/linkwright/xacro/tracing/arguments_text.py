@@ -7,7 +7,7 @@ from collections.abc import Iterable
 
 from linkwright.diagnostics import Diagnostic, Note, Severity, phrase
 from linkwright.xacro.tracing.arguments import Argument, Arguments
-from linkwright.xacro.tracing.provenance_text import place
+from linkwright.xacro.tracing.provenance_text import format_location
 
 
 def arguments_text(arguments: tuple[Argument, ...]) -> str:
@@ -20,7 +20,8 @@ def arguments_text(arguments: tuple[Argument, ...]) -> str:
     for argument in arguments:
         remarks = "".join(f"  {remark}" for remark in _remarks(argument))
         lines.append(
-            f"{argument.name:{name_width}}  {_default_text(argument):{default_width}}  {place(argument.span)}{remarks}"
+            f"{argument.name:{name_width}}  {_default_text(argument):{default_width}}  "
+            f"{format_location(argument.span)}{remarks}"
         )
     return "".join(f"{line.rstrip()}\n" for line in lines)
 
@@ -50,7 +51,7 @@ def _arguments_causing(arguments: Iterable[Argument], message: str) -> list[Argu
         argument
         for argument in arguments
         if argument.default
-        and not argument.given
+        and not argument.is_given
         and "$" not in argument.default
         and re.search(rf"(?<!\w){re.escape(argument.default)}(?!\w)", message)
     ]
@@ -64,7 +65,7 @@ def _default_text(argument: Argument) -> str:
 
 def _remarks(argument: Argument) -> list[str]:
     remarks = []
-    if argument.given:
+    if argument.is_given:
         remarks.append(f'given "{argument.value}"')
     elif argument.required and argument.default is not None:
         remarks.append(f'used before its default "{argument.default}" is declared')

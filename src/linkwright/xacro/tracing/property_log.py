@@ -10,7 +10,7 @@ from linkwright.xacro.expander import Expander, Site
 from linkwright.xacro.expressions.scope import Lazy, Scope
 from linkwright.xacro.session import Inputs, Session
 from linkwright.xacro.tags.directives import DIRECTIVES
-from linkwright.xacro.tracing.references import shown
+from linkwright.xacro.tracing.references import format_value
 from linkwright.xacro.tracing.traced import PROBE, TracedSession, expand_traced, recorded_probe
 from linkwright.xmltree import Element
 
@@ -92,7 +92,7 @@ class _Table(dict[str, Any]):
         if isinstance(value, Element):
             text = f"<{value.tag}>"
         else:
-            text = value.text if isinstance(value, Lazy) else shown(value)
+            text = value.text if isinstance(value, Lazy) else format_value(value)
         node = self._session.current_node
         span = node.span() if isinstance(node, Element) else None
         if span is None and node is not None and node.source is not None:

@@ -9,7 +9,7 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, Span, phrase
 from linkwright.xacro.faults import Frame, frames
 from linkwright.xacro.limits import recursion_limit_for
 from linkwright.xacro.session import Inputs
-from linkwright.xacro.tracing.recorder import Moment, Recorder
+from linkwright.xacro.tracing.recorder import ElementRecord, Recorder
 from linkwright.xacro.tracing.references import Value, written_attribute
 from linkwright.xacro.tracing.traced import TracedSession, expand_traced
 from linkwright.xmltree import Element, Text
@@ -139,7 +139,7 @@ class Tracer:
             )
             hint = phrase("the file has changed; expand it again")
             raise LinkwrightError(Diagnostic("XAC802", message, element.span(), hint=hint, source=element.source))
-        moment = self._recorder.moment(counterpart) or Moment(element, None)
+        moment = self._recorder.record_of(counterpart) or ElementRecord(element, None)
         calls = self._calls(moment.frame)
         return Provenance(
             element=element,
@@ -150,7 +150,9 @@ class Tracer:
             children=tuple(self._trace(child) for child in element.elements()),
         )
 
-    def _attribute(self, element: Element, name: str, moment: Moment, calls: tuple[Call, ...]) -> AttributeProvenance:
+    def _attribute(
+        self, element: Element, name: str, moment: ElementRecord, calls: tuple[Call, ...]
+    ) -> AttributeProvenance:
         value = element.attributes[name]
         setting = self._recorder.setting(element, name)
         node, attribute = (setting.node, "value") if setting else (moment.node, name)
@@ -168,7 +170,7 @@ class Tracer:
         return tuple(Call(call.macro, call.site.span(), self._recorder.parameters(call)) for call in frames(frame))
 
 
-def _text_provenances(element: Element, moment: Moment) -> Iterator[TextProvenance]:
+def _text_provenances(element: Element, moment: ElementRecord) -> Iterator[TextProvenance]:
     texts_by_position = {_source_position(text): (text, values) for text, values in moment.texts}
     for child in element.children:
         if isinstance(child, Text) and not child.data.isspace() and child.data:

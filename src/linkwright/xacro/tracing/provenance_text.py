@@ -25,7 +25,7 @@ def provenance_text(provenance: Provenance) -> str:
 
 def provenance_lines(provenance: Provenance) -> list[str]:
     """Return the lines of `provenance_text` that follow the element itself."""
-    lines = [f"written at {place(provenance.span)}"]
+    lines = [f"written at {format_location(provenance.span)}"]
     lines += [f"  {line}" for call in provenance.calls for line in _call_lines(call)]
     evaluated_lines = [line for descendant in provenance.walk() for line in _element_lines(descendant, provenance)]
     if evaluated_lines:
@@ -49,7 +49,7 @@ def provenance_data(provenance: Provenance) -> dict[str, Any]:
     }
 
 
-def place(span: Span | None) -> str:
+def format_location(span: Span | None) -> str:
     """Return a location as ``file:line:column``."""
     if span is None:
         return "(no file)"
@@ -62,9 +62,9 @@ def place(span: Span | None) -> str:
 
 def _call_lines(call: Call) -> Iterator[str]:
     if call.macro is None:
-        yield f"included at {place(call.span)}"
+        yield f"included at {format_location(call.span)}"
         return
-    yield f"in macro '{call.macro}' called at {place(call.span)}"
+    yield f"in macro '{call.macro}' called at {format_location(call.span)}"
     yield from (f"    {line}" for line in _table([_value_row(value) for value in call.parameters]))
 
 
@@ -74,13 +74,13 @@ def _element_lines(provenance: Provenance, root: Provenance) -> Iterator[str]:
     has_other_calls = provenance is not root and provenance.calls != root.calls
     if not attributes and not texts and not has_other_calls:
         return
-    yield f"<{provenance.element.tag}> at {place(provenance.span)}"
+    yield f"<{provenance.element.tag}> at {format_location(provenance.span)}"
     if has_other_calls:
         yield from (f"  {line}" for call in provenance.calls for line in _call_lines(call))
     for attribute in attributes:
         description = f"  {attribute.name}={_quoted(attribute.value)}"
         if attribute.calls != provenance.calls or not _is_inside(attribute, provenance):
-            description += f" set by <xacro:attribute> at {place(attribute.span)}"
+            description += f" set by <xacro:attribute> at {format_location(attribute.span)}"
         yield (
             description if attribute.written == attribute.value else f"{description} from {_quoted(attribute.written)}"
         )
@@ -93,7 +93,7 @@ def _element_lines(provenance: Provenance, root: Provenance) -> Iterator[str]:
 def _value_row(value: Value) -> tuple[str, str, str]:
     source = value.kind
     if value.span is not None:
-        source += f" {place(value.span)}"
+        source += f" {format_location(value.span)}"
         if value.written is not None and "$" in value.written:
             source += f" {_quoted(value.written)}"
     elif value.kind in _EXTERNAL_ORIGINS:

@@ -13,13 +13,13 @@ from linkwright.xacro.faults import Fault, Frame, attribute_span
 from linkwright.xacro.macros import Parameter, parse_parameters
 from linkwright.xacro.tags.directives import DIRECTIVES
 from linkwright.xacro.tags.macro_calls import call_macro
-from linkwright.xacro.tracing.references import Reference, Value, references, shown, written_attribute
+from linkwright.xacro.tracing.references import Reference, Value, format_value, references, written_attribute
 from linkwright.xacro.tracing.traced import PROBE, recorded_probe
 from linkwright.xmltree import Element, Text
 
 
 @dataclass
-class Moment:
+class ElementRecord:
     """The record of how an element was produced.
 
     Attributes:
@@ -64,7 +64,7 @@ class Recorder:
             "xacro:attribute": self._set_attribute,
             PROBE: self._record_probe,
         }
-        self._moments: dict[int, tuple[Element, Moment]] = {}
+        self._records: dict[int, tuple[Element, ElementRecord]] = {}
         self._settings: list[Setting] = []
         self._settings_by_attribute: dict[tuple[int, str], Setting] = {}
         self._properties: dict[tuple[int, str], Element] = {}
@@ -79,9 +79,9 @@ class Recorder:
 
     # the recorded moments
 
-    def moment(self, element: Element) -> Moment | None:
+    def record_of(self, element: Element) -> ElementRecord | None:
         """Return the record of how an element was produced, or None."""
-        moment = self._moments.get(id(element))
+        moment = self._records.get(id(element))
         return moment[1] if moment else None
 
     def setting(self, element: Element, name: str) -> Setting | None:
@@ -148,10 +148,10 @@ class Recorder:
 
     def _record_probe(self, expander: Expander, site: Site) -> None:
         element, target = site.parent, site.node.origin
-        if isinstance(target, Moment):  # the second expansion of a block, whose elements already have a record
+        if isinstance(target, ElementRecord):  # the second expansion of a block, whose elements already have a record
             self._remember(element, target)
         elif isinstance(target, Text):
-            record = self.moment(element)
+            record = self.record_of(element)
             if record is not None:
                 record.texts.append((target, self._values(expander, target.data, site.scope)))
             return
@@ -159,7 +159,7 @@ class Recorder:
             self._begin_macro(expander, target, site.scope)
             return
         elif isinstance(target, Element):
-            moment = Moment(target, expander.session.frame)
+            moment = ElementRecord(target, expander.session.frame)
             for name, text in target.attributes.items():
                 if "$" in text:
                     moment.values[name] = self._values(expander, text, site.scope)
@@ -167,8 +167,8 @@ class Recorder:
             self._remember(element, moment)
         element.children.append(recorded_probe(target))
 
-    def _remember(self, element: Element, moment: Moment) -> None:
-        self._moments[id(element)] = (element, moment)
+    def _remember(self, element: Element, moment: ElementRecord) -> None:
+        self._records[id(element)] = (element, moment)
 
     def _begin_macro(self, expander: Expander, macro: Element, scope: Scope) -> None:
         frame = expander.session.frame
@@ -203,13 +203,13 @@ class Recorder:
         if node is not None:
             attribute = "value" if "value" in node.attributes else "default"
             span, written = node.attribute_span(attribute), written_attribute(node, attribute)
-            return Value(reference.path, "property", shown(value), span, written)
+            return Value(reference.path, "property", format_value(value), span, written)
         parameter = self._parameters.get(id(owner), {}).get(reference.name)
         if parameter is not None:
-            return Value(reference.path, "parameter", shown(value), parameter.span, parameter.written)
+            return Value(reference.path, "parameter", format_value(value), parameter.span, parameter.written)
         member = self._member_source(owner.values.get(reference.name), reference.path)
         span, written = member or (None, None)
-        return Value(reference.path, "property", shown(value), span, written)
+        return Value(reference.path, "property", format_value(value), span, written)
 
     def _member_source(self, namespace: object, path: str) -> tuple[Span | None, str | None] | None:
         """Return the location and text of a namespace's property, such as ``A.B.radius``."""
@@ -229,10 +229,10 @@ class Recorder:
         if reference.command == "arg":
             node = self._arguments.get(reference.name)
             if node is None or reference.name in self._passed_names:
-                return Value(reference.path, "argument", shown(value))
+                return Value(reference.path, "argument", format_value(value))
             span, written = node.attribute_span("default"), written_attribute(node, "default")
-            return Value(reference.path, "argument", shown(value), span, written)
-        return Value(reference.path, "package" if reference.command == "find" else "variable", shown(value))
+            return Value(reference.path, "argument", format_value(value), span, written)
+        return Value(reference.path, "package" if reference.command == "find" else "variable", format_value(value))
 
 
 _UNEVALUATED = object()
@@ -263,7 +263,7 @@ def _defining_scope(scope: Scope, name: str) -> Scope | None:
 
 def _parameter_value(parameter: Parameter, value: Any, call: Element, macro: Element) -> Value:
     """Return the value of a parameter in a call, with the location of the argument or of the default."""
-    text = shown(value.text if isinstance(value, Lazy) else literal(value))
+    text = format_value(value.text if isinstance(value, Lazy) else literal(value))
     if parameter.name in call.attributes:
         span, written = call.attribute_span(parameter.name), written_attribute(call, parameter.name)
         return Value(parameter.name, "parameter", text, span, written)

@@ -55,7 +55,7 @@ def references(text: str) -> list[Reference]:
     return list(unique_references)
 
 
-def shown(value: Any) -> str:
+def format_value(value: Any) -> str:
     """Return a value in Python notation, truncated if it is long."""
     from linkwright.xacro.expressions import sandbox
     from linkwright.xacro.expressions.bounded import RefusalError
@@ -104,7 +104,7 @@ def _expression_references(content: str) -> Iterator[Reference]:
         paths.visit(ast.parse(content.strip(), mode="eval"))
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         return
-    yield from (reference for reference in paths.found if reference.name not in paths.bound)
+    yield from (reference for reference in paths.references if reference.name not in paths.bound)
 
 
 class _PathCollector(ast.NodeVisitor):
@@ -114,7 +114,7 @@ class _PathCollector(ast.NodeVisitor):
     """
 
     def __init__(self) -> None:
-        self.found: list[Reference] = []
+        self.references: list[Reference] = []
         self.bound: set[str] = set()
 
     def visit(self, node: ast.AST) -> None:
@@ -123,7 +123,7 @@ class _PathCollector(ast.NodeVisitor):
             return
         name = _root_name(node)
         if name is not None:
-            self.found.append(Reference(ast.unparse(node), name))
+            self.references.append(Reference(ast.unparse(node), name))
             for descendant in ast.walk(node):
                 if isinstance(descendant, ast.Subscript):
                     self.visit(descendant.slice)

@@ -17,7 +17,7 @@ from linkwright.xacro.limits import recursion_limit_for
 from linkwright.xacro.session import Inputs, Session, main_document
 from linkwright.xacro.tags.directives import DIRECTIVES
 from linkwright.xacro.tags.macro_calls import call_macro
-from linkwright.xacro.tracing.references import Reference, references, shown
+from linkwright.xacro.tracing.references import Reference, format_value, references
 from linkwright.xmltree import Element
 from linkwright.xmltree.positions import attribute_value_range
 
@@ -107,7 +107,7 @@ class _RecordingSession(Session):
         if start is None:
             return
         name = place.source.name
-        for part_start, part_end in _parts(text):
+        for part_start, part_end in _ranges(text):
             key = (name, start + part_start, start + part_end)
             expression = self.expressions.get(key)
             if expression is None:
@@ -115,7 +115,7 @@ class _RecordingSession(Session):
             if len(expression.evaluations) < _MAX_EVALUATIONS:
                 part = text[part_start:part_end]
                 names = tuple(self._names(part, scope))
-                expression.evaluations.append(Evaluation(self._shown(part, scope), self.frame, names))
+                expression.evaluations.append(Evaluation(self._value_text(part, scope), self.frame, names))
 
     def _start(self, text: str) -> int | None:
         """Return the offset in the file of a text that is being evaluated, or None if it is not found there."""
@@ -137,16 +137,16 @@ class _RecordingSession(Session):
     def _names(self, part: str, scope: Scope) -> Iterator[tuple[str, str]]:
         for reference in _references(part):
             if reference.command is None and part[2:-1].strip() != reference.path:
-                value = self._shown(f"${{{reference.path}}}", scope)
+                value = self._value_text(f"${{{reference.path}}}", scope)
                 if value:
                     yield reference.path, value
 
-    def _shown(self, text: str, scope: Scope) -> str:
+    def _value_text(self, text: str, scope: Scope) -> str:
         try:
             value = super().evaluate(text, scope)
         except (Fault, LinkwrightError, KeyError):
             return ""
-        return "" if callable(value) or isinstance(value, Scope) else shown(value)
+        return "" if callable(value) or isinstance(value, Scope) else format_value(value)
 
 
 @lru_cache(maxsize=4096)
@@ -155,7 +155,7 @@ def _references(text: str) -> tuple[Reference, ...]:
 
 
 @lru_cache(maxsize=4096)
-def _parts(text: str) -> tuple[tuple[int, int], ...]:
+def _ranges(text: str) -> tuple[tuple[int, int], ...]:
     """Return the start and end of a text, and of each expression and substitution in it."""
     parts = ((token.start, token.end) for token in tokenize(text) if token.kind is not TokenKind.TEXT)
     return tuple(dict.fromkeys([(0, len(text)), *parts]))

@@ -121,7 +121,7 @@ async def test_a_motion_is_repeated_when_it_is_to_be():
         step = player._step
 
         def counted():
-            times.append(player._place)
+            times.append(player._state_index)
             step()
 
         player._step = counted

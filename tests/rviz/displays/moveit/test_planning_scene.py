@@ -47,7 +47,7 @@ class Talker:
         self.publisher.publish(message)
         await self.w.settle()
         display = self.w.viewer.displays[0]
-        await eventually(lambda: display._due is None)
+        await eventually(lambda: display._draw_timer is None)
         return shown_markers(display)
 
 

@@ -18,7 +18,7 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
 from linkwright.diagnostics.translation import localized
 from linkwright.graph import Clock, ClockType, Graph, Node, ParameterType
 from linkwright.messages import get_message
-from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
 
 _DEPTH = 10
 _RETRY_SECONDS = 1.0
@@ -53,7 +53,7 @@ class _Settings:
             return self.path if self.path.exists() else None
         return find_device(self.number, self.name)
 
-    def wanted(self) -> str:
+    def requested_device(self) -> str:
         """Return the requested name or path of the device, for log messages."""
         return f"'{self.name}'" if self.name else str(self.path or f"/dev/input/js{self.number}")
 
@@ -76,7 +76,7 @@ class JoyNode(SingleNode):
         self._axes: list[float] = []
         self._buttons: list[int] = []
         self._logged_reason: str | None = None
-        with starting(self._node):
+        with handle_start_errors(self._node):
             self._settings = self._read_settings(self._node)
             self._start()
 
@@ -110,13 +110,13 @@ class JoyNode(SingleNode):
     def _open(self) -> None:
         path = self._settings.device()
         if path is None:
-            device_label = self._settings.wanted()
+            device_label = self._settings.requested_device()
             self._wait(
                 localized(phrase(("the joystick {wanted} is not connected; waiting for it"), wanted=device_label))
             )
             return
         try:
-            self._device = JoystickDevice(path, self._on_events, self._gone)
+            self._device = JoystickDevice(path, self._on_events, self._on_unplugged)
         except OSError as error:
             reason = foreign(error.strerror or error)
             self._wait(
@@ -145,7 +145,7 @@ class JoyNode(SingleNode):
             self._logged_reason = text
             self._node.get_logger().warning(text)
 
-    def _gone(self) -> None:
+    def _on_unplugged(self) -> None:
         self._device = None
         self._soon.cancel()
         self._repeat.cancel()

@@ -26,7 +26,7 @@ from linkwright.control.nodes.teleop.terminal import KeyTerminal
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 from linkwright.diagnostics.translation import localized
 from linkwright.graph import Clock, ClockType, Graph, ParameterType
-from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
 from linkwright.nodes.velocity_topic import VelocityTopic
 
 _REVIEW_SECONDS = 0.5
@@ -53,7 +53,7 @@ class TeleopTwistKeyboard(SingleNode):
         self._direction: Direction = STILL
         self._speed_line_count = 0
         self._has_warned = False
-        with starting(self._node):
+        with handle_start_errors(self._node):
             self._start(options.terminal)
 
     def _start(self, terminal: int | None) -> None:
@@ -106,7 +106,7 @@ class TeleopTwistKeyboard(SingleNode):
             self._apply_key(key)
         if self._key_timeout:
             self._timeout_timer.reset()
-        self._follow()
+        self._adopt_message_type()
         self._publish()
 
     def _apply_key(self, key: str) -> None:
@@ -136,7 +136,7 @@ class TeleopTwistKeyboard(SingleNode):
         if not self.finished.done():
             self.finished.set_result(0)
 
-    def _follow(self) -> bool:
+    def _adopt_message_type(self) -> bool:
         """Adopt the message type of the subscriptions, and return whether there are any."""
         return self._topic.review(may_change=self._direction == STILL or self._has_warned) > 0
 
@@ -145,7 +145,7 @@ class TeleopTwistKeyboard(SingleNode):
 
         If there are none while the robot should move, warn once.
         """
-        if self._follow():
+        if self._adopt_message_type():
             self._has_warned = False
         elif self._direction != STILL and not self._has_warned:
             self._has_warned = True

@@ -14,7 +14,7 @@ from typing import Any
 from linkwright.diagnostics import phrase
 from linkwright.graph import Clock, ClockType, EndpointKind, Graph, Node, ParameterType
 from linkwright.messages import get_message
-from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
 from linkwright.nodes.velocity_topic import VelocityTopic
 
 _DEPTH = 10
@@ -54,7 +54,7 @@ class TeleopTwistJoy(SingleNode):
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
         self._is_driving = False
-        with starting(self._node):
+        with handle_start_errors(self._node):
             self._start()
 
     def _start(self) -> None:

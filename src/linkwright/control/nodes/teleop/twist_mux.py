@@ -19,7 +19,7 @@ from linkwright.graph import Graph, MessageInfo, Node, Publisher, Subscription
 from linkwright.graph.endpoints.commander import Commander
 from linkwright.graph.endpoints.drivers import DriverWatch
 from linkwright.nodes.diagnostic_updater import DiagnosticUpdater, Health, Level
-from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
 from linkwright.nodes.standstill import send_stop
 from linkwright.nodes.velocity_topic import TWIST, TWIST_STAMPED
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
@@ -37,7 +37,7 @@ class _Source:
         self.locked = False
         self._latest_message_ns: int | None = None
 
-    def hear(self, now_ns: int) -> None:
+    def record_message(self, now_ns: int) -> None:
         """Record the arrival of a message."""
         self._latest_message_ns = now_ns
 
@@ -77,7 +77,7 @@ class TwistMux(SingleNode):
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
-        with starting(self._node):
+        with handle_start_errors(self._node):
             self._start()
 
     def _start(self) -> None:
@@ -114,7 +114,7 @@ class TwistMux(SingleNode):
     def _velocity(self, source: _Source, drivers: DriverWatch, message: Any, info: MessageInfo) -> None:
         drivers.note_command(message, info)
         now_ns = self._now_ns()
-        source.hear(now_ns)
+        source.record_message(now_ns)
         lock_priority = self._lock_priority(now_ns)
         unmasked = [
             topic for topic in self._topics if topic.priority and not self._is_masked(topic, lock_priority, now_ns)
@@ -124,7 +124,7 @@ class TwistMux(SingleNode):
             self._publisher.publish(message)
 
     def _lock(self, source: _Source, message: Any) -> None:
-        source.hear(self._now_ns())
+        source.record_message(self._now_ns())
         source.locked = message.data
 
     def _lock_priority(self, now_ns: int) -> int:

@@ -120,12 +120,12 @@ class WaitForTopics:
         self.shutdown()
 
     def _listener(self, name: str) -> Callable[[Any], None]:
-        def heard(message: Any) -> None:
+        def on_message(message: Any) -> None:
             with self._arrival:
                 self._received[name].append(message)
                 self._arrival.notify_all()
 
-        return heard
+        return on_message
 
     def _spin(self) -> None:
         with suppress(ExternalShutdownException):

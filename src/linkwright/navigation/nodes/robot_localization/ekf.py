@@ -27,7 +27,7 @@ from linkwright.navigation.estimation.readings import PoseReader
 from linkwright.navigation.nodes.robot_localization.configuration import configuration_of
 from linkwright.navigation.nodes.robot_localization.sources import Source, Surroundings
 from linkwright.nodes.diagnostic_updater import DiagnosticUpdater, Health, Level
-from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
 from linkwright.nodes.settings import log_unknown
 
 _INITIAL_VARIANCE = 1e-6
@@ -46,7 +46,7 @@ class EkfNode(SingleNode):
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
-        with starting(self._node):
+        with handle_start_errors(self._node):
             self._configuration = configuration_of(self._node)
             self._filter = self._make_filter()
             log_unknown(self._node)
@@ -110,7 +110,7 @@ class EkfNode(SingleNode):
         self._around.ignored_until_ns = -1
         self._last_published_ns = -1
         for source in self._sources:
-            source.forget(time=True)
+            source.forget(accept_older=True)
 
     def _update(self) -> None:
         now_ns = self._clock.now_ns()
@@ -200,7 +200,7 @@ class EkfNode(SingleNode):
     # --- commands ----------------------------------------------------------------------------------------------------
 
     def _on_command(self, message: Any) -> None:
-        self._follow(message, self._clock.now_ns())
+        self._set_command(message, self._clock.now_ns())
 
     def _on_stamped_command(self, message: Any) -> None:
         frame, base = message.header.frame_id, self._configuration.frames.base
@@ -210,9 +210,9 @@ class EkfNode(SingleNode):
                 throttle_duration_sec=5.0,
             )
             return
-        self._follow(message.twist, message.header.stamp.nanoseconds)
+        self._set_command(message.twist, message.header.stamp.nanoseconds)
 
-    def _follow(self, twist: Any, stamp_ns: int) -> None:
+    def _set_command(self, twist: Any, stamp_ns: int) -> None:
         linear, angular = twist.linear, twist.angular
         command = np.array((linear.x, linear.y, linear.z, angular.x, angular.y, angular.z))
         if np.isfinite(command).all():
@@ -236,7 +236,7 @@ class EkfNode(SingleNode):
         assert reading is not None, "only a differential sensor has no first reading"
         self._estimator.clear()
         for source in self._sources:
-            source.forget(time=False)
+            source.forget(accept_older=False)
         self._around.ignored_until_ns = stamp_ns
         self._filter.state = reading.values
         self._filter.covariance = np.eye(SIZE) * _INITIAL_VARIANCE

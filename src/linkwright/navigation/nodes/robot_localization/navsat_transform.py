@@ -41,7 +41,7 @@ from linkwright.navigation.estimation.geodesy import (
 )
 from linkwright.navigation.nodes.robot_localization.configuration import check_length
 from linkwright.nodes.frame_poses import FramePoses
-from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
 from linkwright.nodes.settings import bad_value, log_unknown, positive
 
 _KNOWN_COVARIANCE, _GBAS_FIX, _NO_FIX = 3, 2, -1
@@ -61,7 +61,7 @@ class NavsatTransformNode(SingleNode):
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
-        with starting(self._node):
+        with handle_start_errors(self._node):
             datum = self._declare_parameters()
             log_unknown(self._node)
         self._poses = FramePoses(self._node, "Could not obtain transform:")
@@ -221,7 +221,7 @@ class NavsatTransformNode(SingleNode):
         easting, northing = utm_from_degrees(place[0], place[1], self._zone)
         return easting, northing, place[2]
 
-    def _place(self, point: Vector3) -> Vector3:
+    def _geodetic_from_grid(self, point: Vector3) -> Vector3:
         """Convert a point of the grid, in metres, to a geodetic position (degrees and metres)."""
         if self._plane is not None:
             return self._plane.geodetic_from_point(point)
@@ -235,7 +235,7 @@ class NavsatTransformNode(SingleNode):
 
     def _geodetic_from_map(self, point: Vector3) -> Vector3:
         assert self._grid_in_map is not None, "the map was placed on the earth"
-        return self._place(compose(invert(self._grid_in_map), (*point, 0.0, 0.0, 0.0, 1.0))[:3])
+        return self._geodetic_from_grid(compose(invert(self._grid_in_map), (*point, 0.0, 0.0, 0.0, 1.0))[:3])
 
     # --- output ------------------------------------------------------------------------------------------------------
 

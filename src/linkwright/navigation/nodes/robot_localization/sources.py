@@ -101,13 +101,13 @@ class Source:
                 QoSProfile(settings.queue_size, ReliabilityPolicy.BEST_EFFORT),
             )
 
-    def forget(self, *, time: bool) -> None:
+    def forget(self, *, accept_older: bool) -> None:
         """Treat the next pose as the first pose.
 
-        If `time` is set, also accept messages with older stamps.
+        If `accept_older` is set, also accept messages with older stamps.
         """
         self._pose.forget()
-        if time:
+        if accept_older:
             self._latest_ns = -1
 
     def _receive(self, message: Any, read: Callable[[Any, int], None]) -> None:

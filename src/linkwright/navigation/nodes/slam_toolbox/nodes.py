@@ -23,7 +23,7 @@ from linkwright.navigation.nodes.managed import ManagedNode
 from linkwright.navigation.nodes.slam_toolbox.parameters import settings_of
 from linkwright.navigation.nodes.slam_toolbox.services import ToolboxServices
 from linkwright.navigation.nodes.slam_toolbox.toolbox import Toolbox
-from linkwright.nodes.options import NodeOptions, SingleNode, create_node, create_node_with_class, starting
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node, create_node_with_class, handle_start_errors
 from linkwright.nodes.settings import log_unknown
 
 
@@ -83,7 +83,7 @@ class AsyncSlamToolbox(SingleNode):
             node.autostart()
             return
         self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
-        with starting(self._node):
+        with handle_start_errors(self._node):
             for name in ("use_lifecycle_manager", "autostart_node"):  # Jazzy's parameters, which have no effect here.
                 self._node.declare_parameter(name, False)
             self._work = self.open(self._node)

@@ -94,7 +94,7 @@ class _ParameterReader:
     def flag(self, name: str, default: bool) -> bool:
         return bool(self._value(name, default))
 
-    def whole(self, name: str, default: int) -> int:
+    def integer(self, name: str, default: int) -> int:
         return int(self._value(name, default))
 
     def number(self, name: str, default: float) -> float:
@@ -131,7 +131,7 @@ def settings_of(node: Node) -> Settings:
             "value 0.05."
         )
         resolution = 0.05
-    throttle = reader.whole("throttle_scans", 1)
+    throttle = reader.integer("throttle_scans", 1)
     if throttle <= 0:
         node.get_logger().warning(
             "You've set throttle_scans to be zero, this isn't allowed so it will be set to default value 1."
@@ -152,7 +152,7 @@ def settings_of(node: Node) -> Settings:
         tf_buffer_ns=round(reader.number("tf_buffer_duration", 30.0) * 1e9),
         position_covariance_scale=reader.number("position_covariance_scale", 1.0),
         yaw_covariance_scale=reader.number("yaw_covariance_scale", 1.0),
-        min_pass_through=reader.whole("min_pass_through", 2),
+        min_pass_through=reader.integer("min_pass_through", 2),
         occupancy_threshold=reader.number("occupancy_threshold", 0.1),
         map_file_name=reader.text("map_file_name", ""),
         start=_start_pose(node),
@@ -196,13 +196,13 @@ def _mapper_settings(reader: _ParameterReader) -> MapperSettings:
         minimum_time_interval=number("minimum_time_interval", 0.5),
         minimum_travel_distance=number("minimum_travel_distance", 0.5),
         minimum_travel_heading=number("minimum_travel_heading", 0.5),
-        scan_buffer_size=max(1, reader.whole("scan_buffer_size", 10)),
+        scan_buffer_size=max(1, reader.integer("scan_buffer_size", 10)),
         scan_buffer_maximum_scan_distance=number("scan_buffer_maximum_scan_distance", 10.0),
         link_match_minimum_response_fine=number("link_match_minimum_response_fine", 0.1),
         link_scan_maximum_distance=number("link_scan_maximum_distance", 1.5),
         do_loop_closing=reader.flag("do_loop_closing", True),
         loop_search_maximum_distance=number("loop_search_maximum_distance", 3.0),
-        loop_match_minimum_chain_size=reader.whole("loop_match_minimum_chain_size", 10),
+        loop_match_minimum_chain_size=reader.integer("loop_match_minimum_chain_size", 10),
         loop_match_maximum_variance_coarse=number("loop_match_maximum_variance_coarse", 3.0),
         loop_match_minimum_response_coarse=number("loop_match_minimum_response_coarse", 0.35),
         loop_match_minimum_response_fine=number("loop_match_minimum_response_fine", 0.45),

@@ -162,5 +162,5 @@ class ToolboxServices:
         if not np.isfinite(pose).all():
             self._logger.error("initialpose: the pose has values that are not finite, so it is ignored")
             return
-        self._toolbox.place(pose)
+        self._toolbox.start_session(pose)
         self._logger.info(f"LocalizePoseCallback: Localizing to: ({pose[0]:.2f} {pose[1]:.2f}), theta={pose[2]:.2f}")

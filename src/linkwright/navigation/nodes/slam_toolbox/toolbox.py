@@ -179,7 +179,7 @@ class Toolbox:
         if self._active:
             self._begin(self._redraw())
 
-    def place(self, pose: Floats) -> None:
+    def start_session(self, pose: Floats) -> None:
         """Start a session at a pose, of shape (3,), in the map.
 
         The next scan is matched around this pose.

@@ -298,4 +298,4 @@ class DataDisplay(ViewerDisplay):
     def _mark_replaced(self, key: str) -> None:
         previous_data = self._data.get(key)
         if isinstance(previous_data, ScaledData):
-            previous_data.gone = True
+            previous_data.is_withdrawn = True

@@ -114,7 +114,7 @@ class TopicDisplay(DataDisplay, ABC):
     `process_message`. The display subscribes only while it is enabled, as in RViz.
 
     Attributes:
-        last: the message that is currently shown, or None; `show_again` processes this message again.
+        last_message: the message that is currently shown, or None; `show_again` processes this message again.
     """
 
     MESSAGE: ClassVar[str] = ""
@@ -136,7 +136,7 @@ class TopicDisplay(DataDisplay, ABC):
 
     def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
         super().__init__(host, identity, config)
-        self.last: Any = None
+        self.last_message: Any = None
         self._subscription: Subscription[Any] | None = None
         self._release: Callable[[], None] | None = None
         self._waiting: deque[Any] = deque()
@@ -196,8 +196,8 @@ class TopicDisplay(DataDisplay, ABC):
 
     def show_again(self) -> None:
         """Process the last message again, for example after a property has changed."""
-        if self.last is not None:
-            self._offer(self.last)
+        if self.last_message is not None:
+            self._offer(self.last_message)
 
     # --- lifecycle ---------------------------------------------------------------------------------------------
 
@@ -236,7 +236,7 @@ class TopicDisplay(DataDisplay, ABC):
 
     def time_reset(self) -> None:
         """Discard all messages and the content. The display stays empty until a new message arrives."""
-        self.last = None
+        self.last_message = None
         self._waiting.clear()
         self._paused_messages.clear()
         self.reset()
@@ -248,7 +248,7 @@ class TopicDisplay(DataDisplay, ABC):
 
     def _restart(self) -> None:
         self._unsubscribe()
-        self.last = None
+        self.last_message = None
         self._has_failed = False
         self.reset()
         self.delete_status_row()
@@ -382,7 +382,7 @@ class TopicDisplay(DataDisplay, ABC):
         else:
             self._report_count_later()
         if self.TRANSFORMED:
-            self.host.time.took(self.config.name, self.frame_of(message)[1])
+            self.host.time.record_stamp(self.config.name, self.frame_of(message)[1])
         if self.host.time.paused:
             self._paused_messages.append(message)
             while len(self._paused_messages) > max(1, self.subscription()[2].depth):
@@ -394,16 +394,16 @@ class TopicDisplay(DataDisplay, ABC):
         if not self.TRANSFORMED:
             self._process(message, None)
             return
-        if self._waiting or not self._place(message):
+        if self._waiting or not self._show_if_placed(message):
             self._waiting.append(message)
             while len(self._waiting) > self.most_waiting():
                 self._waiting.popleft()
 
     def _show_placeable(self) -> None:
-        while self._waiting and not self.host.time.paused and self._place(self._waiting[0]):
+        while self._waiting and not self.host.time.paused and self._show_if_placed(self._waiting[0]):
             self._waiting.popleft()
 
-    def _place(self, message: Any) -> bool:
+    def _show_if_placed(self, message: Any) -> bool:
         frame, stamp_ns = self.frame_of(message)
         frame = frame.removeprefix("/")
         try:
@@ -465,7 +465,7 @@ class TopicDisplay(DataDisplay, ABC):
 
     def _process(self, message: Any, pose: Pose | None) -> None:
         """Show a message. An exception is logged, and does not prevent later messages."""
-        self.last = message
+        self.last_message = message
         try:
             self.process_message(message, pose)
         except Exception as error:  # noqa: BLE001  # a message may have any content

@@ -46,7 +46,7 @@ class MoveItDisplay(StoredMarkersDisplay):
     def draw(self) -> None:
         """Draw all markers again.
 
-        An implementation calls `put` for each group, and then `drawn`.
+        An implementation calls `put` for each group, and then `send_markers`.
         """
 
     def description_topic(self) -> str:
@@ -66,7 +66,7 @@ class MoveItDisplay(StoredMarkersDisplay):
                 self._store.put(shape)
         self._groups[group] = current_shapes
 
-    def drawn(self) -> None:
+    def send_markers(self) -> None:
         """Send the markers passed to `put`, and show in the status which frames have no known pose."""
         self.show_markers()
         self._report_frames()
@@ -91,7 +91,7 @@ class MoveItDisplay(StoredMarkersDisplay):
     def start(self) -> None:
         """Subscribe to the display's topic and to the robot's description."""
         super().start()
-        self._follow()
+        self._subscribe_description()
 
     def stop(self) -> None:
         """Unsubscribe."""
@@ -101,15 +101,15 @@ class MoveItDisplay(StoredMarkersDisplay):
     def enabled_changed(self) -> None:
         """Subscribe if the display is enabled, or unsubscribe."""
         super().enabled_changed()
-        self._follow()
+        self._subscribe_description()
 
     def changed(self, path: Path) -> None:
         """Apply a new topic, a new description topic or the check box for all links, and draw again."""
         if path == self.TOPIC:
             self._restart()
-            self._follow()
+            self._subscribe_description()
         elif path == (DESCRIPTION,):
-            self._follow()
+            self._subscribe_description()
         elif path[-1] == ALL_LINKS:
             for name in self.link_names:
                 if name != ALL_LINKS:
@@ -132,7 +132,7 @@ class MoveItDisplay(StoredMarkersDisplay):
         self._store.clear()
         self.show_markers()
 
-    def _follow(self) -> None:
+    def _subscribe_description(self) -> None:
         self._description_topic.close()
         topic = self.description_topic()
         if not self.enabled:

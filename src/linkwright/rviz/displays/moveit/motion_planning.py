@@ -106,7 +106,7 @@ class MotionPlanningDisplay(PlanningSceneDisplay):
         self._player.draw(PATH)
         self._draw_end_state("Start", 0)
         self._draw_end_state("Goal", -1)
-        self.drawn()
+        self.send_markers()
 
     def _draw_end_state(self, end_name: str, place: int) -> None:
         group, motion, robot = f"{end_name} State", self._player.motion, self.robot

@@ -53,7 +53,7 @@ class PlanningSceneDisplay(MoveItDisplay):
         self.scene = Scene()
         self._client: Client[Any, Any] | None = None
         self._state: Any = None
-        self._due: asyncio.TimerHandle | None = None
+        self._draw_timer: asyncio.TimerHandle | None = None
         self._reported: set[str] = set()
 
     def schema(self) -> Schema:
@@ -90,7 +90,7 @@ class PlanningSceneDisplay(MoveItDisplay):
         """
         if path == (NAMESPACE,):
             self._restart()
-            self._follow()
+            self._subscribe_description()
             self._request_scene()
         super().changed(path)
         if path == self.TOPIC:
@@ -131,22 +131,22 @@ class PlanningSceneDisplay(MoveItDisplay):
 
     def draw(self) -> None:
         """Draw the robot and the objects of the scene."""
-        if self._due is not None:
-            self._due.cancel()
-            self._due = None
+        if self._draw_timer is not None:
+            self._draw_timer.cancel()
+            self._draw_timer = None
         if not self.enabled:
             return
         self._draw_geometry()
         self._draw_robot()
         self._report_problems()
-        self.drawn()
+        self.send_markers()
 
     # --- drawing -----------------------------------------------------------------------------------------------
 
     def _draw_soon(self) -> None:
-        if self._due is None:
+        if self._draw_timer is None:
             delay = self.properties.number(GEOMETRY, "Scene Display Time")
-            self._due = asyncio.get_running_loop().call_later(delay, self.draw)
+            self._draw_timer = asyncio.get_running_loop().call_later(delay, self.draw)
 
     def _draw_geometry(self) -> None:
         is_shown = self.properties.flag(GEOMETRY, "Show Scene Geometry")
@@ -239,9 +239,9 @@ class PlanningSceneDisplay(MoveItDisplay):
 
     def _cancel_request(self) -> None:
         self.context.graph_changes.unwatch(self._request_if_ready)
-        if self._due is not None:
-            self._due.cancel()
-            self._due = None
+        if self._draw_timer is not None:
+            self._draw_timer.cancel()
+            self._draw_timer = None
         if self._client is not None:
             with suppress(ValueError):  # the node may already have been destroyed
                 self.context.node.destroy_client(self._client)

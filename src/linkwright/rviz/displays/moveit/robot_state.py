@@ -59,8 +59,8 @@ class RobotStateDisplay(MoveItDisplay):
 
     def robot_changed(self) -> None:
         """Show the last state with the new robot."""
-        if self.last is not None:
-            self._read(self.last)
+        if self.last_message is not None:
+            self._read(self.last_message)
 
     def reset(self) -> None:
         """Discard the state."""
@@ -70,11 +70,11 @@ class RobotStateDisplay(MoveItDisplay):
 
     def draw(self) -> None:
         """Draw the robot in the last state."""
-        message, robot = self.last, self.robot
+        message, robot = self.last_message, self.robot
         if robot is None or message is None or message.hide:
             self.put(_ROBOT_NAMESPACE, ())
             self.put(_ATTACHED_NAMESPACE, ())
-            self.drawn()
+            self.send_markers()
             return
         properties = self.properties
         alpha = properties.number("Robot Alpha")
@@ -101,7 +101,7 @@ class RobotStateDisplay(MoveItDisplay):
             )
         else:
             self.delete_status_row(_HIGHLIGHTS_ROW)
-        self.drawn()
+        self.send_markers()
 
     def _read(self, message: Any) -> None:
         robot = self.robot

@@ -124,8 +124,8 @@ class MotionPlayer:
         self._group_path = group_path
         self._on_state = on_state
         self._message: Any = None
-        self._next: Any = None
-        self._place = 0
+        self._next_message: Any = None
+        self._state_index = 0
         self._timer: asyncio.TimerHandle | None = None
         self.motion: Motion | None = None
 
@@ -137,7 +137,7 @@ class MotionPlayer:
     @property
     def state(self) -> JointPositions | None:
         """The state to draw, or None if no motion is being played."""
-        return self.motion.states[self._place] if self.motion and self.is_playing else None
+        return self.motion.states[self._state_index] if self.motion and self.is_playing else None
 
     def play(self, message: Any) -> None:
         """Play a moveit_msgs/msg/DisplayTrajectory, immediately or after the current motion.
@@ -146,7 +146,7 @@ class MotionPlayer:
         on.
         """
         if self.is_playing and not self._flag("Interrupt Display") and not self._flag(_LOOP_PROPERTY):
-            self._next = message
+            self._next_message = message
             return
         self._message = message
         self._begin()
@@ -164,7 +164,7 @@ class MotionPlayer:
     def forget(self) -> None:
         """Stop playing and discard the motion."""
         self._stop()
-        self._message = self._next = self.motion = None
+        self._message = self._next_message = self.motion = None
 
     def draw(self, group: str) -> None:
         """Put the current state and the trail into two marker groups of the display."""
@@ -198,7 +198,7 @@ class MotionPlayer:
             return
         self._display.delete_status_row(STATE)
         self._display.report_unknown_joints(self.motion.unknown)
-        self._place = 0
+        self._state_index = 0
         self._wait()
         self._on_state()
 
@@ -206,7 +206,7 @@ class MotionPlayer:
         assert self.motion is not None
         text = self._display.properties.text(*self._group_path, "State Display Time")
         durations = self.motion.durations
-        seconds = display_seconds(text, durations[min(self._place, len(durations) - 1)])
+        seconds = display_seconds(text, durations[min(self._state_index, len(durations) - 1)])
         self._timer = asyncio.get_running_loop().call_later(max(_MIN_WAIT, seconds), self._step)
 
     def _step(self) -> None:
@@ -216,15 +216,15 @@ class MotionPlayer:
         if self._display.host.time.paused:
             self._wait()
             return
-        if self._place + 1 < len(self.motion.states):
-            self._place += 1
+        if self._state_index + 1 < len(self.motion.states):
+            self._state_index += 1
             self._wait()
-        elif self._next is not None:
-            self._message, self._next = self._next, None
+        elif self._next_message is not None:
+            self._message, self._next_message = self._next_message, None
             self._begin()
             return
         elif self._flag(_LOOP_PROPERTY):
-            self._place = 0
+            self._state_index = 0
             self._wait()
         self._on_state()
 
@@ -279,4 +279,4 @@ class TrajectoryDisplay(MoveItDisplay):
     def draw(self) -> None:
         """Draw the robot in the current state, and the trail."""
         self._player.draw("Planned Path")
-        self.drawn()
+        self.send_markers()

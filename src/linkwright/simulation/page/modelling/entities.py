@@ -51,7 +51,7 @@ def _to_message(entity: Entity) -> WorldEntity:
         size=list(shape.size) if shape is not None else [],
         colour=list(colour) if colour is not None else None,
         address=entity.written.uri.strip() if isinstance(entity.written, Include) else None,
-        parts=list(entity.parts),
+        parts=list(entity.member_names),
     )
 
 

@@ -166,10 +166,10 @@ class ModellingFeature(PageFeature):
             return
         if active:
             await self._current_world()
-            await self._ask(page, _EMPTY_SERVICE, "/pause_physics")
-            await self._ask(page, _EMPTY_SERVICE, "/reset_simulation")
+            await self._call_service(page, _EMPTY_SERVICE, "/pause_physics")
+            await self._call_service(page, _EMPTY_SERVICE, "/reset_simulation")
         else:
-            await self._ask(page, _EMPTY_SERVICE, "/unpause_physics")
+            await self._call_service(page, _EMPTY_SERVICE, "/unpause_physics")
         self._active = active
         self._publish()
 
@@ -268,9 +268,9 @@ class ModellingFeature(PageFeature):
         resource = get_message("simulation_interfaces/msg/Resource")
         world_resource = resource(uri=str(edited_world.path.absolute()), resource_string=edited_world.world.text)
         fields = {"world_resource": world_resource, "ignore_missing_or_unsupported_assets": True}
-        await self._ask(page, _LOAD_SERVICE, "/load_world", fields)
+        await self._call_service(page, _LOAD_SERVICE, "/load_world", fields)
 
-    async def _ask(self, page: Page, kind: str, name: str, fields: dict[str, Any] | None = None) -> None:
+    async def _call_service(self, page: Page, kind: str, name: str, fields: dict[str, Any] | None = None) -> None:
         """Call a service, wait for the response, and report a timeout to the page."""
         done: asyncio.Future[None] = asyncio.get_running_loop().create_future()
 
@@ -278,7 +278,7 @@ class ModellingFeature(PageFeature):
             if not done.done():
                 done.set_result(None)
 
-        self._services.ask(page, kind, name, fields or {}, answered)
+        self._services.call_service(page, kind, name, fields or {}, answered)
         try:
             await asyncio.wait_for(done, _PATIENCE)
         except asyncio.TimeoutError:

@@ -117,7 +117,7 @@ class SimulatedControl(SimulatedPlugin[Parameters]):
         The next instance replaces this plugin in a changed model.
         """
         if hasattr(self, "_manager"):
-            self.left[self._manager_node.name] = self._manager.saved_state()
+            self.stored_values[self._manager_node.name] = self._manager.saved_state()
             self._manager.close()
             self._manager_node.close()
 
@@ -139,7 +139,7 @@ class SimulatedControl(SimulatedPlugin[Parameters]):
         self.every(1.0, services.publish_diagnostics)
         self._last_update = self.simulation.time
         self.every(manager.update_rate, self._update)
-        manager.resume(self.left.pop(self._manager_node.name, SavedState()))
+        manager.resume(self.stored_values.pop(self._manager_node.name, SavedState()))
 
     def _create_system(self, description: HardwareDescription, logger: Logger) -> Hardware:
         holds_joints = self.parameters.hold_joints

@@ -77,7 +77,7 @@ class CameraPlugin(SensorPlugin[P], Generic[P]):
         """Release the shared renderer."""
         self._shared.release()
 
-    def see(self, camera: MountedCamera, channels: Channels) -> RenderedImage:
+    def render(self, camera: MountedCamera, channels: Channels) -> RenderedImage:
         """Render the requested channels of one of the sensor's cameras, with noise on the colours."""
         pose = compose(self.simulation.link_pose(self.sensor.link), camera.pose)
         rendered = self._shared.render(camera.optics, pose, channels, self._log_renderer)
@@ -211,7 +211,7 @@ class ClassicCamera(CameraPlugin[CameraParameters]):
                 channels |= Channels.COLOUR
             if has_cloud or (depth is not None and depth.is_wanted):
                 channels |= Channels.DEPTH
-            rendered = self.see(camera, channels) if channels else RenderedImage(None, None, None)
+            rendered = self.render(camera, channels) if channels else RenderedImage(None, None, None)
             if image.is_wanted:
                 self.publish_image(image, camera, rendered, self._frame)
             self._publish_info(info, camera)
@@ -310,7 +310,7 @@ class GzCamera(CameraPlugin[NoParameters]):
             channels |= Channels.COLOUR
         if any(output is not None and output.is_wanted for output in (self._depth, self._cloud)):
             channels |= Channels.DEPTH
-        rendered = self.see(camera, channels) if channels else RenderedImage(None, None, None)
+        rendered = self.render(camera, channels) if channels else RenderedImage(None, None, None)
         if self._image is not None and self._image.is_wanted:
             self.publish_image(self._image, camera, rendered, self._optical)
         clip = camera.description.depth_clip or camera.description.clip

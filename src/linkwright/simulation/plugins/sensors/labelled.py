@@ -152,7 +152,7 @@ class GzSegmentation(_LabellingCamera):
         self.publish_info(self._info, camera)
         if not (self._maps.is_wanted or self._coloured.is_wanted):
             return
-        geoms = self.see(camera, Channels.GEOMS).geoms
+        geoms = self.render(camera, Channels.GEOMS).geoms
         labels, instances = self.labels.labels(geoms), self.labels.instances(geoms)  # type: ignore[arg-type]  # asked for
         if camera.description.segmentation_type in ("instance", "panoptic"):
             high, low = (instances >> 8).astype(np.uint8), (instances & 0xFF).astype(np.uint8)
@@ -196,7 +196,7 @@ class GzBoxes(_LabellingCamera):
         if not (self._boxes.is_wanted or self._images.is_wanted):
             return
         channels = Channels.GEOMS | (Channels.COLOUR if self._images.is_wanted else Channels(0))
-        rendered = self.see(camera, channels)
+        rendered = self.render(camera, channels)
         boxes = list(self._boxes_of(rendered.geoms))
         if self._boxes.is_wanted:
             message = self.message(_DETECTIONS_TYPE, self.frame)

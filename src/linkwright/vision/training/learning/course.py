@@ -21,11 +21,11 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, ph
 from linkwright.vision.detections import Detections
 from linkwright.vision.detectors.suppression import non_maximum_suppression
 from linkwright.vision.evaluation import Evaluation, GroundTruth, best_f1_threshold, evaluate
-from linkwright.vision.training.images import Lesson, changed, repeat_factors, repeated_indices
+from linkwright.vision.training.images import LabelledImages, augmented, repeat_factors, repeated_indices
+from linkwright.vision.training.learning.initial_weights import load_weights
 from linkwright.vision.training.learning.losses import loss
 from linkwright.vision.training.learning.network import Network, Shape, cells
 from linkwright.vision.training.learning.optimizer import Optimizer
-from linkwright.vision.training.learning.starting import load_weights
 from linkwright.vision.training.measuring import EVALUATION_LIMITS
 from linkwright.vision.training.options import Options
 
@@ -65,7 +65,7 @@ class Course:
         options: the options.
         shape: the shape of the network.
         network: the network that is trained.
-        smooth: the network with the moving average of the weights, which is evaluated.
+        averaged: the network with the moving average of the weights, which is evaluated.
         best: the weights of the moving average with the best evaluation.
         best_map: the mAP50-95 of the best weights; -1 before the first evaluation.
         best_epoch: the epoch of the best weights.
@@ -73,7 +73,9 @@ class Course:
         seconds: the duration of the finished epochs.
     """
 
-    def __init__(self, names: Sequence[str], options: Options, training: Lesson, validation: Lesson) -> None:
+    def __init__(
+        self, names: Sequence[str], options: Options, training: LabelledImages, validation: LabelledImages
+    ) -> None:
         torch.set_num_threads(options.threads)
         torch.manual_seed(options.seed)
         self.names = tuple(names)
@@ -83,8 +85,8 @@ class Course:
         self.shape = Shape(len(names), options.channels)
         self._device = torch.device("cuda" if options.device == "auto" and torch.cuda.is_available() else "cpu")
         self.network = Network(self.shape).to(self._device, memory_format=torch.channels_last)
-        self.smooth = deepcopy(self.network).eval().requires_grad_(requires_grad=False)
-        self.best = deepcopy(self.smooth.state_dict())
+        self.averaged = deepcopy(self.network).eval().requires_grad_(requires_grad=False)
+        self.best = deepcopy(self.averaged.state_dict())
         self.best_map = -1.0
         self.best_epoch = 0
         self.epoch = 0
@@ -105,10 +107,10 @@ class Course:
             start_time = time.monotonic()
             losses = self._train_epoch(self.epoch)
             self.epoch += 1
-            evaluation = self.judge() if self._is_evaluated() else None
+            evaluation = self.evaluate_averaged() if self._is_evaluated() else None
             if evaluation is not None and evaluation.map >= self.best_map:
                 self.best, self.best_map, self.best_epoch = (
-                    deepcopy(self.smooth.state_dict()),
+                    deepcopy(self.averaged.state_dict()),
                     evaluation.map,
                     self.epoch,
                 )
@@ -117,13 +119,13 @@ class Course:
             on_epoch(Epoch(self.epoch, losses, evaluation))
 
     @property
-    def place(self) -> str:
+    def device_name(self) -> str:
         """The training device: the name of the GPU, or the processor's architecture."""
         return torch.cuda.get_device_name(self._device) if self._device.type == "cuda" else platform.machine()
 
     def best_network(self) -> Network:
         """Return the network with the best results on the validation split, in evaluation mode."""
-        network = deepcopy(self.smooth)
+        network = deepcopy(self.averaged)
         network.load_state_dict(self.best)
         return network.cpu()
 
@@ -147,7 +149,7 @@ class Course:
             nn.utils.clip_grad_norm_(self.network.parameters(), _MAX_GRADIENT_NORM)
             self._optimizer.step(self._learning_rate(len(batches)))
             self._step += 1
-            self._follow()
+            self._update_average()
             sums += losses.cpu()
         mean = sums / len(batches)
         return float(mean[0]), float(mean[1])
@@ -163,7 +165,7 @@ class Course:
     def _batch(self, indices: NDArray[np.int64], start: int) -> tuple[Tensor, Tensor]:
         generator = np.random.default_rng((self.options.seed, self.epoch, start))
         view = self.options.view(self.epoch)
-        samples = [changed(self._training, int(index), view, generator) for index in indices]
+        samples = [augmented(self._training, int(index), view, generator) for index in indices]
         max_objects = max([1, *(len(objects) for _, objects in samples)])
         table: NDArray[np.float32] = np.full((len(samples), max_objects, 5), -1, np.float32)
         for row, (_, objects) in zip(table, samples, strict=True):
@@ -179,19 +181,19 @@ class Course:
         return self.options.rate * decay * min(1.0, (self._step + 1) / min(_WARM_UP_STEPS, max(1, total_steps // 4)))
 
     @torch.no_grad()
-    def _follow(self) -> None:
+    def _update_average(self) -> None:
         """Update the moving average of the weights."""
         decay = min(_AVERAGE_DECAY, (1 + self._step) / (10 + self._step))
         weights = self.network.state_dict()
-        for name, value in self.smooth.state_dict().items():
+        for name, value in self.averaged.state_dict().items():
             if value.dtype.is_floating_point:
                 value.lerp_(weights[name], 1 - decay)
             else:
                 value.copy_(weights[name])
 
-    def judge(self) -> Evaluation:
+    def evaluate_averaged(self) -> Evaluation:
         """Evaluate the network with averaged weights on the validation split."""
-        return evaluate(self.names, *self._detect_validation(self.smooth))
+        return evaluate(self.names, *self._detect_validation(self.averaged))
 
     def best_threshold(self, network: Network) -> float:
         """Return the score threshold at which F1 on the validation split is greatest."""
@@ -207,16 +209,16 @@ class Course:
             boxes, logits = network(images)
             scores = logits.sigmoid()
             pairs = zip(boxes.cpu().numpy(), scores.cpu().numpy(), strict=True)
-            detections += [self._found(prediction, score) for prediction, score in pairs]
+            detections += [self._detections_in(prediction, score) for prediction, score in pairs]
         return [_to_ground_truth(objects) for objects in self._validation.objects], detections
 
-    def _found(self, boxes: NDArray[np.float32], scores: NDArray[np.float32]) -> Detections:
+    def _detections_in(self, boxes: NDArray[np.float32], scores: NDArray[np.float32]) -> Detections:
         """Return the detections in one image from boxes (cells, 4) and scores (cells, classes)."""
         cell_indices, class_indices = np.nonzero(scores >= EVALUATION_LIMITS.threshold)
         confidences: NDArray[np.float32] = scores[cell_indices, class_indices]
         classes: NDArray[np.int32] = class_indices.astype(np.int32)
         kept_indices = non_maximum_suppression(
-            boxes[cell_indices], confidences, classes, EVALUATION_LIMITS.iou, EVALUATION_LIMITS.most
+            boxes[cell_indices], confidences, classes, EVALUATION_LIMITS.iou, EVALUATION_LIMITS.max_detections
         )
         return Detections(
             boxes[cell_indices[kept_indices]], confidences[kept_indices], classes[kept_indices], self.names
@@ -229,7 +231,7 @@ class Course:
             "names": list(self.names),
             "seed": self.options.seed,
             "network": self.network.state_dict(),
-            "smooth": self.smooth.state_dict(),
+            "smooth": self.averaged.state_dict(),
             "best": self.best,
             "best_map": self.best_map,
             "best_epoch": self.best_epoch,
@@ -247,7 +249,7 @@ class Course:
         images, size = self._training.images[:_STATISTICS_IMAGES], self.options.batch
         batches = (_tensor(images[start : start + size], self._device) for start in range(0, len(images), size))
         load_weights(self.network, self.names, path, batches)
-        self.smooth.load_state_dict(self.network.state_dict())
+        self.averaged.load_state_dict(self.network.state_dict())
 
     def load(self, path: Path) -> None:
         """Restore the training from a checkpoint.
@@ -269,7 +271,7 @@ class Course:
             hint = phrase("leave out --resume to start from scratch")
             raise LinkwrightError(Diagnostic("VISION306", message, hint=hint))
         self.network.load_state_dict(state["network"])
-        self.smooth.load_state_dict(state["smooth"])
+        self.averaged.load_state_dict(state["smooth"])
         self._optimizer.load_state_dict(state["optimizer"])
         self.best, self.best_map, self.best_epoch = state["best"], state["best_map"], state["best_epoch"]
         self.epoch, self._step, self.seconds = state["epoch"], state["step"], state["seconds"]

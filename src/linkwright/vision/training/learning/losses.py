@@ -26,15 +26,15 @@ class Assignment:
     Attributes:
         boxes: shape (batch, cells, 4), pixels; only meaningful for cells with an object.
         scores: shape (batch, cells, classes), the target scores between 0 and 1.
-        taken: shape (batch, cells), whether an object is assigned to the cell.
-        unasked: shape (batch, cells), whether the cell counts for no score, because it is inside an ignored object
+        is_assigned: shape (batch, cells), whether an object is assigned to the cell.
+        is_ignored: shape (batch, cells), whether the cell counts for no score, because it is inside an ignored object
             only.
     """
 
     boxes: Tensor
     scores: Tensor
-    taken: Tensor
-    unasked: Tensor
+    is_assigned: Tensor
+    is_ignored: Tensor
 
 
 def overlaps(first: Tensor, second: Tensor) -> tuple[Tensor, Tensor]:
@@ -115,9 +115,9 @@ def loss(boxes: Tensor, logits: Tensor, centres: Tensor, objects: Tensor) -> tup
     score_loss = functional.binary_cross_entropy_with_logits(logits, targets.scores, reduction="none")
     # Empty cells with high scores weigh most; empty cells with low scores are right already and weigh almost nothing.
     weights = torch.where(targets.scores > 0, targets.scores, 0.75 * logits.sigmoid().detach() ** 2)
-    score_loss = (score_loss * weights * ~targets.unasked[..., None]).sum() / normalizer
-    box_weights = targets.scores.sum(2)[targets.taken]
-    _, generalised_iou = overlaps(boxes[targets.taken], targets.boxes[targets.taken])
+    score_loss = (score_loss * weights * ~targets.is_ignored[..., None]).sum() / normalizer
+    box_weights = targets.scores.sum(2)[targets.is_assigned]
+    _, generalised_iou = overlaps(boxes[targets.is_assigned], targets.boxes[targets.is_assigned])
     box_loss = ((1 - generalised_iou) * box_weights).sum() / normalizer
     total = _BOX_WEIGHT * box_loss + _SCORE_WEIGHT * score_loss
     return total, torch.stack((box_loss, score_loss)).detach()

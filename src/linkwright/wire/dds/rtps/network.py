@@ -33,7 +33,7 @@ class NetworkAddresses:
     """The addresses of a participant, and the addresses at which it looks for others.
 
     Attributes:
-        own: the participant's addresses, without ports.
+        own_hosts: the participant's addresses, without ports.
         ports: the ports at which others may listen.
         hosts: the unicast addresses of others.
         interfaces: the addresses of the interfaces through which multicast is sent.
@@ -41,7 +41,7 @@ class NetworkAddresses:
         only_here: whether packets from other machines are ignored.
     """
 
-    own: tuple[str, ...]
+    own_hosts: tuple[str, ...]
     ports: range
     hosts: tuple[str, ...]
     interfaces: tuple[str, ...]
@@ -61,7 +61,7 @@ def addresses_from_settings(settings: Settings) -> NetworkAddresses:
     max_count = max_participants(settings.domain_id)
     count = max_count if is_machine else min(max_count, _MAX_SEARCHED)
     return NetworkAddresses(
-        own=(_LOOPBACK,) if is_localhost or is_machine or not interface_addresses else interface_addresses,
+        own_hosts=(_LOOPBACK,) if is_localhost or is_machine or not interface_addresses else interface_addresses,
         ports=range(first_port, first_port + _PORTS_EACH * count, _PORTS_EACH),
         hosts=(_LOOPBACK, *(interface_addresses if is_machine else ()), *_resolve_peers(settings.peers)),
         interfaces=() if is_localhost else (_LOOPBACK, *interface_addresses),
@@ -100,7 +100,7 @@ class Network:
             self.socket.bind(
                 (
                     _LOOPBACK
-                    if self._network_addresses.own == (_LOOPBACK,) and not self._network_addresses.hosts[1:]
+                    if self._network_addresses.own_hosts == (_LOOPBACK,) and not self._network_addresses.hosts[1:]
                     else "",
                     0,
                 )
@@ -114,7 +114,7 @@ class Network:
             self.socket.close()
             raise
         port = self.socket.getsockname()[1]
-        self.addresses: list[Address] = [(host, port) for host in self._network_addresses.own]
+        self.addresses: list[Address] = [(host, port) for host in self._network_addresses.own_hosts]
 
     def receive(self) -> tuple[bytes, Address] | None:
         """Return the next message and its sender, or None if no message is waiting."""

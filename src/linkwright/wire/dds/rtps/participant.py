@@ -46,7 +46,7 @@ from linkwright.wire.dds.rtps.reader import Reader
 from linkwright.wire.dds.rtps.values import Address, MalformedError
 from linkwright.wire.dds.rtps.writer import Packet, Writer
 from linkwright.wire.dds.settings import Settings
-from linkwright.wire.living_threads import guarded
+from linkwright.wire.guarded_calls import guarded
 
 _LEASE_S = 10.0
 _ANNOUNCEMENT_INTERVAL_S = 3.0
@@ -112,7 +112,7 @@ class RtpsParticipant:
         self._peers: dict[bytes, _Peer] = {}
         self._expected_prefixes: frozenset[bytes] = frozenset()
         self._search_count = 0
-        self._look_at = 0.0
+        self._search_at = 0.0
         self._announce_at = 0.0
         self._announcement_count = 0
         self._last_entity = 0
@@ -225,7 +225,7 @@ class RtpsParticipant:
         with self._lock:
             expected_prefixes = frozenset(prefixes)
             if expected_prefixes - self._expected_prefixes:
-                self._search_count, self._look_at = 0, 0.0
+                self._search_count, self._search_at = 0, 0.0
             self._expected_prefixes = expected_prefixes
         self._wake()
 
@@ -244,7 +244,7 @@ class RtpsParticipant:
 
     def _run(self) -> None:
         while not self._is_closing:
-            seconds = guarded(self._due)
+            seconds = guarded(self._do_due_work)
             timeout = _MAX_WAIT_S if seconds is None else seconds
             readable, _, _ = select.select([self._network.socket, self._wake_receiver], [], [], timeout)
             if self._wake_receiver in readable:
@@ -269,7 +269,7 @@ class RtpsParticipant:
             packets = self._process_packet(packet, source, calls)
         self._network.send(packets)
 
-    def _due(self) -> float:
+    def _do_due_work(self) -> float:
         """Do the work that is due, and return the seconds until the next work is due."""
         now = time.monotonic()
         packets: list[Packet] = []
@@ -277,9 +277,9 @@ class RtpsParticipant:
             expired_prefixes = [prefix for prefix, peer in self._peers.items() if peer.until < now]
             for prefix in expired_prefixes:
                 self._forget_peer(prefix)
-            must_search = bool(self._expected_prefixes - self._peers.keys()) and now >= self._look_at
+            must_search = bool(self._expected_prefixes - self._peers.keys()) and now >= self._search_at
             if must_search:
-                self._look_at = now + _SEARCH_INTERVALS_S[min(self._search_count + 1, len(_SEARCH_INTERVALS_S) - 1)]
+                self._search_at = now + _SEARCH_INTERVALS_S[min(self._search_count + 1, len(_SEARCH_INTERVALS_S) - 1)]
                 self._search_count += 1
             must_announce = now >= self._announce_at
             if must_announce:
@@ -290,7 +290,7 @@ class RtpsParticipant:
             due_times = [reminder for entity in entities if (reminder := entity.next_reminder()) is not None]
             due_times.append(self._announce_at)
             if self._expected_prefixes - self._peers.keys():
-                due_times.append(self._look_at)
+                due_times.append(self._search_at)
         self._network.send(packets)
         if expired_prefixes:
             self.changed()

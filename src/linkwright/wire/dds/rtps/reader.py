@@ -60,7 +60,7 @@ class _Writer:
     count: int = 0
     heard_at: float | None = None
     last: int = 0
-    due: float = 0.0
+    due_at: float = 0.0
     repeat: float = _FIRST_REPEAT
 
     def has(self, number: int) -> bool:
@@ -186,7 +186,7 @@ class Reader:
 
     def remind(self, now: float) -> list[Packet]:
         """Return the packets that repeat a request to silent writers, if a request is due."""
-        silent_writers = [item for item in self._writers.items() if item[1].heard_at is None and now >= item[1].due]
+        silent_writers = [item for item in self._writers.items() if item[1].heard_at is None and now >= item[1].due_at]
         return [self._request_heartbeat(writer, writer_state, now) for writer, writer_state in silent_writers]
 
     def next_reminder(self) -> float | None:
@@ -195,7 +195,8 @@ class Reader:
         Returns None if all writers have sent a heartbeat.
         """
         return min(
-            (writer_state.due for writer_state in self._writers.values() if writer_state.heard_at is None), default=None
+            (writer_state.due_at for writer_state in self._writers.values() if writer_state.heard_at is None),
+            default=None,
         )
 
     @staticmethod
@@ -217,7 +218,7 @@ class Reader:
 
         Fast DDS answers base 0, but not base 1, with a heartbeat.
         """
-        writer_state.due, writer_state.repeat = now + writer_state.repeat, min(writer_state.repeat * 2, _LAST_REPEAT)
+        writer_state.due_at, writer_state.repeat = now + writer_state.repeat, min(writer_state.repeat * 2, _LAST_REPEAT)
         return self._acknack(writer, writer_state, 0, [], final=False)
 
     def _acknowledge(self, writer: bytes, writer_state: _Writer) -> Packet:

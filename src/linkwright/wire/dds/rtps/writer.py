@@ -50,7 +50,7 @@ class _Reader:
     addresses: tuple[Address, ...]
     base: int
     """All samples before this number were acknowledged, or are not for this reader."""
-    due: float = 0.0
+    due_at: float = 0.0
     repeat: float = _FIRST_REPEAT
     heard: bool = False
 
@@ -119,7 +119,7 @@ class Writer:
             self._drop(min(self._changes))
         packets: list[Packet] = []
         for reader, reader_state in self._readers.items():
-            reader_state.due, reader_state.repeat = time.monotonic() + _FIRST_REPEAT, _FIRST_REPEAT
+            reader_state.due_at, reader_state.repeat = time.monotonic() + _FIRST_REPEAT, _FIRST_REPEAT
             packets += self._sample(reader, reader_state, number)
         return packets
 
@@ -141,7 +141,7 @@ class Writer:
         if acknack.base > reader_state.base:
             reader_state.base = min(acknack.base, self._last_number + 1)
             reader_state.repeat = _FIRST_REPEAT
-            reader_state.due = time.monotonic() + reader_state.repeat
+            reader_state.due_at = time.monotonic() + reader_state.repeat
             self._forget_acknowledged()
         packets = [
             packet for number in acknack.missing for packet in self._repeat_sample(acknack.reader, reader_state, number)
@@ -167,8 +167,8 @@ class Writer:
         """Return heartbeats for the readers that have not acknowledged all samples, if they are due."""
         packets = []
         for reader, reader_state in self._readers.items():
-            if reader_state.base <= self._last_number and now >= reader_state.due:
-                reader_state.due = now + reader_state.repeat
+            if reader_state.base <= self._last_number and now >= reader_state.due_at:
+                reader_state.due_at = now + reader_state.repeat
                 reader_state.repeat = min(reader_state.repeat * 2, _LAST_REPEAT)
                 packets.append(self._packet(reader, reader_state, self._heartbeat(reader, reader_state)))
         return packets
@@ -179,14 +179,14 @@ class Writer:
         Returns None if everything has been acknowledged.
         """
         return min(
-            (reader_state.due for reader_state in self._readers.values() if reader_state.base <= self._last_number),
+            (reader_state.due_at for reader_state in self._readers.values() if reader_state.base <= self._last_number),
             default=None,
         )
 
     # --- inside ------------------------------------------------------------------------------------------------------
 
     def _history_packets(self, reader: bytes, reader_state: _Reader) -> list[Packet]:
-        reader_state.due = time.monotonic() + _FIRST_REPEAT
+        reader_state.due_at = time.monotonic() + _FIRST_REPEAT
         packets = [packet for number in sorted(self._changes) for packet in self._sample(reader, reader_state, number)]
         return packets or [self._packet(reader, reader_state, self._heartbeat(reader, reader_state))]
 

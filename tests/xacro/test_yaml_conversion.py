@@ -9,7 +9,7 @@ import yaml
 from hypothesis import given
 from hypothesis import strategies as st
 
-from linkwright.xacro.expressions.yamlnodes import NodeLoader, construct
+from linkwright.xacro.expressions.yaml_conversion import NodeLoader, construct
 
 PIECES = [
     *("a", ": ", "- ", "\n", "\n  ", "1", "0x1f", "012", "1:20", "~", "yes", "&x ", "*x", "<<: ", "[", "]", "{", "}"),

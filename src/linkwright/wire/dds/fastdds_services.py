@@ -79,7 +79,7 @@ class FastServer:
         request, response = map(dds_type, request_and_response_types(service.type_name))
         self._late_replies: deque[tuple[float, bytes, int, Any]] = deque()
         self._early_requests: list[EarlyRequest] = []
-        self._first: dict[bytes, tuple[int, int]] = {}
+        self._first_samples: dict[bytes, tuple[int, int]] = {}
         """The number and time of each writer's first sample that arrived here. All later samples arrive here, too."""
         self._numbered_requests: dict[bytes, deque[tuple[int, int]]] = {}
         self._lock = Lock()
@@ -121,7 +121,7 @@ class FastServer:
 
     def _on_data(self, sample: Data) -> None:
         with self._lock:
-            self._first.setdefault(sample.writer, (sample.number, sample.time))
+            self._first_samples.setdefault(sample.writer, (sample.number, sample.time))
             numbered = self._numbered_requests.get(sample.writer, ())
             if any(
                 number == sample.number and abs(time_ - sample.time) < _TIME_TOLERANCE_NS for number, time_ in numbered
@@ -184,8 +184,8 @@ class FastServer:
         """Return a writer's numbered early requests, without those that this reader also receives."""
         last_number = self._participant.last_of(self._requests, writer)
         with self._lock:
-            if writer in self._first:
-                number, written_first = self._first[writer]
+            if writer in self._first_samples:
+                number, written_first = self._first_samples[writer]
                 last_number = number - 1
                 early_requests = [
                     early_request

@@ -94,7 +94,7 @@ class Inference:
         findings: the findings by kind, and in the order of the file within a kind.
         base_frame: the child frame of the odometry: ``base_footprint``, ``base_link`` or the root.
         casters: the links that touch the ground and only slide, or roll without a drive.
-        held: the joints, except those of wheels, that hold their position and can be commanded, in file order.
+        held_joints: the joints, except those of wheels, that hold their position and can be commanded, in file order.
         fixed_base: whether the robot's root is fixed to the world.
         ground: the z of the ground in the root's frame, in m, with all joints at zero: that of the lowest wheel, or
             without wheels of the lowest point; 0 for a fixed base. A robot is placed in a world at minus this height.
@@ -105,7 +105,7 @@ class Inference:
     findings: tuple[Finding, ...]
     base_frame: str
     casters: tuple[str, ...] = ()
-    held: tuple[str, ...] = ()
+    held_joints: tuple[str, ...] = ()
     fixed_base: bool = False
     ground: float = 0.0
     masses: Mapping[str, float] = field(default_factory=dict)

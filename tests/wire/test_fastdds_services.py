@@ -9,7 +9,7 @@ from types import SimpleNamespace
 import pytest
 
 from linkwright.messages import get_service, serialize
-from linkwright.wire.dds.fast_services import EarlyRequest, FastClient, FastServer
+from linkwright.wire.dds.fastdds_services import EarlyRequest, FastClient, FastServer
 from linkwright.wire.dds.rtps.messages import Data
 from linkwright.wire.dds.rtps.values import read_parameters, related_identity
 from tests.wire.test_failures import Once, warnings_of
@@ -117,7 +117,7 @@ class _Service:
 
 def test_early_requests_get_the_numbers_before_the_first_that_was_heard(monkeypatch):
     now = 100.0
-    monkeypatch.setattr("linkwright.wire.dds.fast_services.time.monotonic", lambda: now)
+    monkeypatch.setattr("linkwright.wire.dds.fastdds_services.time.monotonic", lambda: now)
     service, participant = _Service(), _Heard(heard_at=None, last=7)
     server = FastServer(service, participant)
     for number, text in enumerate(["six", "seven"]):
@@ -137,7 +137,7 @@ def test_early_requests_get_the_numbers_before_the_first_that_was_heard(monkeypa
 
 def test_an_early_request_that_comes_late_with_its_number_is_carried_out_once(monkeypatch):
     now = 100.0
-    monkeypatch.setattr("linkwright.wire.dds.fast_services.time.monotonic", lambda: now)
+    monkeypatch.setattr("linkwright.wire.dds.fastdds_services.time.monotonic", lambda: now)
     service, participant = _Service(), _Heard(heard_at=now, last=1)
     server = FastServer(service, participant)
     server.on_early_request(EarlyRequest(b"w" * 16, serialize(says("first")), 5_000_000, now))

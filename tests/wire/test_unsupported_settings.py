@@ -9,9 +9,8 @@ from linkwright.diagnostics import LinkwrightError
 from linkwright.graph import Graph
 from linkwright.graph.faults import RclError
 from linkwright.standins.rclpy_api.context import Context
-from linkwright.wire import unfollowed
 from linkwright.wire.joining import available, check_security, join
-from linkwright.wire.unfollowed import new_unsupported_settings, unsupported_settings
+from linkwright.wire.unsupported_settings import new_unsupported_settings, unsupported_settings
 from tests.domains import own_domain
 
 SECURE = {"ROS_SECURITY_ENABLE": "true"}
@@ -22,7 +21,7 @@ with_network = pytest.mark.skipif(not available(), reason="there is neither DDS 
 
 
 def codes(variables):
-    return [unfollowed_setting.code for unfollowed_setting in unsupported_settings(variables)]
+    return [setting.code for setting in unsupported_settings(variables)]
 
 
 @pytest.mark.parametrize(
@@ -68,14 +67,14 @@ def test_nobody_joins_where_security_is_enforced():
 
 
 def test_each_setting_is_told_once_in_a_process(monkeypatch):
-    monkeypatch.setattr(unfollowed, "_reported", set())
+    monkeypatch.setattr("linkwright.wire.unsupported_settings._reported", set())
     assert [setting.code for setting in new_unsupported_settings(SERVER)] == ["DDS123"]
     assert [setting.code for setting in new_unsupported_settings({**SERVER, **SECURE})] == ["DDS122"]
 
 
 @with_network
 def test_graphs_that_join_log_it(monkeypatch):
-    monkeypatch.setattr(unfollowed, "_reported", set())
+    monkeypatch.setattr("linkwright.wire.unsupported_settings._reported", set())
     for name, value in SERVER.items():
         monkeypatch.setenv(name, value)
     log = []

@@ -114,7 +114,7 @@ cache: BoundedCache[str, Any] = BoundedCache(200, lambda *_: 1)
 def _load(text: str, evaluate: Callable[[str], Any] | None) -> Any:
     import yaml
 
-    from linkwright.xacro.expressions.yamlnodes import NodeLoader, construct
+    from linkwright.xacro.expressions.yaml_conversion import NodeLoader, construct
 
     loader_class = NodeLoader if evaluate is None else _unit_loader(NodeLoader, evaluate)
     loader = loader_class(text)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from linkwright.graph import Graph, LogRecord
-from linkwright.graph.introspection.graph_queries import Namesakes
+from linkwright.graph.introspection.graph_queries import SharedNameMonitor
 from linkwright.graph.names.rules import NodeIdentity
 
 
@@ -12,7 +12,7 @@ def test_each_is_told_once_as_long_as_it_is_there():
     graph = Graph(threads=True, on_log=log.append)
     graph.create_node("talker", namespace="/robot")
     graph.create_node("listener")
-    namesakes = Namesakes()
+    namesakes = SharedNameMonitor()
     there = [NodeIdentity("talker", "/robot", "/"), NodeIdentity("listener", "/robot", "/")]
     namesakes.review(graph.nodes(), [])
     namesakes.review(graph.nodes(), there)
@@ -30,7 +30,7 @@ def test_names_of_the_root_have_one_slash():
     log: list[LogRecord] = []
     graph = Graph(threads=True, on_log=log.append)
     graph.create_node("talker")
-    Namesakes().review(graph.nodes(), [NodeIdentity("talker", "/", "/")])
+    SharedNameMonitor().review(graph.nodes(), [NodeIdentity("talker", "/", "/")])
     assert "'/talker'" in log[0].text
     graph.close_threadsafe()
 
@@ -41,7 +41,7 @@ def test_who_asks_to_be_told_hears_of_each_change_and_nothing_is_logged():
     graph = Graph(threads=True, on_log=log.append)
     graph.create_node("talker")
     graph.create_node("listener")
-    namesakes = Namesakes(messages.append)
+    namesakes = SharedNameMonitor(messages.append)
     talker, listener = NodeIdentity("talker", "/", "/"), NodeIdentity("listener", "/", "/")
     for there in ([], [talker], [talker, NodeIdentity("other", "/", "/")], [talker, listener], [listener], []):
         namesakes.review(graph.nodes(), there)

@@ -107,7 +107,7 @@ class _Construction:
             f"{_TAG_PREFIX}bool": loader.construct_yaml_bool,
             f"{_TAG_PREFIX}null": loader.construct_yaml_null,
         }
-        self._begun: set[int] = set()
+        self._started_nodes: set[int] = set()
         self._values_by_id: dict[int, Any] = {}  # the value of each node, which aliases share
 
     def value(self, node: Any) -> Any:
@@ -122,9 +122,9 @@ class _Construction:
         key = id(node)
         if key in self._values_by_id:
             return self._values_by_id[key]
-        if key in self._begun:
+        if key in self._started_nodes:
             raise _UnusualError
-        self._begun.add(key)
+        self._started_nodes.add(key)
         if tag == "tag:yaml.org,2002:map":
             value: Any = self._mapping(node)
         elif tag == "tag:yaml.org,2002:seq":
