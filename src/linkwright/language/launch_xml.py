@@ -8,7 +8,7 @@ from linkwright.language.completion import Completion
 from linkwright.language.cursor import Spot, cursor_at
 from linkwright.language.format import Document, Format, Symbol, SymbolKind, Target
 from linkwright.language.grammar import is_launch_file
-from linkwright.language.hover import Explanation, explain_at
+from linkwright.language.hover import Explanation
 from linkwright.language.launch_values import (
     LaunchText,
     LaunchValue,
@@ -20,6 +20,7 @@ from linkwright.language.launch_values import (
 from linkwright.language.links import FileReference
 from linkwright.language.outline import Outline, OutlineElement
 from linkwright.language.xml_completion import complete
+from linkwright.language.xml_hover import explain_at
 from linkwright.xmltree.tokens import Kind, Token, tokens
 
 
@@ -65,7 +66,7 @@ def _complete(document: Document, offset: int) -> Iterator[Completion]:
 def _explain(document: Document, offset: int) -> Explanation | None:
     value = _value_at(document.text, offset)
     found = None if value is None else explain_value(LaunchText(document), value)
-    return found or explain_at(document.text, offset, document.file, ())
+    return found or explain_at(document, offset)
 
 
 def _define(document: Document, offset: int) -> Iterator[Target]:

@@ -146,7 +146,8 @@ def _common_beginning(name: str, other: str) -> int:
 def _read(project: Workspace, texts: Mapping[Path, str], entry: Path, before: _Robot | None) -> _Robot:
     """Return the names of a description.
 
-    While it cannot be expanded, because its text is being typed, these are the names from before, or those of the saved files.
+    While it cannot be expanded, because its text is being typed, these are the names from before, or those of the
+    saved files.
 
     Args:
         project: the workspace.

@@ -14,13 +14,14 @@ from linkwright.language.definitions import NameDefinition, NameKind
 from linkwright.language.facts import facts_at, part_facts
 from linkwright.language.format import Document, Format, Target
 from linkwright.language.grammar import rule_at
-from linkwright.language.hover import Explanation, definitions_at, explain_at
+from linkwright.language.hover import Explanation, definitions_at
 from linkwright.language.includes import real
 from linkwright.language.links import FileReference, file_references
 from linkwright.language.outline import Outline
 from linkwright.language.srdf_schema import CHOICES, GROUP, JOINT, LINK, SRDF
 from linkwright.language.values import values_in
 from linkwright.language.xml_completion import complete
+from linkwright.language.xml_hover import explain_at
 from linkwright.packages import enclosing_package
 from linkwright.packages.readers.entry_points import text_of
 from linkwright.packages.share_layout import source_of
@@ -146,7 +147,7 @@ def _explain(document: Document, offset: int) -> Explanation | None:
         if facts is not None:
             text = f"**{kind.value} {name}**\n\n{facts}"
             return Explanation(text, cursor.attribute.value_start, cursor.attribute.value_end)
-    found = explain_at(document.text, offset, document.file, semantics.names)
+    found = explain_at(document, offset, semantics.names)
     if found is not None or not document.file.name.endswith(".xacro"):
         return found
     values = values_in(document.project, document.texts, document.file)

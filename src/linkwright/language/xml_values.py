@@ -198,7 +198,7 @@ def _of_type(
 
 def _interfaces(document: Document, cursor: Cursor, start: int) -> Iterator[Completion]:
     """Yield the names of interfaces that the component does not have yet."""
-    around = _around(document.text, cursor.elements[:-1])
+    around = element_at(document.text, cursor.elements[:-1])
     tag = cursor.tags[-1]
     others = [] if around is None else [each for each in around.children if each.tag.name == tag]
     given = {_attribute(each.tag, "name") for each in others if each.tag.start != cursor.elements[-1].start}
@@ -213,7 +213,7 @@ def _written(text: str, tag: str) -> list[str]:
 
 def _parameters(document: Document, cursor: Cursor, start: int) -> Iterator[Completion]:
     """Yield the parameters of hardware or of an interface."""
-    around = _around(document.text, cursor.elements[:-1])
+    around = element_at(document.text, cursor.elements[:-1])
     others = [] if around is None else [child for child in around.children if child.tag.name == "param"]
     given = {_attribute(each.tag, "name") for each in others if each.tag.start != cursor.elements[-1].start}
     if cursor.tags[-2:-1] == ("hardware",):
@@ -233,7 +233,7 @@ def hardware_of(text: str, hardware: OutlineElement | None) -> str:
     return "" if plugin is None else text[plugin.tag.end : plugin.end].partition("<")[0].strip()
 
 
-def _around(text: str, elements: Sequence[Token]) -> OutlineElement | None:
+def element_at(text: str, elements: Sequence[Token]) -> OutlineElement | None:
     """Return the innermost of some nested elements in the outline of a text."""
     inside, found = Outline.of(text).elements, None
     for element in elements:

@@ -13,13 +13,14 @@ from linkwright.language.completion import Completion, ItemKind
 from linkwright.language.definitions import NameDefinition
 from linkwright.language.facts import facts_at
 from linkwright.language.format import Document, Target
-from linkwright.language.hover import definitions_at, explain_at
+from linkwright.language.hover import definitions_at
 from linkwright.language.includes import real
 from linkwright.language.links import file_references
 from linkwright.language.robot_names import PartNames
 from linkwright.language.suppressing import code_at
 from linkwright.language.values import ValuedText, described_values, value_at
 from linkwright.language.xml_completion import complete
+from linkwright.language.xml_hover import explain_at
 from linkwright.lint.explain import find_page
 from linkwright.lsp.positions import TextOf, TextPositions
 from linkwright.lsp.requests.expansions import source_of
@@ -65,7 +66,7 @@ def _item(item: Completion, positions: TextPositions, offset: int, *, takes_snip
 
 
 def hover(
-    path: Path,
+    document: Document,
     names: Sequence[NameDefinition],
     values: Sequence[ValuedText],
     facts: Iterable[str],
@@ -75,7 +76,7 @@ def hover(
     """Return what is known about a place, or None if there is nothing to say.
 
     Args:
-        path: the file.
+        document: the file.
         names: the names that the description defines.
         values: the values of the expressions in the file.
         facts: the facts about the link, joint, mesh or package at the place.
@@ -83,7 +84,7 @@ def hover(
         place: the place.
     """
     offset = positions.offset(place)
-    found, valued = explain_at(positions.text, offset, path, names), value_at(values, offset)
+    found, valued = explain_at(document, offset, names), value_at(values, offset)
     parts = [] if found is None else [localized(found.text)]
     span = None if found is None else (found.start, found.end)
     if valued is not None:
@@ -201,7 +202,8 @@ def add_requests(server: LinkwrightServer) -> None:
         text, offset = positions.text, positions.offset(asked.position)
         facts = await server.in_thread(lambda: facts_at(project, texts, real(path), text, offset, values))
         server.check_unchanged(path, positions)
-        return hover(path, known, values, facts, positions, asked.position)
+        document = Document(project, texts, real(path), text)
+        return hover(document, known, values, facts, positions, asked.position)
 
     @server.feature(types.TEXT_DOCUMENT_DEFINITION)
     async def definition_request(
