@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -9,9 +10,8 @@ import pytest
 from linkwright.diagnostics.translation import localized
 from linkwright.language.expression_completion import FUNCTIONS, XACRO_FUNCTIONS
 from linkwright.language.extension_schema import DESCRIPTION
-from linkwright.language.format import Document
+from linkwright.language.format import Document, NotYetKnownError
 from linkwright.language.includes import real
-from linkwright.language.robot_names import PartNames
 from linkwright.language.simulator_plugins import simulator_plugins
 from linkwright.language.workspace import Workspace
 from linkwright.language.xml_completion import complete
@@ -79,9 +79,7 @@ def offered(package: Path):
         project = Workspace([package])
         project.index.refresh()
         texts = {file: text}
-        parts = PartNames(project, texts, file)
-        parts.read()
-        found = complete(Document(project, texts, file, text), offset, project.names(file, texts), parts)
+        found = complete(Document(project, texts, file, text), offset, project.names(file, texts))
         assert len({item.label for item in found}) == len(found)
         return [item.label for item in found if item.label.startswith(text[item.start : offset])]
 
@@ -250,3 +248,23 @@ def test_the_tables_have_what_the_rules_know():
         for plugin in simulator_plugins().values()
         for child in plugin.rule.children
     )
+
+
+def test_an_editor_does_not_wait_for_an_expansion(package: Path):
+    file = package / "urdf/arm.urdf.xacro"
+    text = ROBOT.replace("<!-- here -->", '<gazebo reference="left_wheel"/>')
+    offset = text.index("left_wheel") + 2
+    project = Workspace([package])
+    project.index.refresh()
+    document = Document(project, {file: text}, file, text, waits=False)
+    with pytest.raises(NotYetKnownError):
+        complete(document, offset)
+    waiting = [item.label for item in complete(replace(document, waits=True), offset)]
+    assert waiting == [item.label for item in complete(document, offset)]
+    assert not document.refreshes
+    changed = text.replace('side="left"', 'side="right"')
+    document = Document(project, {file: changed}, file, changed, waits=False)
+    assert waiting == [item.label for item in complete(document, offset)]
+    for refresh in document.refreshes:
+        refresh()
+    assert "right_wheel" in [item.label for item in complete(document, offset)]

@@ -5,10 +5,12 @@ from __future__ import annotations
 import re
 import time
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from weakref import WeakKeyDictionary
 
+from linkwright.language.format import Document, NotYetKnownError
 from linkwright.language.includes import real
 from linkwright.language.workspace import Workspace
 from linkwright.lint.targets import walk
@@ -17,7 +19,7 @@ _SOURCES = (".py", ".cpp", ".hpp", ".cc", ".cxx", ".h")
 _MAX_FILES = 3000
 _MAX_TEXT = 300_000
 _SECONDS = 10.0
-"""How long the list of source files is used before the folders are searched again."""
+"""How long the sources are used before they are searched and read again."""
 _DECLARATION = re.compile(
     r"""declare_parameter\s{0,9}(?:<([\w:<> ]{1,80})>)?\s{0,9}\(\s{0,99}["']([\w.]+)["']"""
     r"""\s{0,99}(?:,\s{0,99}([^,()\n]{1,200}))?"""
@@ -57,7 +59,7 @@ class DeclaredParameter:
 
 @dataclass(slots=True)
 class _Sources:
-    files: list[Path]
+    found: list[tuple[str, tuple[DeclaredParameter, ...]]]
     time: float
     cache: dict[Path, tuple[object, str, tuple[DeclaredParameter, ...]]]
 
@@ -65,42 +67,57 @@ class _Sources:
 _sources: WeakKeyDictionary[Workspace, _Sources] = WeakKeyDictionary()
 
 
-def declared_parameters(project: Workspace, texts: Mapping[Path, str], node: str) -> list[DeclaredParameter]:
+def declared_parameters(document: Document, node: str) -> list[DeclaredParameter]:
     """Return the parameters that the sources of a node declare.
 
     These are the sources that contain the name of the node as a string; if none does, all sources of the workspace.
 
     Args:
-        project: the workspace.
-        texts: the texts of the open files.
+        document: the file that asks.
         node: the name of the node.
+
+    Raises:
+        NotYetKnownError: the sources were never read, and the document does not wait.
     """
     of_node: list[DeclaredParameter] = []
     others: list[DeclaredParameter] = []
-    for text, parameters in _read(project, texts):
+    for text, parameters in _known(document):
         (of_node if f'"{node}"' in text or f"'{node}'" in text else others).extend(parameters)
     return of_node or others
 
 
-def _read(project: Workspace, texts: Mapping[Path, str]) -> Iterator[tuple[str, tuple[DeclaredParameter, ...]]]:
-    """Yield the text of each source that declares parameters, and these parameters."""
-    sources = _sources.get(project)
-    if sources is None or time.monotonic() - sources.time > _SECONDS:
-        files = [real(file) for folder in project.index.packages for file in walk(folder, _SOURCES)[0]]
-        cache = {} if sources is None else sources.cache
-        sources = _sources[project] = _Sources(files[:_MAX_FILES], time.monotonic(), cache)
-    for file in sources.files:
+def _known(document: Document) -> list[tuple[str, tuple[DeclaredParameter, ...]]]:
+    """Return the texts of the sources that declare parameters, each with these parameters."""
+    sources = _sources.get(document.project)
+    if sources is not None and time.monotonic() - sources.time <= _SECONDS:
+        return sources.found
+    if document.waits:
+        sources = _sources[document.project] = _read(document.project, document.texts, sources)
+    elif sources is None:
+        raise NotYetKnownError
+    else:
+        document.refreshes.append(partial(_known, replace(document, waits=True)))
+    return sources.found
+
+
+def _read(project: Workspace, texts: Mapping[Path, str], before: _Sources | None) -> _Sources:
+    """Read the sources that have changed since they were read before."""
+    files = [real(file) for folder in project.index.packages for file in walk(folder, _SOURCES)[0]][:_MAX_FILES]
+    cache = {} if before is None else before.cache
+    found: list[tuple[str, tuple[DeclaredParameter, ...]]] = []
+    for file in files:
         try:
             state: object = texts.get(file) or file.stat().st_mtime_ns
         except OSError:
             continue
-        entry = sources.cache.get(file)
+        entry = cache.get(file)
         if entry is None or entry[0] != state:
             text = project.text(file, texts) or ""
             parameters = tuple(_declarations(text, file)) if len(text) <= _MAX_TEXT else ()
-            entry = sources.cache[file] = (state, text if parameters else "", parameters)
+            entry = cache[file] = (state, text if parameters else "", parameters)
         if entry[2]:
-            yield entry[1], entry[2]
+            found.append((entry[1], entry[2]))
+    return _Sources(found, time.monotonic(), cache)
 
 
 def _declarations(text: str, file: Path) -> Iterator[DeclaredParameter]:

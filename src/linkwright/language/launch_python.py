@@ -13,7 +13,7 @@ from linkwright.language.cursor import name_at
 from linkwright.language.format import Document, Format, Symbol, SymbolKind, Target
 from linkwright.language.hover import Explanation
 from linkwright.language.launch_arguments import LaunchArgument, arguments_in, likely_values
-from linkwright.language.launch_classes import class_arguments, described_class, first_argument
+from linkwright.language.launch_classes import class_arguments, described_class, first_argument, load_classes
 from linkwright.language.links import FileReference
 from linkwright.language.offers import (
     explain_file,
@@ -374,5 +374,5 @@ def _label(launch: _LaunchText, call: Group) -> str:
     return f"{call.function} {next(filter(None, names), '')}".strip()
 
 
-LAUNCH_PYTHON = Format(is_python_launch_file, _complete, _explain, _define, _links, _symbols)
+LAUNCH_PYTHON = Format(is_python_launch_file, _complete, _explain, _define, _links, _symbols, prepare=load_classes)
 """Launch files in Python."""

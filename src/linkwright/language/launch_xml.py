@@ -9,6 +9,7 @@ from linkwright.language.cursor import Spot, cursor_at
 from linkwright.language.format import Document, Format, Symbol, SymbolKind, Target
 from linkwright.language.grammar import is_launch_file
 from linkwright.language.hover import Explanation
+from linkwright.language.launch_text import substitution_names
 from linkwright.language.launch_values import (
     LaunchText,
     LaunchValue,
@@ -114,5 +115,5 @@ def _symbol(element: OutlineElement, depth: int) -> Symbol:
     return Symbol(name, kind, element.tag.start, element.end, children, given.get("pkg", ""))
 
 
-LAUNCH_XML = Format(is_launch_file, _complete, _explain, _define, _links, _symbols)
+LAUNCH_XML = Format(is_launch_file, _complete, _explain, _define, _links, _symbols, prepare=substitution_names)
 """Launch files in XML."""

@@ -10,6 +10,7 @@ from linkwright.language.format import Document, Format, Symbol, SymbolKind, Tar
 from linkwright.language.grammar import rule_at
 from linkwright.language.hover import Explanation
 from linkwright.language.launch_schema import LAUNCH
+from linkwright.language.launch_text import substitution_names
 from linkwright.language.launch_values import (
     LaunchText,
     LaunchValue,
@@ -166,5 +167,5 @@ _KINDS = {
     "executable": SymbolKind.FUNCTION,
 }
 
-LAUNCH_YAML = Format(is_yaml_launch_file, _complete, _explain, _define, _links, _symbols)
+LAUNCH_YAML = Format(is_yaml_launch_file, _complete, _explain, _define, _links, _symbols, prepare=substitution_names)
 """Launch files in YAML."""

@@ -38,7 +38,7 @@ def sources_of(document: Document, section: Section) -> list[DeclaredParameter]:
     """Return the parameters that sources of the workspace declare, if the node of a section is not known."""
     if not section.may_be_controller or section.node in section.controllers:
         return []
-    return declared_parameters(document.project, document.texts, section.node)
+    return declared_parameters(document, section.node)
 
 
 def kinds_of_parameter(key: str) -> tuple[NameKind, ...]:
@@ -115,7 +115,7 @@ def _robot_values(document: Document, key: str, default: str) -> Iterator[tuple[
         return
     if default in _USUAL_FRAMES:
         yield default, localized(phrase("default"))
-    parts = robot_names(document.project, document.texts, document.file)
+    parts = robot_names(document)
     if NameKind.JOINT in kinds:  # joints that move first
         parts.sort(key=lambda name: name.detail == "fixed")
     for name in parts:

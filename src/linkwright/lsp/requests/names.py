@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from lsprotocol import types
@@ -12,11 +13,11 @@ from linkwright.diagnostics.translation import localized
 from linkwright.language.completion import Completion, ItemKind
 from linkwright.language.definitions import NameDefinition
 from linkwright.language.facts import facts_at
-from linkwright.language.format import Document, Target
+from linkwright.language.format import Document, NotYetKnownError, Target
+from linkwright.language.formats import format_of
 from linkwright.language.hover import definitions_at
 from linkwright.language.includes import real
 from linkwright.language.links import file_references
-from linkwright.language.robot_names import PartNames
 from linkwright.language.suppressing import code_at
 from linkwright.language.values import ValuedText, described_values, value_at
 from linkwright.language.xml_completion import complete
@@ -38,6 +39,21 @@ _KINDS = {
     ItemKind.FILE: types.CompletionItemKind.File,
     ItemKind.FOLDER: types.CompletionItemKind.Folder,
 }
+
+
+def completions_at(document: Document, offset: int, names: Sequence[NameDefinition]) -> list[Completion]:
+    """Return the completions at a place, by the format of the file.
+
+    Args:
+        document: the text.
+        offset: the character offset of the place.
+        names: the names that the description of the file defines, if it is one.
+
+    Raises:
+        NotYetKnownError: they need something that no request has found, and the document does not wait.
+    """
+    own = format_of(document.file)
+    return complete(document, offset, names) if own is None else [*own.complete(document, offset)]
 
 
 def items(
@@ -165,25 +181,22 @@ def add_requests(server: LinkwrightServer) -> None:
         capabilities = server.client_capabilities.text_document
         item = capabilities.completion.completion_item if capabilities and capabilities.completion else None
         takes_snippets = bool(item and item.snippet_support)
-        own = await server.formatted(asked.text_document)
-        if own is not None:
-            await server.when_indexed()
-            server.check_unchanged(own.document.file, own.positions)
-            found = own.format.complete(own.document, own.positions.offset(asked.position))
-            return items(found, own.positions, asked.position, takes_snippets=takes_snippets)
-        path, positions = server.text(asked.text_document)
+        path, positions = server.readable(asked.text_document)
         if positions is None or server.project is None:
             return None
-        known, file = await server.names(path), real(path)
-        document = Document(server.project, server.texts(), file, positions.text)
-        parts = PartNames(server.project, document.texts, file)
-        found = complete(document, positions.offset(asked.position), known, parts)
-        if parts.is_missing:
-            await server.in_thread(parts.read)
+        await server.when_prepared(path)
+        known = await server.names(path) if format_of(path) is None else []
+        server.check_unchanged(path, positions)
+        document = Document(server.project, server.texts(), real(path), positions.text, waits=False)
+        offset = positions.offset(asked.position)
+        try:
+            found = completions_at(document, offset, known)
+        except NotYetKnownError:
+            waiting = replace(document, waits=True)
+            found = await server.in_thread(lambda: completions_at(waiting, offset, known))
             server.check_unchanged(path, positions)
-            found = complete(document, positions.offset(asked.position), known, parts)
-        elif parts.is_stale:
-            server.in_background(parts.read, file)
+        if document.refreshes:
+            server.in_background(document.refreshes, document.file)
         return items(found, positions, asked.position, takes_snippets=takes_snippets)
 
     @server.feature(types.TEXT_DOCUMENT_HOVER)
