@@ -37,7 +37,8 @@ def _value_at(text: str, offset: int) -> LaunchValue | None:
     token = cursor.token
     parent = _parent_of(text, token)
     siblings = [] if parent is None else parent.children
-    others = (_given(child.tag).get("name", "") for child in siblings if child.tag.start != token.start)
+    key = "from" if token.name == "remap" else "name"
+    others = (_given(child.tag).get(key, "") for child in siblings if child.tag.start != token.start)
     return LaunchValue(
         cursor.tags,
         cursor.attribute.name,

@@ -8,7 +8,6 @@ from collections.abc import Iterable, Iterator
 from linkwright.diagnostics import phrase
 from linkwright.diagnostics.translation import localized
 from linkwright.language.completion import Completion, ItemKind
-from linkwright.language.declared_parameters import DeclaredParameter, declared_parameters
 from linkwright.language.definitions import NameKind
 from linkwright.language.format import Document
 from linkwright.language.mentions import kinds_of_key
@@ -21,6 +20,7 @@ from linkwright.language.parameter_catalogue import (
 )
 from linkwright.language.parameter_sections import Section
 from linkwright.language.robot_names import robot_names
+from linkwright.language.source_declarations import DeclaredParameter, declared_parameters
 from linkwright.language.yaml_outline import YamlCursor
 from linkwright.language.yaml_symbols import snippet_text
 

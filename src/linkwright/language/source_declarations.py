@@ -1,4 +1,4 @@
-"""The parameters that the sources of the workspace's own nodes declare, in Python and C++."""
+"""The parameters and topics that the sources of the workspace's own nodes declare, in Python and C++."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
+from typing import NamedTuple
 from weakref import WeakKeyDictionary
 
 from linkwright.language.format import Document, NotYetKnownError
@@ -23,6 +24,11 @@ _SECONDS = 10.0
 _DECLARATION = re.compile(
     r"""declare_parameter\s{0,9}(?:<([\w:<> ]{1,80})>)?\s{0,9}\(\s{0,99}["']([\w.]+)["']"""
     r"""\s{0,99}(?:,\s{0,99}([^,()\n]{1,200}))?"""
+)
+_ENDPOINT = re.compile(
+    r"""\b(?:create_(?P<kind>publisher|subscription|service|client)|advertise|subscribe|Action(?P<side>Server|Client))"""
+    r"""\s{0,9}(?:<(?P<type>[\w:<> ]{1,80})>)?\s{0,9}\(\s{0,99}(?:(?:self|this)\s{0,9},\s{0,99})?"""
+    r"""(?:(?P<message>[A-Za-z_][\w.]{0,80})\s{0,9},\s{0,99})?["'](?P<name>[\w~/]{1,120})["']"""
 )
 _TYPES = {
     "int": "integer",
@@ -57,11 +63,44 @@ class DeclaredParameter:
     start: int
 
 
+@dataclass(frozen=True, slots=True)
+class DeclaredTopic:
+    """A topic, service or action that a source creates.
+
+    Attributes:
+        name: the name in the source.
+        type: the type as the source has it; may be empty.
+        role: what the source creates, such as ``publisher`` or ``action server``.
+        file: the source.
+        start: the offset of the name.
+    """
+
+    name: str
+    type: str
+    role: str
+    file: Path
+    start: int
+
+
+class _Source(NamedTuple):
+    """A source that declares something.
+
+    Attributes:
+        text: its text.
+        parameters: the parameters that it declares.
+        topics: the topics, services and actions that it creates.
+    """
+
+    text: str
+    parameters: tuple[DeclaredParameter, ...]
+    topics: tuple[DeclaredTopic, ...]
+
+
 @dataclass(slots=True)
 class _Sources:
-    found: list[tuple[str, tuple[DeclaredParameter, ...]]]
+    found: dict[Path, _Source]
     time: float
-    cache: dict[Path, tuple[object, str, tuple[DeclaredParameter, ...]]]
+    cache: dict[Path, tuple[object, _Source]]
 
 
 _sources: WeakKeyDictionary[Workspace, _Sources] = WeakKeyDictionary()
@@ -81,13 +120,26 @@ def declared_parameters(document: Document, node: str) -> list[DeclaredParameter
     """
     of_node: list[DeclaredParameter] = []
     others: list[DeclaredParameter] = []
-    for text, parameters in _known(document):
+    for text, parameters, _ in _known(document).values():
         (of_node if f'"{node}"' in text or f"'{node}'" in text else others).extend(parameters)
     return of_node or others
 
 
-def _known(document: Document) -> list[tuple[str, tuple[DeclaredParameter, ...]]]:
-    """Return the texts of the sources that declare parameters, each with these parameters."""
+def declared_topics(document: Document, folder: Path) -> list[DeclaredTopic]:
+    """Return the topics, services and actions that the sources below a folder create, or those of one source.
+
+    Args:
+        document: the file that asks.
+        folder: the folder of a package, or a source.
+
+    Raises:
+        NotYetKnownError: the sources were never read, and the document does not wait.
+    """
+    return [topic for file, each in _known(document).items() if file.is_relative_to(folder) for topic in each.topics]
+
+
+def _known(document: Document) -> dict[Path, _Source]:
+    """Return the sources that declare something."""
     sources = _sources.get(document.project)
     if sources is not None and time.monotonic() - sources.time <= _SECONDS:
         return sources.found
@@ -104,7 +156,7 @@ def _read(project: Workspace, texts: Mapping[Path, str], before: _Sources | None
     """Read the sources that have changed since they were read before."""
     files = [real(file) for folder in project.index.packages for file in walk(folder, _SOURCES)[0]][:_MAX_FILES]
     cache = {} if before is None else before.cache
-    found: list[tuple[str, tuple[DeclaredParameter, ...]]] = []
+    found: dict[Path, _Source] = {}
     for file in files:
         try:
             state: object = texts.get(file) or file.stat().st_mtime_ns
@@ -112,12 +164,25 @@ def _read(project: Workspace, texts: Mapping[Path, str], before: _Sources | None
             continue
         entry = cache.get(file)
         if entry is None or entry[0] != state:
-            text = project.text(file, texts) or ""
-            parameters = tuple(_declarations(text, file)) if len(text) <= _MAX_TEXT else ()
-            entry = cache[file] = (state, text if parameters else "", parameters)
-        if entry[2]:
-            found.append((entry[1], entry[2]))
+            entry = cache[file] = state, _source(project.text(file, texts) or "", file)
+        if entry[1].text:
+            found[file] = entry[1]
     return _Sources(found, time.monotonic(), cache)
+
+
+def _source(text: str, file: Path) -> _Source:
+    """Return what a source declares; without its text if that is nothing."""
+    if len(text) > _MAX_TEXT:
+        return _Source("", (), ())
+    source = _Source(text, tuple(_declarations(text, file)), tuple(_topics(text, file)))
+    return source if source.parameters or source.topics else _Source("", (), ())
+
+
+def _topics(text: str, file: Path) -> Iterator[DeclaredTopic]:
+    for match in _ENDPOINT.finditer(text):
+        role = match["kind"] or (f"action {match['side'].lower()}" if match["side"] else "")
+        kind = (match["type"] or match["message"] or "").strip()
+        yield DeclaredTopic(match["name"], kind.replace("::", "/"), role or "topic", file, match.start("name"))
 
 
 def _declarations(text: str, file: Path) -> Iterator[DeclaredParameter]:
