@@ -1,6 +1,6 @@
 /** The names of the files that the language server reads, whatever language VS Code gives them. */
 export const FILES =
-  "**/{*.xacro,*.urdf,*.sdf,*.world,*.srdf,*.launch,*.launch.xml,*.launch.py,*_launch.py,package.xml," +
+  "**/{*.xacro,*.urdf,*.sdf,*.world,*.srdf,*.launch,*.launch.xml,*.launch.py,*_launch.py,package.xml,CMakeLists.txt,setup.py," +
   "model.config,*.msg,*.srv,*.action,*.yaml,*.yml,*.rviz}";
 
 /** The documents that VS Code sends to the language server. */
