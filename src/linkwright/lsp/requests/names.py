@@ -69,14 +69,16 @@ def items(
 
 def _item(item: Completion, positions: TextPositions, offset: int, *, takes_snippets: bool) -> types.CompletionItem:
     is_snippet = bool(item.snippet) and takes_snippets
-    edit = types.TextEdit(positions.range(item.start, offset), item.snippet if is_snippet else item.label)
+    opens = item.snippet.startswith("<")
+    plain = f"<{item.label}" if opens else item.label
+    edit = types.TextEdit(positions.range(item.start, offset), item.snippet if is_snippet else plain)
     return types.CompletionItem(
         item.label,
         kind=_KINDS[item.kind],
         detail=item.detail or None,
         documentation=_markdown(item.description) if item.description else None,
         insert_text_format=types.InsertTextFormat.Snippet if is_snippet else types.InsertTextFormat.PlainText,
-        filter_text=f"<{item.label}" if item.snippet.startswith("<") else None,
+        filter_text=f"<{item.label}" if opens else None,
         text_edit=edit,
     )
 
