@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from enum import Enum
 
@@ -44,10 +44,6 @@ class Completion:
     detail: str = ""
     description: str | Phrase = ""
     snippet: str = ""
-
-
-Parts = Callable[[], Sequence[NameDefinition]]
-"""Returns the links and joints of the robots that a description is part of, after their expansion."""
 
 
 def of_kind(names: Sequence[NameDefinition], kind: NameKind) -> list[NameDefinition]:

@@ -80,7 +80,7 @@ def complete_expression(document: Document, cursor: Cursor, names: Sequence[Name
     for function, purpose in XACRO_FUNCTIONS.items():
         yield Completion(function, ItemKind.FUNCTION, begin, purpose)
     for function in sorted(FUNCTIONS, key=lambda name: (name not in _USUAL, -uses.get(name, 0))):
-        yield Completion(function, ItemKind.FUNCTION, begin, _purpose(function))
+        yield Completion(function, ItemKind.FUNCTION, begin, purpose_of(function))
 
 
 def parameters_in_scope(cursor: Cursor) -> list[Parameter]:
@@ -166,6 +166,7 @@ def _short(text: str) -> str:
     return line if len(line) <= _LONGEST_VALUE else f"{line[: _LONGEST_VALUE - 3]}..."
 
 
-def _purpose(function: str) -> str:
+def purpose_of(function: str) -> str:
+    """Return the first line about a function or constant of expressions."""
     found = getattr(math, function, None) or getattr(builtins, function, None)
     return (getattr(found, "__doc__", None) or "").partition("\n")[0] if callable(found) else str(found)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import Enum
 from pathlib import Path
 
@@ -12,6 +12,10 @@ from linkwright.language.hover import Explanation
 from linkwright.language.links import FileReference
 from linkwright.language.workspace import Workspace
 from linkwright.packages import PackageFinder
+
+
+class NotYetKnownError(Exception):
+    """Raised where a function would have to expand descriptions or to search sources, and may not wait for it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,12 +27,17 @@ class Document:
         texts: the texts of all open files.
         file: the file, as `linkwright.language.includes.real` returns it.
         text: its text, in any state.
+        waits: whether functions may expand descriptions and search sources. Otherwise they use what an earlier request
+            has found, add what brings it up to date to `refreshes`, and raise `NotYetKnownError` if nothing is known.
+        refreshes: what to do after a request, in the thread of the checks, so that the next one has current facts.
     """
 
     project: Workspace
     texts: Mapping[Path, str]
     file: Path
     text: str
+    waits: bool = True
+    refreshes: list[Callable[[], object]] = field(default_factory=list, compare=False)
 
     @property
     def finder(self) -> PackageFinder:
@@ -111,6 +120,7 @@ class Format:
         links: returns the references to other files.
         symbols: returns the parts with names; None for the elements of an XML text.
         needs_index: whether the functions use the descriptions in the folders of the editor.
+        prepare: imports what the functions need and that takes long; it may run in any thread, any number of times.
     """
 
     covers: Callable[[Path], bool]
@@ -120,3 +130,4 @@ class Format:
     links: Callable[[Document], Iterable[FileReference]] = _nothing
     symbols: Callable[[Document], Iterable[Symbol]] | None = None
     needs_index: bool = False
+    prepare: Callable[[], object] = _nothing

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from linkwright.language.cmake_files import CMAKE_FILES
 from linkwright.language.format import Format
 from linkwright.language.interfaces import INTERFACES
 from linkwright.language.launch_python import LAUNCH_PYTHON
@@ -12,6 +13,7 @@ from linkwright.language.launch_yaml import LAUNCH_YAML
 from linkwright.language.manifest import PACKAGE_XML
 from linkwright.language.parameter_files import PARAMETER_FILES
 from linkwright.language.rviz_files import RVIZ_FILES
+from linkwright.language.setup_files import SETUP_FILES
 from linkwright.language.srdf import SRDF_FILES
 
 FORMATS: tuple[Format, ...] = (
@@ -23,6 +25,8 @@ FORMATS: tuple[Format, ...] = (
     SRDF_FILES,
     PARAMETER_FILES,
     RVIZ_FILES,
+    CMAKE_FILES,
+    SETUP_FILES,
 )
 """The formats, the first that covers a file decides."""
 

@@ -120,8 +120,8 @@ def has_xacro(root: ElementRule) -> bool:
 def rule_at(root: ElementRule, tags: Sequence[str], elements: Sequence[Token] = ()) -> ElementRule | None:
     """Return the rule of an element.
 
-    Content of xacro's tags and of macro calls is that of the element around them; the content of a macro may belong to
-    any element, so the first tag in it that URDF has anywhere decides.
+    Content of xacro's tags is that of the element around them. The content of a macro or of a call may belong to any
+    element, so the first tag in it that the language has anywhere decides.
 
     Args:
         root: the rule of the root element.
@@ -150,7 +150,8 @@ def _rule_of_plugin(element: Token) -> ElementRule | None:
 
 
 def _in_macro(root: ElementRule, tags: Sequence[str], tag: str) -> ElementRule | None:
-    return _anywhere(root, tag) if "xacro:macro" in tags else None
+    is_call = any(other.startswith(PREFIX) and other not in XACRO for other in tags)
+    return _anywhere(root, tag) if is_call or "xacro:macro" in tags else None
 
 
 def _anywhere(root: ElementRule, tag: str) -> ElementRule | None:

@@ -65,14 +65,14 @@ class HardwareParameter:
 
 def hardware_plugins(document: Document) -> dict[str, str]:
     """Return the hardware plugins by type, each with its purpose: those of the workspace, then the usual ones."""
-    found = {plugin.name: plugin.description for plugin in plugin_classes(document.project, document.finder, BASE)}
+    found = {plugin.name: plugin.description for plugin in plugin_classes(document, BASE)}
     found |= {name: about for name, (about, _) in _KNOWN.items() if name not in found}
     return found | {name: "" for name in sorted(extensions("linkwright.hardware")) if name not in found}
 
 
 def hardware_class(document: Document, name: str) -> PluginClass | None:
     """Return the class of a hardware plugin that a package of the workspace exports, or None."""
-    plugins = plugin_classes(document.project, document.finder, BASE)
+    plugins = plugin_classes(document, BASE)
     return next((plugin for plugin in plugins if name in (plugin.name, plugin.type)), None)
 
 

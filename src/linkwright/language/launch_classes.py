@@ -38,6 +38,12 @@ def _classes() -> Mapping[str, Any]:
     return found
 
 
+def load_classes() -> None:
+    """Import the classes, which takes a while the first time."""
+    for name in _classes():
+        class_arguments(name)
+
+
 def described_class(name: str) -> str | None:
     """Return the purpose and arguments of a class, in Markdown; None if launch has no such class."""
     cls = _classes().get(name)

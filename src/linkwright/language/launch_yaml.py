@@ -10,6 +10,7 @@ from linkwright.language.format import Document, Format, Symbol, SymbolKind, Tar
 from linkwright.language.grammar import rule_at
 from linkwright.language.hover import Explanation
 from linkwright.language.launch_schema import LAUNCH
+from linkwright.language.launch_text import substitution_names
 from linkwright.language.launch_values import (
     LaunchText,
     LaunchValue,
@@ -62,7 +63,8 @@ def _value_of(cursor: YamlCursor) -> LaunchValue | None:
     text = entry.scalar if entry.scalar.startswith(cursor.typed) and not cursor.in_list else cursor.typed
     owner = element.parent if element.is_item and element.parent is not None else element
     others = owner.children if element.is_item else []
-    names = (name.scalar for item in others if item is not element and (name := item.child("name")) is not None)
+    key = "from" if tags[-2] == "remap" else "name"
+    names = (name.scalar for item in others if item is not element and (name := item.child(key)) is not None)
     parent = _given(_element_around(owner))
     return LaunchValue(
         tags[:-1], tags[-1], text, cursor.start, cursor.offset, _given(element), parent, frozenset(names)
@@ -166,5 +168,5 @@ _KINDS = {
     "executable": SymbolKind.FUNCTION,
 }
 
-LAUNCH_YAML = Format(is_yaml_launch_file, _complete, _explain, _define, _links, _symbols)
+LAUNCH_YAML = Format(is_yaml_launch_file, _complete, _explain, _define, _links, _symbols, prepare=substitution_names)
 """Launch files in YAML."""

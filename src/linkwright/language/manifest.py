@@ -10,13 +10,14 @@ from linkwright.language.completion import Completion, ItemKind
 from linkwright.language.cursor import Cursor, Spot, cursor_at
 from linkwright.language.format import Document, Format, Symbol, SymbolKind, Target
 from linkwright.language.grammar import rule_at
-from linkwright.language.hover import Explanation, explain_at
+from linkwright.language.hover import Explanation
 from linkwright.language.links import FileReference
 from linkwright.language.manifest_schema import DEPENDING, PACKAGE
 from linkwright.language.offers import explain_package, offer_packages, offer_values, target_of_package
 from linkwright.language.outline import Outline
 from linkwright.language.programs import used_packages
 from linkwright.language.xml_completion import complete
+from linkwright.language.xml_hover import explain_at
 from linkwright.packages.creation.licenses import known_licenses
 from linkwright.packages.manifest import MANIFEST
 
@@ -124,7 +125,7 @@ def _dependency_at(document: Document, offset: int) -> tuple[str, int] | None:
 def _explain(document: Document, offset: int) -> Explanation | None:
     found = _dependency_at(document, offset)
     if found is None:
-        return explain_at(document.text, offset, document.file, ())
+        return explain_at(document, offset)
     text = explain_package(document, found[0])
     return Explanation(text, found[1], found[1] + len(found[0])) if text else None
 

@@ -159,6 +159,13 @@ def controller_types() -> list[str]:
     return [*extensions(_CONTROLLERS)]
 
 
+def load_tables() -> None:
+    """Read the tables of nodes and plugins, and import those of controllers, which takes a while the first time."""
+    plugins()
+    for kind in controller_types():
+        controller_parameters(kind)
+
+
 def controller_parameters(kind: str, names: Collection[str] = ()) -> tuple[ParameterInfo, ...]:
     """Return the parameters of a controller type; none if the type is not known or cannot be imported.
 

@@ -217,7 +217,7 @@ def _names_for(document: Document, section: Section, parameter: ParameterInfo) -
     ]
     if names or not parameter.keys or not any(kinds_of_parameter(key) for key in parameter.keys):
         return names
-    parts = robot_names(document.project, document.texts, document.file)
+    parts = robot_names(document)
     return [name.name for name in parts if name.kind is NameKind.JOINT and name.detail != "fixed"]
 
 

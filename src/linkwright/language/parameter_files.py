@@ -11,7 +11,7 @@ from linkwright.language.definitions import NameDefinition, NameKind
 from linkwright.language.facts import part_facts, robots_of
 from linkwright.language.format import Document, Format, Target
 from linkwright.language.hover import Explanation
-from linkwright.language.parameter_catalogue import controller_purpose, node_parameters, plugins
+from linkwright.language.parameter_catalogue import controller_purpose, load_tables, node_parameters, plugins
 from linkwright.language.parameter_completion import complete_parameters, described
 from linkwright.language.parameter_sections import (
     PARAMETERS,
@@ -151,7 +151,7 @@ def _explained_value(document: Document, outline: YamlOutline, cursor: YamlCurso
 
 def part_explanation(document: Document, name: str, kinds: tuple[NameKind, ...]) -> str:
     """Return the facts about a link or joint in the robots that a file is likely to be about."""
-    for part in robot_names(document.project, document.texts, document.file):
+    for part in robot_names(document):
         if part.name == name and part.kind in kinds:
             robots = robots_of(document.project, document.texts, part.file)
             facts = next((facts for robot in robots if (facts := part_facts(robot, part.kind, name))), "")
@@ -184,7 +184,7 @@ def define_in_parameters(document: Document, offset: int) -> Iterator[Target]:
             if source.name == name_in_section:
                 yield Target(source.file, source.start, source.start + len(source.name))
                 return
-    for name in robot_names(document.project, document.texts, document.file):
+    for name in robot_names(document):
         if name.name == word and (name.kind in kinds or (not kinds and cursor.in_list)):
             yield target_of(document, name)
             return
@@ -218,4 +218,5 @@ PARAMETER_FILES = Format(
     explain=explain_parameter,
     define=define_in_parameters,
     symbols=yaml_symbols,
+    prepare=load_tables,
 )

@@ -8,7 +8,6 @@ from collections.abc import Iterable, Iterator
 from linkwright.diagnostics import phrase
 from linkwright.diagnostics.translation import localized
 from linkwright.language.completion import Completion, ItemKind
-from linkwright.language.declared_parameters import DeclaredParameter, declared_parameters
 from linkwright.language.definitions import NameKind
 from linkwright.language.format import Document
 from linkwright.language.mentions import kinds_of_key
@@ -21,6 +20,7 @@ from linkwright.language.parameter_catalogue import (
 )
 from linkwright.language.parameter_sections import Section
 from linkwright.language.robot_names import robot_names
+from linkwright.language.source_declarations import DeclaredParameter, declared_parameters
 from linkwright.language.yaml_outline import YamlCursor
 from linkwright.language.yaml_symbols import snippet_text
 
@@ -38,7 +38,7 @@ def sources_of(document: Document, section: Section) -> list[DeclaredParameter]:
     """Return the parameters that sources of the workspace declare, if the node of a section is not known."""
     if not section.may_be_controller or section.node in section.controllers:
         return []
-    return declared_parameters(document.project, document.texts, section.node)
+    return declared_parameters(document, section.node)
 
 
 def kinds_of_parameter(key: str) -> tuple[NameKind, ...]:
@@ -115,7 +115,7 @@ def _robot_values(document: Document, key: str, default: str) -> Iterator[tuple[
         return
     if default in _USUAL_FRAMES:
         yield default, localized(phrase("default"))
-    parts = robot_names(document.project, document.texts, document.file)
+    parts = robot_names(document)
     if NameKind.JOINT in kinds:  # joints that move first
         parts.sort(key=lambda name: name.detail == "fixed")
     for name in parts:

@@ -5,12 +5,14 @@ from __future__ import annotations
 import re
 import time
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from weakref import WeakKeyDictionary
 
+from linkwright.language.format import Document, NotYetKnownError
 from linkwright.language.workspace import Workspace
-from linkwright.packages import PackageFinder, enclosing_package, install_prefix, is_installed
+from linkwright.packages import enclosing_package, install_prefix, is_installed
 from linkwright.packages.readers.entry_points import text_of
 from linkwright.xmltree.tokens import Kind, Token, tokens
 
@@ -45,20 +47,32 @@ class PluginClass:
 _classes: WeakKeyDictionary[Workspace, tuple[float, list[PluginClass]]] = WeakKeyDictionary()
 
 
-def plugin_classes(project: Workspace, finder: PackageFinder, base: str) -> list[PluginClass]:
+def plugin_classes(document: Document, base: str) -> list[PluginClass]:
     """Return the classes for a package of base classes that the packages of a workspace export.
 
     Args:
-        project: the workspace.
-        finder: finds the packages outside of it.
+        document: the file that asks.
         base: the package of the base classes.
+
+    Raises:
+        NotYetKnownError: the packages were never read, and the document does not wait.
     """
-    known = _classes.get(project)
-    if known is None or time.monotonic() - known[0] > _SECONDS:
-        folders = dict.fromkeys((*project.index.packages, *finder.packages().values()))
+    return [plugin for plugin in _known(document) if plugin.base == base]
+
+
+def _known(document: Document) -> list[PluginClass]:
+    known = _classes.get(document.project)
+    if known is not None and time.monotonic() - known[0] <= _SECONDS:
+        return known[1]
+    if document.waits:
+        folders = dict.fromkeys((*document.project.index.packages, *document.finder.packages().values()))
         found = {plugin.name: plugin for folder in folders for plugin in _exported(folder)}
-        known = _classes[project] = time.monotonic(), list(found.values())
-    return [plugin for plugin in known[1] if plugin.base == base]
+        known = _classes[document.project] = time.monotonic(), list(found.values())
+    elif known is None:
+        raise NotYetKnownError
+    else:
+        document.refreshes.append(partial(_known, replace(document, waits=True)))
+    return known[1]
 
 
 def _exported(folder: Path) -> Iterator[PluginClass]:

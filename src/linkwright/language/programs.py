@@ -28,7 +28,10 @@ _MAX_FILES = 200
 _MAX_BYTES = 300_000
 _REGISTERED = re.compile(r"(?i)\brclcpp_components_register_nodes?\s*\(([^)]*)\)")
 _CLASS = re.compile(r"\b[A-Za-z_]\w*(?:::\w+)+")
-_DEPENDENCY = re.compile(r"<(?:exec_|run_)?depend\b[^<>]*>\s*([a-z]\w*)\s*<")
+DEPENDENCY = re.compile(r"<(?:exec_|run_)?depend\b[^<>]*>\s*([a-z]\w*)\s*<")
+"""The packages in ``package.xml`` on which a package depends when it runs."""
+BUILD_DEPENDENCY = re.compile(r"<(?:build_|buildtool_)?depend\b[^<>]*>\s*([a-z]\w*)\s*<")
+"""The packages in ``package.xml`` on which a package depends when it is built."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,7 +65,7 @@ def used_packages(folder: Path) -> list[str]:
 def package_names(finder: PackageFinder, file: Path) -> list[str]:
     """Return the names of all packages: the package of a file first, then those that it depends on, found or not."""
     own = enclosing_package(file.parent)
-    first = [] if own is None else [own[0], *_DEPENDENCY.findall(text_of(own[1] / "package.xml"))]
+    first = [] if own is None else [own[0], *DEPENDENCY.findall(text_of(own[1] / "package.xml"))]
     known = {*finder.packages(), *replaced_packages()}
     return [*dict.fromkeys(first), *sorted(known - {*first})]
 

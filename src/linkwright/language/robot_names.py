@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from weakref import WeakKeyDictionary
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.language.definitions import NameDefinition, NameKind, definitions_in
+from linkwright.language.format import Document, NotYetKnownError
 from linkwright.language.includes import real
 from linkwright.language.valid_parts import valid_parts
 from linkwright.language.workspace import Workspace
@@ -43,90 +45,99 @@ class _Robot:
 _robots: WeakKeyDictionary[Workspace, dict[Path, _Robot]] = WeakKeyDictionary()
 
 
-def robot_names(project: Workspace, texts: Mapping[Path, str], file: Path) -> list[NameDefinition]:
+def robot_names(document: Document) -> list[NameDefinition]:
     """Return the links and joints of the robots that a file is likely to be about, the likeliest robot first.
 
     A name that contains expressions is that of the expansion, and its place is the attribute that writes it. A
     description that cannot be expanded has the names that are written without expressions.
 
     Args:
-        project: the workspace.
-        texts: the texts of the open files.
-        file: a file of parameters, a configuration or a description.
+        document: a file of parameters, a configuration or a description.
+
+    Raises:
+        NotYetKnownError: no description was read, and the document does not wait.
     """
-    cache = _robots.setdefault(project, {})
     robots: list[_Robot] = []
     begin = time.monotonic()
-    for entry in _likely_robots(project, texts, file):
-        robot = cache.get(entry)
-        if robot is None or robot.state != _state((path for path, _ in robot.state), texts):
-            if time.monotonic() - begin > _MAX_SECONDS:
-                break  # the next request continues
-            robot = _read_again(cache, project, texts, entry)
+    for entry in _likely_robots(document):
+        if time.monotonic() - begin > _MAX_SECONDS:
+            break  # the next request continues
+        robot = _robot(document, entry)
+        if robot is not None:
+            robots.append(robot)
+        elif not robots:
+            raise NotYetKnownError
+    return _names(sorted(robots, key=lambda robot: document.file.name not in robot.texts))
+
+
+def part_names(document: Document) -> list[NameDefinition]:
+    """Return the links and joints of the descriptions that include a file, after their expansion.
+
+    Args:
+        document: a description, or a file that descriptions include.
+
+    Raises:
+        NotYetKnownError: a description was not read, and the document does not wait.
+    """
+    robots: list[_Robot] = []
+    entries = document.project.index.entries(document.file, document.texts)[:_MAX_ENTRIES]
+    for entry in dict.fromkeys((*entries, document.file)):
+        if entry == document.file and entry not in entries and any(robot.is_expanded for robot in robots):
+            continue  # the file alone counts where what includes it cannot be expanded
+        robot = _robot(document, entry)
+        if robot is None:
+            raise NotYetKnownError
         robots.append(robot)
+    return _names(robots)
+
+
+def mentioned_robots(document: Document, words: Collection[str]) -> list[Path]:
+    """Return the likely descriptions whose links and joints some words name, that with the most of them first.
+
+    Args:
+        document: the file with the words.
+        words: the words.
+
+    Raises:
+        NotYetKnownError: no description was read, and the document does not wait.
+    """
+    robot_names(document)  # reads them
+    cache = _robots.get(document.project, {})
+    counts = {
+        entry: len({name.name for name in cache[entry].names} & {*words})
+        for entry in _likely_robots(document)
+        if entry in cache
+    }
+    return sorted((entry for entry, count in counts.items() if count), key=lambda entry: -counts[entry])
+
+
+def _names(robots: Iterable[_Robot]) -> list[NameDefinition]:
+    """Return the names of some robots, the first of each kind and name."""
     names: dict[tuple[NameKind, str], NameDefinition] = {}
-    for robot in sorted(robots, key=lambda robot: file.name not in robot.texts):
-        for name in robot.names:
-            names.setdefault((name.kind, name.name), name)
+    for name in (name for robot in robots for name in robot.names):
+        names.setdefault((name.kind, name.name), name)
     return list(names.values())
 
 
-class PartNames:
-    """The links and joints of the descriptions that include a file, after their expansion.
-
-    An editor asks for them at each key. So those of an earlier text are used until `read` has found the present ones.
-
-    Args:
-        project: the workspace.
-        texts: the texts of the open files.
-        file: a description, or a file that descriptions include.
-    """
-
-    def __init__(self, project: Workspace, texts: Mapping[Path, str], file: Path) -> None:
-        self._project = project
-        self._texts = texts
-        self._file = file
-        self._is_asked = False
-
-    def __call__(self) -> list[NameDefinition]:
-        """Return the known names, the first of each, without expanding anything."""
-        self._is_asked = True
-        names: dict[tuple[NameKind, str], NameDefinition] = {}
-        for name in (name for robot in self._known() for name in robot.names):
-            names.setdefault((name.kind, name.name), name)
-        return list(names.values())
-
-    @property
-    def is_missing(self) -> bool:
-        """Whether the names were asked for, and a description was never read."""
-        return self._is_asked and any(entry not in _robots.get(self._project, {}) for entry in self._entries())
-
-    @property
-    def is_stale(self) -> bool:
-        """Whether the names were asked for, and a text has changed since they were found."""
-        robots = self._known() if self._is_asked else []
-        return any(robot.state != _state((path for path, _ in robot.state), self._texts) for robot in robots)
-
-    def read(self) -> None:
-        """Expand the descriptions that have changed, or were never read."""
-        cache = _robots.setdefault(self._project, {})
-        for entry in (*self._entries(), self._file):
-            if entry == self._file and any(robot.is_expanded for robot in self._known()):
-                continue  # the file alone counts where what includes it cannot be expanded
-            robot = cache.get(entry)
-            if robot is None or robot.state != _state((path for path, _ in robot.state), self._texts):
-                _read_again(cache, self._project, self._texts, entry)
-
-    def _known(self) -> list[_Robot]:
-        cache = _robots.get(self._project, {})
-        return [cache[entry] for entry in dict.fromkeys((*self._entries(), self._file)) if entry in cache]
-
-    def _entries(self) -> list[Path]:
-        return self._project.index.entries(self._file, self._texts)[:_MAX_ENTRIES]
+def _robot(document: Document, entry: Path) -> _Robot | None:
+    """Return the names of a description; None if they are not known, and the document does not wait."""
+    cache = _robots.setdefault(document.project, {})
+    robot = cache.get(entry)
+    if robot is not None and robot.state == _state((path for path, _ in robot.state), document.texts):
+        return robot
+    if document.waits:
+        robot = _read(document.project, document.texts, entry, cache.pop(entry, None))
+        cache[entry] = robot
+        if len(cache) > _MAX_STORED:
+            del cache[next(iter(cache))]
+    elif robot is not None:
+        document.refreshes.append(partial(_robot, replace(document, waits=True), entry))
+    return robot
 
 
-def _likely_robots(project: Workspace, texts: Mapping[Path, str], file: Path) -> list[Path]:
+def _likely_robots(document: Document) -> list[Path]:
     """Return the descriptions that no other one includes, those of the file's package first, then by its name."""
+    file = document.file
     package = enclosing_package(file.parent)
     name, folder = ("", file.parent) if package is None else (package[1].name, real(package[1]))
 
@@ -134,7 +145,7 @@ def _likely_robots(project: Workspace, texts: Mapping[Path, str], file: Path) ->
         shared = max(_common_beginning(name, part) for part in entry.parts)
         return not entry.is_relative_to(folder), -shared
 
-    entries = [entry for entry in project.index.roots(texts) if entry.name.endswith(_ENDINGS)]
+    entries = [entry for entry in document.project.index.roots(document.texts) if entry.name.endswith(_ENDINGS)]
     return sorted(entries, key=distance)[:_MAX_ROBOTS]
 
 
@@ -142,15 +153,6 @@ def _common_beginning(name: str, other: str) -> int:
     """Return the number of characters with which both names begin."""
     pairs = zip(name, other, strict=False)
     return next((number for number, (a, b) in enumerate(pairs) if a != b), min(len(name), len(other)))
-
-
-def _read_again(cache: dict[Path, _Robot], project: Workspace, texts: Mapping[Path, str], entry: Path) -> _Robot:
-    """Return the present names of a description, and store them in place of those that were read first."""
-    robot = _read(project, texts, entry, cache.pop(entry, None))
-    cache[entry] = robot
-    if len(cache) > _MAX_STORED:
-        del cache[next(iter(cache))]
-    return robot
 
 
 def _read(project: Workspace, texts: Mapping[Path, str], entry: Path, before: _Robot | None) -> _Robot:

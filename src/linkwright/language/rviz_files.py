@@ -22,6 +22,7 @@ from linkwright.language.rviz_owners import (
     ConfigOwner,
     display_class,
     display_schema,
+    load_displays,
     owner_of,
 )
 from linkwright.language.yaml_outline import Place, YamlCursor, YamlOutline
@@ -73,7 +74,7 @@ def _keys(document: Document, cursor: YamlCursor) -> Iterator[Completion]:
         if spec.name not in present and not spec.read_only:
             yield _property(spec, cursor.start, has_value=has_value)
     if owner.keys[-1:] in (("Links",), ("Frames",)):
-        for name in robot_names(document.project, document.texts, document.file):
+        for name in robot_names(document):
             if name.kind is NameKind.LINK and name.name not in present:
                 snippet = "" if has_value else f"{snippet_text(name.name)}:\n  $0"
                 yield Completion(name.name, ItemKind.NAME, cursor.start, name.file.name, "", snippet)
@@ -178,7 +179,7 @@ def _purpose(name: str) -> str:
 def _frames(document: Document, start: int, *, with_fixed: bool) -> Iterator[Completion]:
     if with_fixed:
         yield Completion(FIXED_FRAME, ItemKind.VALUE, start)
-    for name in robot_names(document.project, document.texts, document.file):
+    for name in robot_names(document):
         if name.kind is NameKind.LINK:
             yield Completion(name.name, ItemKind.NAME, start, name.file.name)
     for frame in _FRAMES:
@@ -243,7 +244,7 @@ def define_in_rviz(document: Document, offset: int) -> Iterator[Target]:
     if cursor.place is Place.VALUE and cursor.within.parent is not None:
         spec = owner_of(cursor.within.parent).spec(cursor.within.key)
         names_link = spec is not None and spec.kind == "frame"
-    for name in robot_names(document.project, document.texts, document.file) if names_link else ():
+    for name in robot_names(document) if names_link else ():
         if name.kind is NameKind.LINK and name.name == word:
             yield target_of(document, name)
             return
@@ -255,4 +256,5 @@ RVIZ_FILES = Format(
     explain=explain_rviz,
     define=define_in_rviz,
     symbols=yaml_symbols,
+    prepare=load_displays,
 )

@@ -165,6 +165,12 @@ def _loaded(entry: EntryPoint) -> Any:
         return None
 
 
+def load_displays() -> None:
+    """Import the classes of displays, which takes a while the first time."""
+    for name in extensions(DISPLAYS):
+        display_class(name)
+
+
 def display_schema(name: str) -> Schema:
     """Return the properties of a class of displays; none if the class is not known."""
     schema: Schema = getattr(display_class(name), "SCHEMA", ())

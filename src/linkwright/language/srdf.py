@@ -14,13 +14,15 @@ from linkwright.language.definitions import NameDefinition, NameKind
 from linkwright.language.facts import facts_at, part_facts
 from linkwright.language.format import Document, Format, Target
 from linkwright.language.grammar import rule_at
-from linkwright.language.hover import Explanation, definitions_at, explain_at
+from linkwright.language.hover import Explanation, definitions_at
 from linkwright.language.includes import real
 from linkwright.language.links import FileReference, file_references
 from linkwright.language.outline import Outline
+from linkwright.language.robot_names import mentioned_robots
 from linkwright.language.srdf_schema import CHOICES, GROUP, JOINT, LINK, SRDF
 from linkwright.language.values import values_in
 from linkwright.language.xml_completion import complete
+from linkwright.language.xml_hover import explain_at
 from linkwright.packages import enclosing_package
 from linkwright.packages.readers.entry_points import text_of
 from linkwright.packages.share_layout import source_of
@@ -32,6 +34,7 @@ _ROBOT = re.compile(r"<robot\b[^>]*?\bname\s*=\s*[\"']([^\"']+)[\"']")
 _ASSISTANT = re.compile(r"URDF:\s*\n\s+package:\s*(\S+)\s*\n\s+relative_path:\s*(\S+)")
 _EXPRESSION = re.compile(r"\$\{[^{}]*\}|\$\([^()]*\)")
 _MAX_ROBOTS = 3
+_SHOWN_PARTS = 12
 _LONGEST_HEAD = 20_000
 """Characters at the beginning of a description in which the name of the robot is searched."""
 
@@ -65,7 +68,8 @@ class _Semantics:
             if head is not None and head[1] == name and not is_srdf(other):
                 found.append(other)
         whole = [other for other in beside if ".urdf" in other.name and not is_srdf(other)]
-        return [*islice(dict.fromkeys(found or whole), _MAX_ROBOTS)]
+        words = {attribute.value or "" for token in tokens(self.document.text) for attribute in token.attributes()}
+        return [*islice(dict.fromkeys(found or mentioned_robots(self.document, words) or whole), _MAX_ROBOTS)]
 
     def _of_assistant(self, folder: Path) -> Iterator[Path]:
         for found in _ASSISTANT.finditer(text_of(folder / ".setup_assistant")):
@@ -146,12 +150,29 @@ def _explain(document: Document, offset: int) -> Explanation | None:
         if facts is not None:
             text = f"**{kind.value} {name}**\n\n{facts}"
             return Explanation(text, cursor.attribute.value_start, cursor.attribute.value_end)
-    found = explain_at(document.text, offset, document.file, semantics.names)
+    if rule is not None and cursor.attribute is not None and _is_group(cursor, rule):
+        described = _described_group(document.text, cursor.attribute.value or "")
+        if described:
+            return Explanation(described, cursor.attribute.value_start, cursor.attribute.value_end)
+    found = explain_at(document, offset, semantics.names)
     if found is not None or not document.file.name.endswith(".xacro"):
         return found
     values = values_in(document.project, document.texts, document.file)
     more = facts_at(document.project, document.texts, document.file, document.text, offset, values)
     return Explanation("\n\n".join(more), offset, offset) if more else None
+
+
+def _described_group(text: str, name: str) -> str:
+    """Return the links, joints, chains and groups of a group, in Markdown; empty if the text does not define it."""
+    for element in (each for root in Outline.of(text).elements for each in root.children if each.tag.name == "group"):
+        if any((each.name, each.value) == ("name", name) for each in element.tag.attributes()) and element.children:
+            lines = [
+                f"- {child.tag.name} " + ", ".join(f"`{each.value}`" for each in child.tag.attributes())
+                for child in element.children[:_SHOWN_PARTS]
+            ]
+            more = ["- ..."] if len(element.children) > _SHOWN_PARTS else []
+            return "\n".join([f"**group {name}**", "", *lines, *more])
+    return ""
 
 
 def _define(document: Document, offset: int) -> Iterator[Target]:

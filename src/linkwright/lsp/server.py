@@ -73,7 +73,8 @@ class LinkwrightServer(LanguageServer):
         self._has_changes = asyncio.Event()
         self._is_indexed = asyncio.Event()
         self._thread = ThreadPoolExecutor(1, thread_name_prefix="check")
-        self._background: dict[Path, Future[None]] = {}
+        self._preparing: dict[Format, asyncio.Future[object]] = {}
+        self._background: dict[Path, list[Future[object]]] = {}
         self._work: asyncio.Task[None] | None = None
         self.robot_views = RobotViews(self._go_to)
 
@@ -115,6 +116,9 @@ class LinkwrightServer(LanguageServer):
         if path is not None:
             self._uris[real(path)] = uri
             self.file_changed(uri)
+            known = format_of(path)
+            if known is not None:
+                self._prepared(known)
 
     def file_changed(self, uri: str) -> None:
         """Check a file soon, with what includes it."""
@@ -138,6 +142,27 @@ class LinkwrightServer(LanguageServer):
         if path is None or not path.name.endswith((*XML_FILES, ".xml")):
             return Path(), None
         return path, self.positions(path)
+
+    def readable(self, document: types.TextDocumentIdentifier) -> tuple[Path, TextPositions | None]:
+        """Return the path of a document, and its text; None if no request about names is answered for it."""
+        path = path_of(document.uri)
+        if path is None or (format_of(path) is None and not path.name.endswith((*XML_FILES, ".xml"))):
+            return Path(), None
+        return path, self.positions(path)
+
+    async def when_prepared(self, path: Path) -> None:
+        """Wait until the folders have been searched, and what the format of a file needs has been imported."""
+        await self.when_indexed()
+        known = format_of(path)
+        if known is not None:
+            await self._prepared(known)
+
+    def _prepared(self, known: Format) -> asyncio.Future[object]:
+        """Return when a format is prepared; a thread of its own prepares it once."""
+        work = self._preparing.get(known)
+        if work is None:
+            work = self._preparing[known] = asyncio.ensure_future(asyncio.to_thread(known.prepare))
+        return asyncio.shield(work)
 
     async def formatted(self, document: types.TextDocumentIdentifier) -> FormattedText | None:
         """Return a document as `document` does, once the folders have been searched if its format needs that."""
@@ -306,12 +331,11 @@ class LinkwrightServer(LanguageServer):
             _log.exception("The check of '%s' failed", about)
             return None
 
-    def in_background(self, work: Callable[[], None], about: Path) -> None:
+    def in_background(self, work: Iterable[Callable[[], object]], about: Path) -> None:
         """Do work in the thread of the checks without waiting for it; work about a file replaces what still waits."""
-        waiting = self._background.get(about)
-        if waiting is not None:
+        for waiting in self._background.pop(about, ()):
             waiting.cancel()
-        self._background[about] = self._thread.submit(work)
+        self._background[about] = [self._thread.submit(each) for each in work]
 
     async def in_thread(self, work: Callable[[], T]) -> T:
         """Return the result of work in the thread of the checks, which is the only one that reads the workspace."""

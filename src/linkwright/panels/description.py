@@ -236,7 +236,7 @@ class DescriptionFeature(PageFeature):
 
     async def details(self, display: RobotModelDisplay) -> Description | None:
         """Return the details of the description that a display shows, or None if it shows none."""
-        known = self._look_at(display)
+        known = self._current_description(display)
         if known is None:
             return None
         async with self._answer_lock:
