@@ -105,7 +105,7 @@ async def test_a_hover_tells_about_links_joints_meshes_and_packages(editor, pack
         return "" if found is None else found.contents.value
 
     base = await hover(FILE, text, 'link name="ba')
-    assert "- root of the tree of links" in base
+    assert "- root of the link tree" in base
     assert "- parent of `upper`" in base
     assert "- mass 2 kg" in base
     assert "0.5 × 2 × 1 m, triangles: 1" in await hover(FILE, text, "meshes/a")

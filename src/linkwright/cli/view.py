@@ -1,4 +1,4 @@
-"""``linkwright view``: show a model with joint sliders in the browser, or compare two models."""
+"""``linkwright view``: show a model with joint sliders in the browser, or compare two."""
 
 from __future__ import annotations
 
@@ -104,7 +104,7 @@ def run(arguments: argparse.Namespace) -> int:
         return _report_misuse(f"'{bag}' is a recording, which is shown by itself: linkwright view {bag}")
     if arguments.against or any(map(names_file, arguments.words)):
         if rviz is not None:
-            return _report_misuse("two descriptions are compared with displays of their own: leave -d out")
+            return _report_misuse("leave -d out: a comparison of two descriptions has its own displays")
         return _view_comparison(arguments, options)
     values = parse_assignments(arguments.words)
     from linkwright.hosting.view import run_view
@@ -153,5 +153,5 @@ def _view_comparison(arguments: argparse.Namespace, options: HostOptions) -> int
     with ExitStack() as stack:
         pair = requested_pair(arguments, stack)
         if pair is None:
-            return _report_misuse("give one file, two to compare, or one and --against COMMIT")
+            return _report_misuse("pass one file, two to compare, or one and --against COMMIT")
         return run_compared_view(pair, options, foxglove=arguments.foxglove)

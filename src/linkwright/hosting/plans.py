@@ -74,7 +74,7 @@ class HostedPlan:
 
     @property
     def is_viewer(self) -> bool:
-        """Whether the node is RViz. Linkwright's viewer replaces it."""
+        """Whether the node is RViz, which Linkwright's viewer replaces."""
         return is_viewer(self.package, self.executable)
 
     @property
@@ -124,7 +124,7 @@ class HostedPlan:
 
 
 def is_viewer(package: str | None, executable: str) -> bool:
-    """Return whether a node is RViz. Linkwright's viewer replaces it."""
+    """Return whether a node is RViz, which Linkwright's viewer replaces."""
     return (package, executable) == VIEWER
 
 
@@ -154,7 +154,7 @@ class HostOptions:
 
 
 class Supervisor(Protocol):
-    """The interface of the run to which a host belongs: a launch, or the view of one description."""
+    """The interface of the run that owns a host: a launch, or the view of one description."""
 
     @property
     def finder(self) -> PackageFinder:
@@ -174,7 +174,7 @@ class Supervisor(Protocol):
 
     @property
     def reload(self) -> LiveReload:
-        """The live reload. It passes new texts of descriptions to nodes."""
+        """The live reload, which passes new texts of descriptions to nodes."""
 
     @property
     def ending(self) -> bool:
@@ -185,13 +185,16 @@ class Supervisor(Protocol):
         """Whether the run has any processes in addition to its nodes."""
 
     def fail(self, failure: object) -> None:
-        """Record a failure. It sets the exit status to 1 unless it is cleared."""
+        """Record a failure, which sets the exit status to 1 unless it is cleared."""
 
     def clear_failure(self, failure: object) -> None:
         """Clear a failure whose cause has been fixed."""
 
     def spawn(self, coroutine: Coroutine[Any, Any, None]) -> None:
-        """Run a coroutine in the background. The run does not end before it has finished."""
+        """Run a coroutine in the background.
+
+        The run does not end before it has finished.
+        """
 
     def shut_down(self, reason: str) -> None:
         """End the run when the current work is done."""

@@ -85,7 +85,7 @@ class LiveReload:
         self._show(self.findings())
 
     def report(self, subject: object, diagnostics: Iterable[Diagnostic]) -> None:
-        """Print and show findings. They replace the earlier findings about the same object.
+        """Print and show findings, in place of the earlier findings about the same object.
 
         Errors are printed at each call, but warnings and notes only when they are new.
         """
@@ -103,7 +103,10 @@ class LiveReload:
         return [finding for findings in self._findings.values() for finding in findings]
 
     def start(self) -> None:
-        """Start to watch the files. An event loop must be running."""
+        """Start to watch the files.
+
+        An event loop must be running.
+        """
         self._is_started = True
         self._watch_files()
         if self.descriptions.reads_unsaved:
@@ -126,7 +129,7 @@ class LiveReload:
     # --- which files ----------------------------------------------------------------------------------------
 
     def _files_of_interest(self, call: XacroCall) -> set[Path]:
-        """Return the files from which a description was read, and the files that its findings mention."""
+        """Return the files of a description, and the files that its findings mention."""
         files = {call.path, *self.descriptions.files_of(call)}
         for finding in self._findings.get(call, ()):
             spans = (finding.span, *(note.span for note in finding.notes))
@@ -261,7 +264,7 @@ def _finding_key(finding: Diagnostic) -> tuple[object, ...]:
 
 
 def _modified_ns(path: Path) -> int:
-    """Return the modification time of a file in ns since the epoch, or 0 if there is no such file."""
+    """Return a file's modification time in ns since the epoch, or 0 if it does not exist."""
     try:
         return path.stat().st_mtime_ns
     except OSError:

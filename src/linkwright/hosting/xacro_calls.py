@@ -57,7 +57,10 @@ class DescriptionError(LinkwrightError):
 
     @property
     def missing(self) -> bool:
-        """Whether the description file itself cannot be read. Editing the file cannot fix this."""
+        """Whether the description file itself cannot be read.
+
+        Editing the file cannot fix this.
+        """
         return not self.call.path.is_file() or not os.access(self.call.path, os.R_OK)
 
 
@@ -163,7 +166,7 @@ class Descriptions:
         return description
 
     def record_read_time(self, call: XacroCall) -> None:
-        """Record the current time as the time at which the files of a description are read."""
+        """Record the current time as the start of reading a description's files."""
         self._read_ns[call] = time.time_ns()
 
     def store(self, call: XacroCall, description: Description, text: str | None = None) -> str:
@@ -203,7 +206,7 @@ class Descriptions:
         return self._warnings.get(call, ())
 
     def read_ns(self, call: XacroCall) -> int:
-        """Return the time at which the files of a call were last read, in nanoseconds since the epoch.
+        """Return the time at which a call's files were last read, in nanoseconds since the epoch.
 
         The time is 0 if the files have not been read.
         """

@@ -1,4 +1,4 @@
-"""``CMakeLists.txt`` of a ROS package: packages, targets, paths and commands, as far as `check` reads them."""
+"""Editor functions for ``CMakeLists.txt``: packages, targets, paths and commands."""
 
 from __future__ import annotations
 
@@ -72,21 +72,21 @@ _LOOKED_BACK = 20_000
 
 @dataclass
 class _Build:
-    """A build file, and a place in it."""
+    """A build file, and a cursor position in it."""
 
     document: Document
     offset: int
 
     @cached_property
     def before(self) -> str:
-        """The text before the place, without comments, the same length."""
+        """The text before the cursor, with spaces instead of comments."""
         begin = max(0, self.offset - _LOOKED_BACK)
         text = self.document.text[begin : self.offset]
         return _COMMENT.sub(lambda comment: " " * len(comment[0]), text)
 
     @cached_property
     def call(self) -> tuple[str, list[str]] | None:
-        """The command whose brackets contain the place, with its words before the typed one; None for none."""
+        """The command around the cursor and its words before the typed one, or None."""
         start = self.before.rfind("(")
         if start < 0 or ")" in self.before[start:]:
             return None
@@ -96,13 +96,13 @@ class _Build:
 
     @cached_property
     def typed(self) -> str:
-        """The word that ends at the place."""
+        """The word that ends at the cursor."""
         found = _WORD.search(self.before)
         return "" if found is None else found[0]
 
     @cached_property
     def word(self) -> tuple[int, int]:
-        """The range of the whole word around the place."""
+        """The range of the whole word around the cursor."""
         start = self.offset - len(self.typed)
         found = _NAMED.match(self.document.text, start)
         return (start, start) if found is None else found.span()
@@ -113,7 +113,7 @@ class _Build:
         return self.document.file.parent
 
     def keyword(self, words: Iterable[str]) -> str:
-        """Return the last word in capitals, the keyword of the words behind it; empty if there is none."""
+        """Return the last keyword, a word in capitals, or empty if there is none."""
         return next((word for word in reversed([*words]) if word.isupper() and not word.startswith("$")), "")
 
     def targets(self) -> list[str]:
@@ -121,7 +121,7 @@ class _Build:
         return [*dict.fromkeys(_TARGET.findall(self.document.text))]
 
     def packages(self, start: int) -> Iterator[Completion]:
-        """Yield packages: those on which package.xml depends and that the file does not find yet come first."""
+        """Yield the packages that the file does not find yet, the declared dependencies first."""
         found = set(_FOUND.findall(self.document.text[:start] + self.document.text[self.offset :]))
         wanted = BUILD_DEPENDENCY.findall(text_of(self.folder / "package.xml"))
         for name in dict.fromkeys(each for each in wanted if each not in found):

@@ -1,4 +1,7 @@
-"""The formats of files with functions of their own; the other XML files are read as descriptions."""
+"""The file formats with their own editor functions.
+
+Other XML files are treated as descriptions.
+"""
 
 from __future__ import annotations
 
@@ -28,9 +31,9 @@ FORMATS: tuple[Format, ...] = (
     CMAKE_FILES,
     SETUP_FILES,
 )
-"""The formats, the first that covers a file decides."""
+"""The formats, in order of precedence."""
 
 
 def format_of(file: Path) -> Format | None:
-    """Return the format of a file, by its path; None if it has no functions of its own."""
+    """Return the first format that covers a path, or None if no format does."""
     return next((known for known in FORMATS if known.covers(file)), None)

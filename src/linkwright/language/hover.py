@@ -1,4 +1,4 @@
-"""Explanations, and the definitions that a place in an XML file refers to."""
+"""Explanations of texts, and the definitions of the name at a position in an XML file."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class Explanation:
     Attributes:
         text: the explanation, in Markdown.
         start: the offset of the range.
-        end: the offset behind it.
+        end: the offset after the range.
     """
 
     text: str | Phrase
@@ -27,7 +27,7 @@ class Explanation:
 
 
 def definitions_at(text: str, offset: int, names: Sequence[NameDefinition]) -> list[NameDefinition]:
-    """Return the definitions of the name at an offset: of a macro call, or of a name in a value."""
+    """Return the definitions of the macro call, or of the name in a value, at an offset."""
     cursor = cursor_at(text, offset)
     if cursor.spot in (Spot.TAG, Spot.CLOSING_TAG) and cursor.token is not None:
         tag = cursor.token.name

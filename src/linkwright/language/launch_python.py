@@ -1,4 +1,7 @@
-"""Launch files in Python: what the strings of calls such as ``Node(package="...")`` name. Nothing is run."""
+"""Launch files in Python: the meaning of strings in calls such as ``Node(package="...")``.
+
+Nothing is run.
+"""
 
 from __future__ import annotations
 
@@ -57,7 +60,7 @@ _WORD_BEFORE = re.compile(r"[^\W\d]\w*\Z")
 
 
 def is_python_launch_file(path: Path) -> bool:
-    """Return whether a file is a launch file in Python, or a Python file below a folder of launch files."""
+    """Return whether a file is a Python launch file, or a Python file in a launch folder."""
     is_launch = path.name.endswith((".launch.py", "_launch.py")) or path.name == "launch.py"
     return is_launch or (path.suffix == ".py" and "launch" in path.parts[-4:-1])
 
@@ -71,11 +74,11 @@ class _Place:
             or "path".
         text: the string.
         package: the package of a program or component.
-        arguments: what a configuration or argument may be.
+        arguments: the launch arguments that a configuration or argument may refer to.
         base: the path that the string continues.
         choices: the likely values.
         programs: the programs of the nodes that have a topic or parameter.
-        given: the other names beside that of a topic or parameter.
+        given: the other names in the list of a topic or parameter.
     """
 
     kind: str
@@ -89,7 +92,7 @@ class _Place:
 
 
 class PythonLaunchText:
-    """A launch file in Python, with what it declares."""
+    """A launch file in Python, with the arguments that it declares."""
 
     def __init__(self, document: Document) -> None:
         self.document = document
@@ -103,7 +106,7 @@ class PythonLaunchText:
         return tuple(arguments_in(self.document.text, self.document.file))
 
     def place_at(self, offset: int) -> _Place | None:
-        """Return what the string at an offset names; None outside of strings."""
+        """Return the meaning of the string at an offset, or None outside strings."""
         found = self.python.string_at(offset)
         return None if found is None else self._place(*found)
 
@@ -138,7 +141,7 @@ class PythonLaunchText:
         return _Place("path", text, base=self.paths.before(text, item))
 
     def _of_node(self, text: Text, item: Item) -> _Place | None:
-        """Return the place of a name in a remapping or in the parameters of a node."""
+        """Return the meaning of a name in a remapping or in the parameters of a node, or None."""
         group, outer = item.group, item.group.parent
         if outer is None or group.callee or not item.parts or item.parts[0] is not text:
             return None
@@ -159,7 +162,7 @@ class PythonLaunchText:
         return None
 
     def _programs(self, item: Item, keyword: str) -> tuple[NodeProgram, ...]:
-        """Return the programs of the nodes that a list of remappings or parameters is for."""
+        """Return the programs of the nodes that use a list of remappings or parameters."""
         bound = item
         around: Item | None = item
         while around is not None:
@@ -179,7 +182,7 @@ class PythonLaunchText:
         return NodeProgram(self.paths.text_of(package) or "", self.paths.text_of(executable) or "")
 
     def parameters(self, place: _Place) -> list[ParameterInfo]:
-        """Return the parameters that the nodes of a place may have."""
+        """Return the possible parameters of the nodes at a place."""
         found: dict[str, ParameterInfo] = {}
         for program in place.programs:
             names = (node_name(*program), program.executable)
@@ -190,7 +193,7 @@ class PythonLaunchText:
         return list(found.values())
 
     def used_names(self, apart: Text) -> list[str]:
-        """Return the names of configurations that the file uses but does not declare, as its caller declares them."""
+        """Return the names of configurations that the file uses but does not declare."""
         calls = self.python.calls_of(*CONFIGURATIONS)
         parts = (part for call in calls for item in call.items[:1] for part in item.parts[:1])
         names = dict.fromkeys(part.value for part in parts if isinstance(part, Text) and part is not apart)
@@ -204,7 +207,7 @@ class PythonLaunchText:
         return tuple(each.value for item in inner for each in item.parts[:1] if isinstance(each, Text))
 
     def _included_arguments(self, text: Text, item: Item) -> _Place | None:
-        """Return the place of a key or value in the launch arguments of an included file."""
+        """Return the meaning of a key or value in the launch arguments of an include, or None."""
         include = _include_around(item)
         if include is None:
             return None
@@ -243,7 +246,7 @@ class PythonLaunchText:
                 yield argument
 
     def path_until(self, place: _Place, end: int) -> str | None:
-        """Return the path up to the slash behind an offset in its last string, or None if it is not known."""
+        """Return the path up to the first slash after an offset in its last string."""
         base = "" if place.base is None else place.base.text
         rest = place.text.value[end - place.text.start :].partition("/")[0]
         written = place.text.value[: end - place.text.start] + rest
@@ -251,7 +254,7 @@ class PythonLaunchText:
 
 
 def _keyword_around(item: Item, wanted: re.Pattern[str]) -> bool:
-    """Return whether an item is in a list that is an argument or a variable with a name."""
+    """Return whether an item is in a list for an argument or variable with a matching name."""
     around: Item | None = item
     for _ in range(_DEEPEST_LIST):
         if around is None:
@@ -268,7 +271,7 @@ def _names_in(item: Item | None) -> set[str]:
 
 
 def _new_names(old: str) -> tuple[str, ...]:
-    """Return other forms of a name: relative, which a namespace changes, and absolute."""
+    """Return the other forms of a name: relative, absolute and without namespaces."""
     name = plain_name(old)
     forms = dict.fromkeys((name, f"/{name}", name.rpartition("/")[2])) if name else ()
     return tuple(form for form in forms if form != old)
@@ -373,7 +376,7 @@ def _explanation(launch: PythonLaunchText, place: _Place, offset: int) -> str | 
 
 
 def _explain_argument(launch: PythonLaunchText, place: _Place) -> str | None:
-    """Explain the argument that a string is the value of: of an included file, or of a class of launch."""
+    """Explain the argument of an included file or launch class that has a string as its value."""
     if place.kind == "choice" and place.arguments:
         return place.arguments[0].described()
     found = launch.python.string_at(place.text.start)
@@ -384,7 +387,7 @@ def _explain_argument(launch: PythonLaunchText, place: _Place) -> str | None:
 
 
 def _keywords(launch: PythonLaunchText, offset: int) -> Iterator[Completion]:
-    """Yield the arguments of the call around an offset that are not given yet."""
+    """Yield the arguments that the call around an offset does not have yet."""
     text = launch.document.text
     typed = _WORD_BEFORE.search(text, text.rfind("\n", 0, offset) + 1, offset)
     call = launch.python.call_at(offset)
@@ -402,13 +405,13 @@ def _keywords(launch: PythonLaunchText, offset: int) -> Iterator[Completion]:
 
 
 def _group_around(item: Item, offset: int) -> Group | None:
-    """Return the brackets directly in an item that contain an offset, or None if there are none."""
+    """Return the brackets directly inside an item that contain an offset, or None."""
     groups = (part for part in item.parts if isinstance(part, Group))
     return next((group for group in groups if group.start < offset < group.end), None)
 
 
 def _explain_name(launch: PythonLaunchText, offset: int) -> Explanation | None:
-    """Explain the class, argument or path in a variable at an offset."""
+    """Explain the class or argument at an offset, or the variable that contains a path."""
     found = name_at(launch.document.text, offset)
     if found is None:
         return None
@@ -459,7 +462,7 @@ def _links(document: Document) -> Iterator[FileReference]:
 
 
 def _continues(item: Item) -> bool:
-    """Return whether an item of a joined path is followed by another one."""
+    """Return whether an item is a part of a joined path, but not the last."""
     return item.group.function in JOINS and item is not item.group.items[-1]
 
 

@@ -1,4 +1,4 @@
-"""Values in launch files in XML and YAML: packages, executables, paths, substitutions and arguments."""
+"""Completion, hover and definitions for attribute values in XML and YAML launch files."""
 
 from __future__ import annotations
 
@@ -63,17 +63,17 @@ _BEGINNINGS = ("$(find-pkg-share ", "$(dirname)/")
 
 @dataclass(frozen=True, slots=True)
 class LaunchValue:
-    """A value in a launch file, with the element that has it.
+    """An attribute value in a launch file, with its element.
 
     Attributes:
-        tags: the names of the elements around it, the last of which has the value.
+        tags: the names of the enclosing elements, from the root to the element of the value.
         name: the name of the attribute.
         text: the whole value.
         start: the offset of the value.
-        offset: the offset of the place in it.
+        offset: the offset of the cursor.
         given: the attributes of the element.
-        parent: the attributes of the element around the element.
-        siblings: the names of the other elements in that one; for remappings, the names that they replace.
+        parent: the attributes of the parent element.
+        siblings: the names of the other children of the parent or, for remappings, the names that they replace.
     """
 
     tags: tuple[str, ...]
@@ -87,7 +87,7 @@ class LaunchValue:
 
     @property
     def typed(self) -> str:
-        """The part of the value before the place."""
+        """The part of the value before the cursor."""
         return self.text[: max(0, self.offset - self.start)]
 
     @property
@@ -98,7 +98,7 @@ class LaunchValue:
 
 @dataclass
 class LaunchText:
-    """A launch file in XML or YAML, with what it declares."""
+    """A launch file in XML or YAML, with the arguments that it declares."""
 
     document: Document
     offered: set[str] = field(default_factory=set)
@@ -110,21 +110,21 @@ class LaunchText:
 
     @cached_property
     def configurations(self) -> Mapping[str, str | None]:
-        """The values of ``$(var NAME)`` as far as they are known."""
+        """The default of each declared argument by name, for ``$(var NAME)``, or None."""
         return {argument.name: argument.default for argument in self.arguments}
 
     def used_names(self, apart: int) -> list[str]:
-        """Return the names in ``$(var NAME)`` that the file does not declare, except the one at an offset."""
+        """Return the names in ``$(var NAME)`` that are not declared, except at an offset."""
         found = (use for use in _USE.finditer(self.document.text) if use.start(1) != apart)
         return [name for name in dict.fromkeys(use[1] for use in found) if name not in self.configurations]
 
     def path_of(self, written: str) -> Path | None:
-        """Return the path of a text, relative to the folder of the file; None if it is not known."""
+        """Resolve a path in the launch file, or return None if it is empty or unknown."""
         text = evaluated(written, self.document.file, self.document.finder, self.configurations)
         return None if not text or "\0" in text else self.document.file.parent / text
 
     def included_arguments(self, value: LaunchValue) -> list[LaunchArgument]:
-        """Return the arguments of the file that the ``include`` around a value includes."""
+        """Return the arguments of the launch file that is included around a value."""
         written = value.parent.get("file", "")
         path = self.path_of(written) if written else None
         if path is None or not path.is_file():
@@ -173,7 +173,7 @@ def complete_value(launch: LaunchText, value: LaunchValue) -> Iterator[Completio
 
 
 def _offer_command(launch: LaunchText, value: LaunchValue) -> Iterator[Completion]:
-    """Yield the paths in a command, and the arguments of the description that it gives to xacro."""
+    """Yield the paths in a command, and the arguments of a description in it."""
     written = value.typed.rpartition("$(command")[2].strip()
     words = [written[start:end] for start, end in path_words(written)]
     word = typed_word(value.typed)
@@ -227,7 +227,7 @@ def _values(launch: LaunchText, value: LaunchValue) -> Iterator[Completion]:
 
 
 def _offer_texts(launch: LaunchText, value: LaunchValue, offset: int) -> Iterator[Completion]:
-    """Yield paths that continue the word at a place, and variables."""
+    """Yield the paths that complete the word before the cursor, and ``$(var NAME)``."""
     word, name = typed_word(value.typed), value.name
     if name in _PATHS:
         yield from offer_values((begin for begin in _BEGINNINGS if begin.startswith(word)), offset - len(word))
@@ -238,7 +238,7 @@ def _offer_texts(launch: LaunchText, value: LaunchValue, offset: int) -> Iterato
 
 
 def _offer_variables(launch: LaunchText, start: int, arguments: Iterable[LaunchArgument]) -> Iterator[Completion]:
-    """Yield arguments as substitutions, those that an earlier call has yielded left out."""
+    """Yield ``$(var NAME)`` for the arguments that were not offered before."""
     for argument in arguments:
         if argument.name not in launch.offered:
             launch.offered.add(argument.name)
@@ -246,7 +246,7 @@ def _offer_variables(launch: LaunchText, start: int, arguments: Iterable[LaunchA
 
 
 def _new_and_old_names(launch: LaunchText, value: LaunchValue) -> Iterator[Completion]:
-    """Yield the names of a remapping: topics of the node, or other forms of the name, relative and absolute."""
+    """Yield the names for a remapping: topics of the node, or other forms of the old name."""
     if value.name == "from":
         programs = [launch.program_of(value)]
         yield from offer_topics(launch.document, programs, value.typed, value.start, value.siblings)
@@ -258,7 +258,7 @@ def _new_and_old_names(launch: LaunchText, value: LaunchValue) -> Iterator[Compl
 
 
 def _known_parameters(launch: LaunchText, value: LaunchValue) -> tuple[ParameterInfo, ...]:
-    """Return the parameters of the node around a value, as far as they are known."""
+    """Return the known parameters of the node around a value."""
     program = launch.program_of(value)
     names = (node_name(*program), program.executable, value.parent.get("name", ""))
     known = next((found for name in names if (found := node_parameters(name))), ())
@@ -303,15 +303,15 @@ def _offer_path(launch: LaunchText, word: str, offset: int, *, launch_files: boo
 
 @dataclass(frozen=True, slots=True)
 class _Place:
-    """The meaning of a place in a launch file.
+    """The object that a position in a launch file refers to.
 
     Attributes:
         kind: "package", "program", "component", "argument", "file", "topic" or "substitution".
         name: the name or path.
         start: the offset of the name.
-        end: the offset behind it.
+        end: the offset after the name.
         package: the package of a program or component.
-        arguments: the arguments with the name.
+        arguments: the launch arguments with this name.
         program: the program of the node that has a topic.
     """
 
@@ -373,7 +373,7 @@ def _of_attribute(launch: LaunchText, value: LaunchValue) -> _Place | None:
 
 
 def explain_value(launch: LaunchText, value: LaunchValue) -> Explanation | None:
-    """Explain what is at a place in a value, or else the attribute; None if there is nothing to say."""
+    """Explain the object at the cursor in a value, or else the attribute, or return None."""
     place = _place_at(launch, value)
     text = None if place is None else _explanation(launch.document, place)
     if place is not None and text:
@@ -408,7 +408,7 @@ def _explanation(document: Document, place: _Place) -> str | None:
 
 
 def define_value(launch: LaunchText, value: LaunchValue) -> Iterator[Target]:
-    """Yield where the name at a place in a value is defined."""
+    """Yield the definitions of the object at the cursor in a value."""
     document, place = launch.document, _place_at(launch, value)
     if place is None:
         return

@@ -1,4 +1,4 @@
-"""Launch files in XML: the elements of their table, and the values of attributes."""
+"""Editor functions for launch files in XML."""
 
 from __future__ import annotations
 
@@ -99,7 +99,7 @@ _KINDS = {
     **dict.fromkeys(("node", "lifecycle_node", "composable_node", "node_container"), SymbolKind.NODE),
 }
 _DEEPEST = 50
-"""Elements that are nested deeper are left out of the symbols."""
+"""The maximum depth of symbols."""
 _NAMING = ("name", "exec", "plugin", "file", "from", "namespace", "target", "cmd")
 
 

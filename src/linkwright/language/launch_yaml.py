@@ -1,4 +1,4 @@
-"""Launch files in YAML: the keys of the same table as in XML, and their values."""
+"""Editor functions for launch files in YAML, whose keys are the elements of the XML format."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def _given(entry: YamlEntry | None) -> Mapping[str, str]:
 
 
 def _element_around(entry: YamlEntry) -> YamlEntry | None:
-    """Return the entry of the element that contains the element of an entry, or None for the outermost."""
+    """Return the element around the element of an entry, or None for the outermost."""
     above = entry.parent
     while above is not None and (not above.key or above.key in (_CHILDREN, entry.key)):
         above = above.parent
@@ -52,7 +52,7 @@ def _element_around(entry: YamlEntry) -> YamlEntry | None:
 
 
 def _value_of(cursor: YamlCursor) -> LaunchValue | None:
-    """Return the value at a place, or None if the place is in no value."""
+    """Return the value at a cursor, or None outside values."""
     entry = cursor.within
     element = entry.parent
     if cursor.place is not Place.VALUE or not entry.key or element is None or _is_new_item(cursor):
@@ -81,7 +81,7 @@ def _complete(document: Document, offset: int) -> Iterator[Completion]:
 
 
 def _is_new_item(cursor: YamlCursor) -> bool:
-    """Return whether the first key of an item of a list of elements is typed."""
+    """Return whether the cursor is at the first key of a new item in a list of elements."""
     return cursor.place is Place.VALUE and cursor.in_list and rule_at(LAUNCH, _tags(cursor.within)) is not None
 
 

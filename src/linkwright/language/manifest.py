@@ -1,4 +1,4 @@
-"""``package.xml``: names of packages in dependencies, build types and licences."""
+"""Editor functions for ``package.xml``: dependencies, build types and licences."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ _USUAL = {
         *("ros2launch", "rosidl_default_runtime", "ros_gz_sim", "ros_gz_bridge", "controller_manager"),
     ),
 }
-"""Dependencies that a tag usually has, whether or not the packages are found."""
+"""The usual dependencies of each tag, which are offered even if the packages are not found."""
 _DECLARED = re.compile(r"<(\w+)\b[^<>]*>\s*([\w.-]+)\s*</\1\s*>")
 
 
@@ -69,7 +69,7 @@ def _complete(document: Document, offset: int) -> Iterator[Completion]:
 
 
 def _single_children(text: str, offset: int) -> set[str]:
-    """Return the elements in the element around an offset that it cannot have twice."""
+    """Return the existing elements around an offset that may occur only once."""
     around = []
     for element in Outline.of(text).around(offset):
         end = element.end if element.closing is None else element.closing.start
@@ -94,7 +94,7 @@ def _texts(document: Document, tag: str, start: int) -> Iterator[Completion]:
 
 
 def _dependencies(document: Document, tag: str, start: int) -> Iterator[Completion]:
-    """Yield packages: those that launch files and descriptions use, the usual ones of the tag, and the found ones.
+    """Yield packages: first the used ones, then the usual ones of the tag, then the others.
 
     Declared packages are left out.
     """
@@ -112,7 +112,7 @@ def _dependencies(document: Document, tag: str, start: int) -> Iterator[Completi
 
 
 def _dependency_at(document: Document, offset: int) -> tuple[str, int] | None:
-    """Return the package that a dependency at an offset names, and its offset."""
+    """Return the package name in the element at an offset and its start, or None."""
     cursor: Cursor = cursor_at(document.text, offset)
     if cursor.spot is not Spot.TEXT or not cursor.tags or cursor.tags[-1] not in {*DEPENDING, "name"}:
         return None

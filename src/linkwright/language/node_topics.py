@@ -1,7 +1,7 @@
-"""The topics, services and actions of nodes, whose names a launch file can remap.
+"""The topics, services and actions of nodes that a launch file can remap.
 
-Those of Linkwright's nodes come from ``node_topics.json``, which ``tools/node_topics.py`` records. Those of other nodes
-are in the sources of the workspace.
+The names of Linkwright's nodes come from ``node_topics.json``, which ``tools/node_topics.py`` records. The names of
+other nodes come from the sources of the workspace.
 """
 
 from __future__ import annotations
@@ -27,8 +27,8 @@ class NodeProgram(NamedTuple):
     """The program of a node in a launch file.
 
     Attributes:
-        package: its package; empty if it is not known.
-        executable: the executable; empty for a component.
+        package: its package, or empty if it is unknown.
+        executable: the executable, or empty for a component.
     """
 
     package: str
@@ -41,9 +41,9 @@ class NodeTopic:
 
     Attributes:
         name: the name in the program.
-        type: its type; may be empty.
-        role: what the node does with it, such as ``publisher`` or ``action server``.
-        target: the place in the sources that creates it; None if it is not known.
+        type: its type, or empty.
+        role: the role of the node, such as ``publisher`` or ``action server``.
+        target: the location in the sources that creates it, or None if it is unknown.
     """
 
     name: str
@@ -53,12 +53,12 @@ class NodeTopic:
 
     @property
     def key(self) -> str:
-        """The name without ``/`` or ``~/`` before it: a launch file may have it in another form."""
+        """The name without a leading ``/`` or ``~/``, for comparison with other forms."""
         return plain_name(self.name)
 
 
 def plain_name(name: str) -> str:
-    """Return a name without ``/`` or ``~/`` before it."""
+    """Return a name without a leading ``/`` or ``~/``."""
     return name.lstrip("~").lstrip("/")
 
 
@@ -69,7 +69,7 @@ def _table() -> Mapping[str, Any]:
 
 
 def node_name(package: str, executable: str) -> str:
-    """Return the name that a program gives to its node; empty if it is not known."""
+    """Return the default name of a program's node, or empty if it is unknown."""
     entry = _table().get(f"{package}/{executable}")
     return "" if entry is None else str(entry["node"])
 
@@ -113,7 +113,7 @@ def _in_sources(document: Document, program: NodeProgram) -> Iterator[NodeTopic]
 def offer_topics(
     document: Document, programs: Sequence[NodeProgram], typed: str, start: int, given: Iterable[str] = ()
 ) -> Iterator[Completion]:
-    """Yield the names that a remapping of some nodes can begin with, in the form that is typed.
+    """Yield the names that can be remapped in some nodes, in the form that is being typed.
 
     Args:
         document: the launch file.
@@ -142,13 +142,13 @@ def described_topic(topic: NodeTopic) -> str:
 
 
 def explain_topic(document: Document, programs: Sequence[NodeProgram], name: str) -> str:
-    """Return what some nodes do with a topic, service or action, in Markdown; empty if none of them has it."""
+    """Return the uses of a topic, service or action by some nodes in Markdown, or empty."""
     found = [topic for topic in topics_of(document, programs) if topic.key == plain_name(name)]
     return "\n\n".join(map(described_topic, found))
 
 
 def targets_of_topic(document: Document, programs: Sequence[NodeProgram], name: str) -> Iterator[Target]:
-    """Yield the places in the sources that create a topic, service or action."""
+    """Yield the locations in the sources that create a topic, service or action."""
     for topic in topics_of(document, programs):
         if topic.key == plain_name(name) and topic.target is not None:
             yield topic.target

@@ -1,4 +1,4 @@
-"""The classes that packages export through pluginlib: hardware, controllers, and plugins of nodes."""
+"""The classes that packages export through pluginlib, such as hardware and controllers."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from linkwright.xmltree.tokens import Kind, Token, tokens
 
 _EXPORT = re.compile(r"(?i)\bpluginlib_export_plugin_description_file\s{0,9}\(\s{0,99}([\w-]+)\s{1,99}\"?([^\s\")]+)")
 _SECONDS = 10.0
-"""How long the exported classes are used before the packages are read again."""
+"""The maximum age of the exported classes, in seconds."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,7 +29,7 @@ class PluginClass:
         name: the name by which it is loaded, such as ``diff_drive_controller/DiffDriveController``.
         type: the class in C++.
         base: the package of the base class, such as ``hardware_interface``.
-        description: its description; may be empty.
+        description: its description, or empty.
         package: the folder of the package.
         file: the file that exports it.
         start: the offset of the name in the file.
@@ -48,10 +48,10 @@ _classes: WeakKeyDictionary[Workspace, tuple[float, list[PluginClass]]] = WeakKe
 
 
 def plugin_classes(document: Document, base: str) -> list[PluginClass]:
-    """Return the classes for a package of base classes that the packages of a workspace export.
+    """Return the exported classes whose base class belongs to a package.
 
     Args:
-        document: the file that asks.
+        document: the file of the request.
         base: the package of the base classes.
 
     Raises:
@@ -82,7 +82,7 @@ def _exported(folder: Path) -> Iterator[PluginClass]:
 
 
 def _files(folder: Path) -> Iterator[tuple[str, Path]]:
-    """Yield the files in which a package describes its classes, each with the package of their base classes."""
+    """Yield the base class package and path of each plugin description of a package."""
     if is_installed(folder):
         prefix, end = install_prefix(folder), "__pluginlib__plugin"
         for index in (prefix / "share/ament_index/resource_index").glob(f"*{end}/{folder.name}"):

@@ -1,4 +1,4 @@
-"""The names of links and joints after the expansion of descriptions, with the places that write them."""
+"""The links and joints of expanded descriptions, with the locations of their names."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class _Robot:
     state: _State
     names: tuple[NameDefinition, ...]
     texts: frozenset[str] = frozenset()
-    """The names of files in its elements, such as that of the parameters of controllers."""
+    """The names of YAML files in its elements, such as parameters of controllers."""
     is_expanded: bool = True
 
 
@@ -46,10 +46,10 @@ _robots: WeakKeyDictionary[Workspace, dict[Path, _Robot]] = WeakKeyDictionary()
 
 
 def robot_names(document: Document) -> list[NameDefinition]:
-    """Return the links and joints of the robots that a file is likely to be about, the likeliest robot first.
+    """Return the links and joints of the robots that a file probably means, the likeliest first.
 
-    A name that contains expressions is that of the expansion, and its place is the attribute that writes it. A
-    description that cannot be expanded has the names that are written without expressions.
+    Names with expressions are expanded, and located at the attribute with the expressions. A description that cannot
+    be expanded provides its earlier names, the names in its valid parts, or the names without expressions.
 
     Args:
         document: a file of parameters, a configuration or a description.
@@ -71,7 +71,7 @@ def robot_names(document: Document) -> list[NameDefinition]:
 
 
 def part_names(document: Document) -> list[NameDefinition]:
-    """Return the links and joints of the descriptions that include a file, after their expansion.
+    """Return the links and joints of the expanded descriptions that include a file.
 
     Args:
         document: a description, or a file that descriptions include.
@@ -83,7 +83,7 @@ def part_names(document: Document) -> list[NameDefinition]:
     entries = document.project.index.entries(document.file, document.texts)[:_MAX_ENTRIES]
     for entry in dict.fromkeys((*entries, document.file)):
         if entry == document.file and entry not in entries and any(robot.is_expanded for robot in robots):
-            continue  # the file alone counts where what includes it cannot be expanded
+            continue  # the file alone counts only if no description that includes it can be expanded
         robot = _robot(document, entry)
         if robot is None:
             raise NotYetKnownError
@@ -92,7 +92,7 @@ def part_names(document: Document) -> list[NameDefinition]:
 
 
 def mentioned_robots(document: Document, words: Collection[str]) -> list[Path]:
-    """Return the likely descriptions whose links and joints some words name, that with the most of them first.
+    """Return the likely descriptions with links or joints in some words, the best match first.
 
     Args:
         document: the file with the words.
@@ -120,7 +120,7 @@ def _names(robots: Iterable[_Robot]) -> list[NameDefinition]:
 
 
 def _robot(document: Document, entry: Path) -> _Robot | None:
-    """Return the names of a description; None if they are not known, and the document does not wait."""
+    """Return the names of a description, or None if they are unknown and it may not wait."""
     cache = _robots.setdefault(document.project, {})
     robot = cache.get(entry)
     if robot is not None and robot.state == _state((path for path, _ in robot.state), document.texts):
@@ -136,7 +136,7 @@ def _robot(document: Document, entry: Path) -> _Robot | None:
 
 
 def _likely_robots(document: Document) -> list[Path]:
-    """Return the descriptions that no other one includes, those of the file's package first, then by its name."""
+    """Return the top-level descriptions, sorted by their relation to the file's package."""
     file = document.file
     package = enclosing_package(file.parent)
     name, folder = ("", file.parent) if package is None else (package[1].name, real(package[1]))
@@ -158,14 +158,14 @@ def _common_beginning(name: str, other: str) -> int:
 def _read(project: Workspace, texts: Mapping[Path, str], entry: Path, before: _Robot | None) -> _Robot:
     """Return the names of a description.
 
-    While it cannot be expanded, because its text is being typed, these are the names from before, or those of the
-    saved files.
+    If its text cannot be expanded, these are its earlier names, the names in the saved files, in the valid parts, or in
+    the text.
 
     Args:
         project: the workspace.
         texts: the texts of the open files.
         entry: the description.
-        before: its names from before; None if there are none.
+        before: its earlier names, or None.
     """
     robot = _expanded(project, texts, entry)
     if robot is not None:
@@ -186,7 +186,7 @@ def _read(project: Workspace, texts: Mapping[Path, str], entry: Path, before: _R
 
 
 def _expanded(project: Workspace, texts: Mapping[Path, str], entry: Path) -> _Robot | None:
-    """Return the names after the expansion, for the first argument set that has one; None if there is none."""
+    """Return the names in the first expansion without errors, or None if there is none."""
     overlay = Overlay({str(path): text for path, text in texts.items()})
     for arguments, _ in project.calls(entry)[:_MAX_ARGUMENT_SETS]:
         with suppress(LinkwrightError, OSError, RecursionError):
@@ -224,7 +224,7 @@ def _state(files: Iterator[str] | list[str] | map[str], texts: Mapping[Path, str
 
 
 def written_length(text: str, name: NameDefinition) -> int:
-    """Return the length of a name as its file has it, where it may contain expressions."""
+    """Return the length of a name as written in its file, possibly with expressions."""
     quote = text[name.start - 1 : name.start]
     end = text.find(quote, name.start) if quote in ("'", '"') and quote else -1
     return end - name.start if end >= 0 else len(name.name)

@@ -169,7 +169,7 @@ def _classes(owner: ConfigOwner) -> Iterator[tuple[str, str]]:
 
 
 def _purpose(name: str) -> str:
-    """Return the first paragraph about a class of displays, tools or views; empty if there is none."""
+    """Return the purpose of a class of displays or tools, or empty if it is unknown."""
     if name in TOOL_KINDS:
         return TOOL_KINDS[name].name
     display = display_class(name)
@@ -187,7 +187,7 @@ def _frames(document: Document, start: int, *, with_fixed: bool) -> Iterator[Com
 
 
 def _topics(document: Document) -> Iterator[str]:
-    """Yield the topics that the configuration itself names."""
+    """Yield the topics in the configuration."""
     yield from dict.fromkeys(match[1] for match in _TOPIC.finditer(document.text))
 
 
@@ -195,7 +195,7 @@ def _topics(document: Document) -> Iterator[str]:
 
 
 def explain_rviz(document: Document, offset: int) -> Explanation | None:
-    """Explain the key or value at an offset of a configuration; None if there is nothing to say."""
+    """Explain the key or value at an offset of a configuration, or return None."""
     cursor = YamlOutline(document.text).cursor(offset)
     start, end, word = word_at(document.text, cursor)
     if not word:
@@ -234,7 +234,7 @@ def _explained_class(name: str) -> str:
 
 
 def define_in_rviz(document: Document, offset: int) -> Iterator[Target]:
-    """Yield the link that a frame or a key of a robot's links names."""
+    """Yield the definition of the link at an offset, in a frame or a list of links."""
     cursor = YamlOutline(document.text).cursor(offset)
     _, _, word = word_at(document.text, cursor)
     if not word:

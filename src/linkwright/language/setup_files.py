@@ -1,4 +1,4 @@
-"""``setup.py`` of a ROS package: programs with their modules and functions, and the files that are installed."""
+"""Editor functions for ``setup.py``: programs, and the files that are installed."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ _MAX_MODULES = 300
 
 
 def _entry_at(document: Document, offset: int) -> tuple[Text, re.Match[str] | None] | None:
-    """Return the string at an offset if it declares a program, with its parts."""
+    """Return the program declaration at an offset with its parts, or None."""
     found = python_text(document.text).string_at(offset)
     if found is None:
         return None
@@ -106,7 +106,7 @@ def _arguments(document: Document, offset: int) -> Iterator[Completion]:
 
 
 def _is_installed(item: Item) -> bool:
-    """Return whether an item is a file in ``data_files``: in the list that follows the folder, or in a glob."""
+    """Return whether an item is a file in ``data_files``, in a list or a glob."""
     around: Item | None = item
     depth = 0
     while around is not None and around.keyword != "data_files":

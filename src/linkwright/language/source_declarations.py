@@ -1,4 +1,4 @@
-"""The parameters and topics that the sources of the workspace's own nodes declare, in Python and C++."""
+"""The parameters and topics in the Python and C++ sources of the workspace."""
 
 from __future__ import annotations
 
@@ -50,8 +50,8 @@ class DeclaredParameter:
 
     Attributes:
         name: the name with dots.
-        type: the type, as ROS 2 names it; empty if the source does not tell it.
-        default: the text of the default; empty if it has none.
+        type: the ROS 2 type, or empty if it is unknown.
+        default: the text of the default, or empty if it has none.
         file: the source.
         start: the offset of the name.
     """
@@ -69,8 +69,8 @@ class DeclaredTopic:
 
     Attributes:
         name: the name in the source.
-        type: the type as the source has it; may be empty.
-        role: what the source creates, such as ``publisher`` or ``action server``.
+        type: the type as written in the source, or empty.
+        role: the role of the node, such as ``publisher`` or ``action server``.
         file: the source.
         start: the offset of the name.
     """
@@ -109,10 +109,10 @@ _sources: WeakKeyDictionary[Workspace, _Sources] = WeakKeyDictionary()
 def declared_parameters(document: Document, node: str) -> list[DeclaredParameter]:
     """Return the parameters that the sources of a node declare.
 
-    These are the sources that contain the name of the node as a string; if none does, all sources of the workspace.
+    The sources of a node contain its name as a string. If none does, all sources of the workspace are used.
 
     Args:
-        document: the file that asks.
+        document: the file of the request.
         node: the name of the node.
 
     Raises:
@@ -126,10 +126,10 @@ def declared_parameters(document: Document, node: str) -> list[DeclaredParameter
 
 
 def declared_topics(document: Document, folder: Path) -> list[DeclaredTopic]:
-    """Return the topics, services and actions that the sources below a folder create, or those of one source.
+    """Return the topics, services and actions in the sources below a folder, or in one source.
 
     Args:
-        document: the file that asks.
+        document: the file of the request.
         folder: the folder of a package, or a source.
 
     Raises:
@@ -171,7 +171,7 @@ def _read(project: Workspace, texts: Mapping[Path, str], before: _Sources | None
 
 
 def _source(text: str, file: Path) -> _Source:
-    """Return what a source declares; without its text if that is nothing."""
+    """Return the declarations in a source, or an empty source if there are none."""
     if len(text) > _MAX_TEXT:
         return _Source("", (), ())
     source = _Source(text, tuple(_declarations(text, file)), tuple(_topics(text, file)))
@@ -192,7 +192,7 @@ def _declarations(text: str, file: Path) -> Iterator[DeclaredParameter]:
 
 
 def _type_of(written: str, default: str) -> str:
-    """Return the type of a parameter by its type in C++, or by the text of its default."""
+    """Derive the type of a parameter from its C++ type, or from the text of its default."""
     cpp_type = _TYPES.get(written.replace(" ", ""))
     if cpp_type is not None:
         return cpp_type

@@ -1,4 +1,4 @@
-"""The parameters that the sources of a node declare, as a table of parameters has them."""
+"""The parameters that the sources of a node declare, as parameters of the catalogue."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from linkwright.language.source_declarations import declared_parameters
 
 
 def parameters_in_sources(document: Document, program: NodeProgram) -> tuple[ParameterInfo, ...]:
-    """Return the parameters that the sources of a program declare; none if the program is not known.
+    """Return the parameters that the sources of a program declare, if the program is known.
 
     Args:
         document: the launch file.

@@ -1,4 +1,4 @@
-"""SRDF: groups, and the links and joints of the description that the file belongs to."""
+"""Editor functions for SRDF: groups, and the links and joints of the description."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ _EXPRESSION = re.compile(r"\$\{[^{}]*\}|\$\([^()]*\)")
 _MAX_ROBOTS = 3
 _SHOWN_PARTS = 12
 _LONGEST_HEAD = 20_000
-"""Characters at the beginning of a description in which the name of the robot is searched."""
+"""The number of characters of a description that are searched for the name of the robot."""
 
 
 def is_srdf(path: Path) -> bool:
@@ -56,7 +56,7 @@ class _Semantics:
 
     @cached_property
     def descriptions(self) -> list[Path]:
-        """The descriptions of the robot: the one of MoveIt's assistant, then those with the robot's name."""
+        """The descriptions of the robot, found by MoveIt's Setup Assistant or the robot's name."""
         project, file = self.document.project, self.document.file
         package = enclosing_package(file.parent)
         found = [*self._of_assistant(package[1])] if package is not None else []
@@ -107,7 +107,7 @@ def _rule_of(cursor: Cursor) -> AttributeRule | None:
 
 
 def _is_group(cursor: Cursor, rule: AttributeRule) -> bool:
-    """Return whether a value is the name of a group that is defined elsewhere, also of a group in a group."""
+    """Return whether a value refers to a group, as in a group inside a group."""
     return rule.type is GROUP or (rule.name == "name" and cursor.tags[-2:] == ("group", "group"))
 
 
@@ -133,7 +133,7 @@ def _complete(document: Document, offset: int) -> Iterator[Completion]:
 
 
 def _names_beside(text: str, offset: int) -> set[str | None]:
-    """Return the names of the elements with the same tag in the element around an offset."""
+    """Return the names of the siblings with the same tag as the element at an offset."""
     around = Outline.of(text).around(offset)
     inside = around[-2].children if len(around) > 1 else []
     others = (other for other in inside if other is not around[-1] and other.tag.name == around[-1].tag.name)
@@ -163,7 +163,7 @@ def _explain(document: Document, offset: int) -> Explanation | None:
 
 
 def _described_group(text: str, name: str) -> str:
-    """Return the links, joints, chains and groups of a group, in Markdown; empty if the text does not define it."""
+    """Return the content of a group in Markdown, or empty if the text does not define it."""
     for element in (each for root in Outline.of(text).elements for each in root.children if each.tag.name == "group"):
         if any((each.name, each.value) == ("name", name) for each in element.tag.attributes()) and element.children:
             lines = [
@@ -193,13 +193,13 @@ def _define(document: Document, offset: int) -> Iterator[Target]:
 
 
 def _parts(semantics: _Semantics, kind: NameKind, value: str) -> Iterator[Target]:
-    """Yield where the descriptions define a link or joint: by its name or, in macros, by a pattern with expressions."""
+    """Yield the definitions of a link or joint, by its name or a name with expressions."""
     document = semantics.document
     for file in semantics.descriptions:
         names = document.project.names(file, document.texts)
         found = [name for name in names if name.kind is kind and _matches(name.name, value)]
         if kind is NameKind.JOINT:
-            found = [name for name in found if name.detail]  # a joint with a type is a definition
+            found = [name for name in found if name.detail]  # only the definition of a joint has a type
         exact = [name for name in found if name.name == value]
         for name in dict.fromkeys(exact or found):
             yield Target(name.file, name.start, name.start + len(name.name))
@@ -208,7 +208,7 @@ def _parts(semantics: _Semantics, kind: NameKind, value: str) -> Iterator[Target
 
 
 def _matches(written: str, value: str) -> bool:
-    """Return whether a name with or without expressions may have a value; one that is only an expression may not."""
+    """Return whether a value matches a written name that is not only an expression."""
     parts = _EXPRESSION.split(written)
     if not any(parts):
         return False

@@ -1,4 +1,4 @@
-"""Completions at a place of an XML file: what its language, its package and its macros offer there."""
+"""Completion in XML files: elements, attributes, values and macro calls."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def complete(document: Document, offset: int, names: Sequence[NameDefinition] = 
     """Return the completions at an offset, the likeliest first, each label once.
 
     Args:
-        document: the text; the name of its file tells the language.
+        document: the text. The name of its file determines the language.
         offset: the character offset of the cursor.
         names: the names that the files of the description define.
     """
@@ -82,7 +82,7 @@ def _elements(
 
 
 def _given_elements(text: str, cursor: Cursor) -> frozenset[str]:
-    """Return the elements that the element around a cursor already has, without the one that is typed."""
+    """Return the existing child elements around a cursor, without the one being typed."""
     inside = Outline.of(text).elements
     around: OutlineElement | None = None
     for element in cursor.elements:

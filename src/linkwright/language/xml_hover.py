@@ -1,4 +1,4 @@
-"""Explanations of a place in an XML file: elements, attributes, values, macros, names in expressions and plugins."""
+"""Explanations of the elements, attributes, values and names in an XML file."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ from linkwright.schema import AttributeRule, ElementRule, describe_attribute, de
 
 
 def explain_at(document: Document, offset: int, names: Sequence[NameDefinition] = ()) -> Explanation | None:
-    """Explain what is at an offset; None if there is nothing to say.
+    """Explain the name, element, attribute or value at an offset, or return None.
 
     Args:
-        document: the text; the name of its file tells the language.
+        document: the text. The name of its file determines the language.
         offset: the character offset.
         names: the names that the files of the description define.
     """
@@ -72,7 +72,7 @@ def _explain_attribute(
 
 
 def _explained_value(document: Document, cursor: Cursor, rule: AttributeRule, value: str) -> str:
-    """Return what is known about a value: a plugin of a simulator, or a parameter of hardware."""
+    """Return the explanation of a simulator plugin or hardware parameter, or empty."""
     if cursor.tags[-1] == "plugin" and rule.name in ("filename", "name"):
         given = {each.name: each.value or "" for each in cursor.elements[-1].attributes()}
         plugin = plugin_of(given.get("filename", ""), given.get("name", ""))
@@ -85,7 +85,7 @@ def _explained_value(document: Document, cursor: Cursor, rule: AttributeRule, va
 
 
 def described_plugin(plugin: SimulatorPlugin) -> str:
-    """Return what a plugin of a simulator does, and its parameters, in Markdown."""
+    """Return the purpose and the parameters of a simulator plugin in Markdown."""
     name = plugin.class_name or plugin.filename
     parameters = ", ".join(f"`{child.tag}`" for child in plugin.rule.children)
     return f"**{name}**: {plugin.about}" + (f"\n\n{parameters}" if parameters else "")
@@ -113,7 +113,7 @@ def _explain_text(document: Document, cursor: Cursor, root: ElementRule) -> Expl
 
 
 def _explain_word(cursor: Cursor) -> Explanation | None:
-    """Explain a parameter of the macro around a place, or a function, in an expression."""
+    """Explain the macro parameter or function at a cursor in an expression, or return None."""
     if cursor.spot is not Spot.VALUE or not cursor.in_expression or cursor.token is None:
         return None
     found = name_at(cursor.token.text, cursor.offset - cursor.token.start)

@@ -1,4 +1,4 @@
-"""Completions of the values of attributes and of the texts of elements in descriptions and worlds."""
+"""Completion of attribute values and element texts in descriptions and worlds."""
 
 from __future__ import annotations
 
@@ -81,7 +81,7 @@ def complete_value(
 
     Args:
         document: the text.
-        cursor: a place in the value.
+        cursor: a cursor in the value.
         rule: the rule of the element, or None.
         names: the names that the files of the description define.
     """
@@ -120,7 +120,7 @@ def complete_text(
 
     Args:
         document: the text.
-        cursor: a place in the content of the element.
+        cursor: a cursor in the content of the element.
         rule: the rule of the element, or None.
         names: the names that the files of the description define.
     """
@@ -142,7 +142,7 @@ def complete_text(
 
 
 def _computed(document: Document, cursor: Cursor, names: Sequence[NameDefinition]) -> Generator[Completion, None, bool]:
-    """Yield the completions in an expression or substitution, and return whether the place is in one."""
+    """Yield the completions in an expression or substitution, and return whether there is one."""
     if cursor.in_expression:
         yield from complete_expression(document, cursor, names)
         return True
@@ -158,7 +158,7 @@ def _offer(values: Iterable[str], start: int, detail: str = "") -> Iterator[Comp
 
 
 def _given(written: str | None, rule: AttributeRule | None, start: int) -> Iterator[Completion]:
-    """Yield the default of a value, unless the value is it already."""
+    """Yield the default of a value, unless the value equals the default."""
     if rule is not None and rule.default and rule.default != written and rule.type is not TRUTH:
         yield Completion(rule.default, ItemKind.VALUE, start, localized(phrase("default")))
 
@@ -224,7 +224,7 @@ def _parameters(document: Document, cursor: Cursor, start: int) -> Iterator[Comp
 
 
 def hardware_of(text: str, hardware: OutlineElement | None) -> str:
-    """Return the plugin that an element ``<hardware>`` names; empty if it names none."""
+    """Return the plugin in an element ``<hardware>``, or empty if there is none."""
     plugin = next((child for child in hardware.children if child.tag.name == "plugin"), None) if hardware else None
     return "" if plugin is None else text[plugin.tag.end : plugin.end].partition("<")[0].strip()
 
@@ -252,7 +252,7 @@ def _parts_of(
     start: int,
     names: Sequence[NameDefinition],
 ) -> Iterator[Completion]:
-    """Yield the names of some kinds: in a macro as they are written, elsewhere as they are after the expansion."""
+    """Yield the names of some kinds: expanded names and, in a macro, names as written."""
     if not kinds:
         return
     expanded = [name for name in part_names(document) if name.kind in kinds]
@@ -269,7 +269,7 @@ def _parts_of(
 
 
 def _simulator_plugin(document: Document, cursor: Cursor, start: int) -> Iterator[Completion]:
-    """Yield the libraries of plugins, or the names for a plugin, those of the simulator that the file is for first."""
+    """Yield the libraries or names of plugins, the plugins for the file's simulator first."""
     assert cursor.attribute is not None
     token, name = cursor.elements[-1], cursor.attribute.name
     library, class_name = _attribute(token, "filename"), _attribute(token, "name")
@@ -294,7 +294,7 @@ def _simulator_plugin(document: Document, cursor: Cursor, start: int) -> Iterato
 
 
 def _spelt(name: str, typed: str) -> str:
-    """Return the name of a plugin with the older names of gz where they are typed, as ``ignition-gazebo-``."""
+    """Return the name of a plugin, with an old prefix such as ``ignition-gazebo-`` if typed."""
     if typed.startswith(("ign", "libign")):
         prefix = "lib" if typed.startswith("lib") else ""
         return prefix + name.replace("gz-sim-", "ignition-gazebo-").replace("gz::sim::", "ignition::gazebo::")
@@ -313,7 +313,7 @@ def complete_path(
         document: the text.
         typed: the typed part of the path.
         offset: the offset of the cursor.
-        endings: the endings of the files that the place is for; they come first.
+        endings: the suffixes of the expected files, which come first.
         names: the names that the files of the description define.
     """
     package = _PACKAGE.match(typed)

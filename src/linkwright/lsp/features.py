@@ -97,7 +97,7 @@ def make_server() -> LinkwrightServer:
 
 
 def _folders(server: LinkwrightServer) -> list[Path]:
-    """Return the folders that the editor has opened; its root if it names no folders."""
+    """Return the folders that the editor has opened, or its root if it reports no folders."""
     folders = [path for uri in server.workspace.folders if (path := path_of(uri)) is not None]
     root = path_of(server.workspace.root_uri) if server.workspace.root_uri else None
     return folders or ([root] if root else [])

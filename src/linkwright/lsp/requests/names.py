@@ -43,15 +43,15 @@ _KINDS = {
 
 
 def completions_at(document: Document, offset: int, names: Sequence[NameDefinition]) -> list[Completion]:
-    """Return the completions at a place, by the format of the file.
+    """Return the completions at an offset, by the format of the file.
 
     Args:
         document: the text.
-        offset: the character offset of the place.
+        offset: the character offset of the cursor.
         names: the names that the description of the file defines, if it is one.
 
     Raises:
-        NotYetKnownError: they need something that no request has found, and the document does not wait.
+        NotYetKnownError: they need results that no request has found, and the document does not wait.
     """
     own = format_of(document.file)
     return complete(document, offset, names) if own is None else [*own.complete(document, offset)]
@@ -60,7 +60,7 @@ def completions_at(document: Document, offset: int, names: Sequence[NameDefiniti
 def items(
     found: Iterable[Completion], positions: TextPositions, place: types.Position, *, takes_snippets: bool
 ) -> list[types.CompletionItem]:
-    """Return completions at a place as the protocol has them; editors keep their order."""
+    """Convert completions to the protocol, with sort texts that keep their order."""
     offset = positions.offset(place)
     listed = [_item(item, positions, offset, takes_snippets=takes_snippets) for item in found]
     for number, item in enumerate(listed):
@@ -79,7 +79,7 @@ def _item(item: Completion, positions: TextPositions, offset: int, *, takes_snip
         detail=item.detail or None,
         documentation=_markdown(item.description) if item.description else None,
         insert_text_format=types.InsertTextFormat.Snippet if is_snippet else types.InsertTextFormat.PlainText,
-        # Neovim offers an item without this text whatever is typed.
+        # Without this text, Neovim offers the item regardless of the typed text.
         filter_text=f"<{item.label}" if opens else item.label,
         text_edit=edit,
     )
@@ -93,15 +93,15 @@ def hover(
     positions: TextPositions,
     place: types.Position,
 ) -> types.Hover | None:
-    """Return what is known about a place, or None if there is nothing to say.
+    """Return the hover at a position, or None if nothing is known.
 
     Args:
         document: the file.
         names: the names that the description defines.
         values: the values of the expressions in the file.
-        facts: the facts about the link, joint, mesh or package at the place.
+        facts: the facts about the link, joint, mesh or package at the position.
         positions: the text of the file.
-        place: the place.
+        place: the position.
     """
     offset = positions.offset(place)
     found, valued = explain_at(document, offset, names), value_at(values, offset)
@@ -117,7 +117,7 @@ def hover(
 
 
 def suppression_hover(server: LinkwrightServer, asked: types.HoverParams) -> types.Hover | None:
-    """Return the page of the rule whose code is at a place in a suppression comment, or None."""
+    """Return the page of the rule in the suppression comment at a position, or None."""
     path = path_of(asked.text_document.uri)
     positions = None if path is None else server.positions(path)
     suppressed = None if positions is None else code_at(positions.text, positions.offset(asked.position))
@@ -135,7 +135,7 @@ def definitions(
     text_of: TextOf,
     uri: Callable[[Path], str],
 ) -> list[types.Location]:
-    """Return where the name at a place is defined."""
+    """Return the definitions of the name at a position."""
     found = definitions_at(positions.text, positions.offset(place), names)
     return [*_locations(found, text_of, uri)]
 
@@ -143,7 +143,7 @@ def definitions(
 async def parameter_definitions(
     server: LinkwrightServer, path: Path, positions: TextPositions, place: types.Position
 ) -> list[types.Location]:
-    """Return where the parameter of a macro at a place is declared; nothing for other names."""
+    """Return the declaration of the macro parameter at a position, or an empty list."""
     project, texts = server.project, server.texts()
     name = occurrence_at(positions.text, real(path), positions.offset(place))
     if project is None or name is None or name.kind is not NameKind.PARAMETER:
@@ -164,20 +164,20 @@ def _locations(
 
 
 def explained(own: FormattedText, place: types.Position) -> types.Hover | None:
-    """Return what a format knows about a place, or None if there is nothing to say."""
+    """Return the hover of a format at a position, or None if nothing is known."""
     found = own.format.explain(own.document, own.positions.offset(place))
     return None if found is None else types.Hover(_markdown(found.text), own.positions.range(found.start, found.end))
 
 
 def targets_at(own: FormattedText, place: types.Position) -> list[Target]:
-    """Return where a format finds the definition of the name at a place."""
+    """Return the definitions that a format finds for the name at a position."""
     return [*own.format.define(own.document, own.positions.offset(place))]
 
 
 def target_locations(
     targets: Iterable[Target], text_of: TextOf, uri: Callable[[Path], str]
 ) -> Iterable[types.Location]:
-    """Yield the places of targets as the protocol has them."""
+    """Convert targets to locations of the protocol."""
     for target in targets:
         text = text_of(target.file)
         start = types.Position(0, 0)

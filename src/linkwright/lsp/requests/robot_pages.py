@@ -23,7 +23,7 @@ async def show_robot(server: LinkwrightServer, uri: str, *, opens: bool) -> str:
         opens: whether to open the page in the user's browser.
 
     Raises:
-        JsonRpcException: RequestFailed, the file is no description, or its page cannot be served.
+        JsonRpcException: RequestFailed, the file is not a description, or its page cannot be served.
     """
     path, project, texts = path_of(uri), server.project, server.texts()
     if path is None or project is None or not path.name.endswith(DESCRIPTIONS):
