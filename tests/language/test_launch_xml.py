@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+import linkwright.launch.model.actions.testing  # noqa: F401 - its tag exists once it has been imported
 from linkwright.language.launch_schema import LAUNCH
 from linkwright.launch.frontend.extensions import ACTIONS, load
 from linkwright.launch.frontend.xml import Entity, Parser
@@ -23,6 +24,7 @@ def at(tmp_path: Path):
 
 def test_the_table_has_the_tags_of_the_actions():
     assert list(load(ACTIONS))
+    assert "ready_to_test" in action_parse_methods
     assert {*action_parse_methods} - {"push-ros-namespace"} <= {*LAUNCH.child_rules}
 
 

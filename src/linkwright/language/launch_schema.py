@@ -241,6 +241,7 @@ _PLAIN = (
         _action(f"log_{level}", f"writes a line to the log at level {level}", _required("message", _TEXT, "the line"))
         for level in ("info", "debug", "warning", "error")
     ),
+    _action("ready_to_test", "signals to launch_testing that tests may start"),
     _action("shutdown", "ends the launch", _one("reason", _TEXT, "the reason for the log", "no reason given")),
     _action(
         "set_ros_log_dir",
