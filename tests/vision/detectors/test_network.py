@@ -75,7 +75,7 @@ def slowly(rows, classes, limits, objectness=False):
     for each in found:
         if all(other[1] != each[1] or overlap(other[2], each[2]) <= limits.iou for other in kept):
             kept.append(each)
-    return kept[: limits.most]
+    return kept[: limits.max_detections]
 
 
 def check(found, kept, image, scale, left, top, tolerance=1e-3):
