@@ -158,6 +158,7 @@ check: $(VENV)/.dev
 	$(BIN)/python tools/substituted_names.py --check
 	$(BIN)/python tools/node_parameters.py --check
 	$(BIN)/python tools/simulator_plugins.py --check
+	$(BIN)/python tools/node_topics.py --check
 	$(BIN)/python tools/catalogues.py check
 	$(BIN)/python tools/plain_words.py
 	$(BIN)/python tools/rule_reference.py --check

@@ -199,3 +199,23 @@ describe("the view", () => {
     session.view.camera.position.forEach((value, i) => expect(value).toBeCloseTo(before[i] ?? 0));
   });
 });
+
+describe("a text editor", () => {
+  const base = { display: "d0", kind: "link", name: "base" } as const;
+
+  beforeEach(() => {
+    receive(tree(display({ id: "d0" })), robot("d0", "base", "arm"));
+    sent.length = 0;
+  });
+
+  it("hears of what the user selects, and not of what it has selected itself", () => {
+    session.focus.select(base);
+    expect(sent).toEqual([]);
+    session.focus.select(null);
+    receive({ type: "editor_attached" }, { type: "show_element", ...base });
+    expect(session.focus.current).toEqual(base);
+    expect(sent).toEqual([]);
+    session.focus.select({ ...base, name: "arm" });
+    expect(sent).toEqual([{ type: "element_selected", ...base, name: "arm" }]);
+  });
+});

@@ -52,7 +52,7 @@ def __getattr__(name: str) -> object:
         return deferred(__name__, _MODULES)(name)
     except ModuleNotFoundError as error:
         if (error.name or "").startswith("linkwright."):
-            raise ImportError(f"'{name}' needs linkwright; linkwright-core is installed alone") from None
+            raise ImportError(f"'{name}' needs linkwright; only linkwright-core is installed") from None
         raise
 
 

@@ -1,7 +1,8 @@
-"""A pytest plugin: a plain ``python -m pytest`` imports ``rclpy``, ``launch`` and messages, as tests do under ROS 2.
+"""A pytest plugin, with which tests import ``rclpy``, ``launch`` and messages as in ROS 2.
 
-pytest loads it in every environment that has Linkwright. It provides the modules that a shell of Linkwright adds to
-``PYTHONPATH``, and imports nothing before a test does. If a real rclpy is installed, it provides nothing.
+A plain ``python -m pytest`` is sufficient: pytest loads the plugin in every environment that has Linkwright. It
+provides the modules that a shell of Linkwright adds to ``PYTHONPATH``, and imports nothing before a test does. If a
+real rclpy is installed, it provides nothing.
 """
 
 from __future__ import annotations
@@ -22,11 +23,11 @@ _LINTER_MARKERS = {
     "flake8": "a check by flake8",
     "pep257": "a check of docstrings",
 }
-"""Markers of the tests that ``ros2 pkg create`` writes; in ROS the linters' own plugins declare them."""
+"""Markers of the tests that ``ros2 pkg create`` writes. In ROS the linters' own plugins declare them."""
 
 
 def _offer_stand_ins() -> None:
-    """Add the stand-ins' folder to the path, as Python does at startup if ``PYTHONPATH`` names it."""
+    """Add the stand-ins' folder to the path, as with ``PYTHONPATH`` at startup."""
     if str(_STARTUP) in sys.path:
         return
     sys.path.append(str(_STARTUP))

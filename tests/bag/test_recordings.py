@@ -149,7 +149,7 @@ def test_a_recording_that_is_one_file(tmp_path: Path) -> None:
     with pytest.raises(LinkwrightError) as error:
         BagWriter(path, single_file=True)
     assert code_of(error) == "BAG105"
-    assert str(error.value.diagnostics[0].hint) == "name another file"
+    assert str(error.value.diagnostics[0].hint) == "choose another file"
 
 
 def parts(folder: Path, storage: str, names: Sequence[str]) -> list[Path]:

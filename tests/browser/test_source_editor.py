@@ -231,7 +231,7 @@ def test_findings_are_fixed_and_values_extracted_with_the_menu_of_actions(start,
     until(page, f"{EDITOR}.file.endsWith('leg.xacro') && {EDITOR}.findings.includes('LW221')")
     page.locator(".cm-lintRange").first.hover()
     page.get_by_role("button", name="Fix…").click()
-    choose(page, "fix everything that is safe to fix in this file")
+    choose(page, "apply all safe fixes in this file")
     shows(page, 'xyz="0 0 1"')
     page.get_by_text("changed 1 file, not saved yet").wait_for()
     until(page, "document.activeElement.matches('.cm-content')")

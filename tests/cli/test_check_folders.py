@@ -276,7 +276,7 @@ def test_mistakes_in_the_configuration_are_told_once(here, capsys):
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        (["n:=1"], "name a file or folder to check"),
+        (["n:=1"], "pass a file or folder to check"),
         (["b.urdf", "--select", "limit-invertd"], "there is no rule 'limit-invertd'; did you mean 'limit-inverted'?"),
         (["b.urdf", "--config", "none.toml"], "no such file: 'none.toml'"),
     ],

@@ -186,7 +186,7 @@ def test_a_file_that_no_commit_has_is_told_from_one_that_came_later(committed, c
     git(committed, "add", "--all")
     git(committed, "commit", "--all", "--message", "new")
     assert main(["diff", "urdf/new.urdf", "--against", "HEAD~1"]) == 2
-    assert "`git log -- urdf/new.urdf` lists the commits that have it" in capsys.readouterr().err
+    assert "run `git log -- urdf/new.urdf` to list the commits that have it" in capsys.readouterr().err
 
 
 @needs_git
@@ -218,7 +218,7 @@ def test_without_git_one_error_says_so(package, capsys, monkeypatch):
 )
 def test_the_wrong_number_of_files_is_wrong_usage(package, capsys, words):
     assert main(["diff", *words]) == 2
-    assert capsys.readouterr().err == "linkwright diff: give two files, or one and --against COMMIT\n"
+    assert capsys.readouterr().err == "linkwright diff: pass two files, or one and --against COMMIT\n"
 
 
 def test_a_file_that_is_not_there_is_trouble(package, capsys):

@@ -50,7 +50,7 @@ def test_the_help_lists_the_commands_of_the_engine(alone, capsys):
 
 def test_other_commands_are_those_of_linkwright(alone, capsys):
     assert main(["view", "robot.urdf"]) == 2
-    assert "linkwright-core is installed alone, and linkwright has more commands" in capsys.readouterr().err
+    assert "only linkwright-core is installed, and linkwright has more commands" in capsys.readouterr().err
 
 
 def test_mjcf_needs_linkwright(alone, capsys, tmp_path):
@@ -63,5 +63,5 @@ def test_names_of_linkwright_are_refused_with_the_reason(alone):
     import linkwright
 
     assert linkwright.load is not None
-    with pytest.raises(ImportError, match="'show' needs linkwright; linkwright-core is installed alone"):
+    with pytest.raises(ImportError, match="'show' needs linkwright; only linkwright-core is installed"):
         _ = linkwright.show

@@ -120,8 +120,8 @@ def test_two_descriptions_are_one_page_without_paths_of_the_machine(model, monke
     ("words", "message"),
     [
         (["r.glb", "box.xacro", "box.xacro"], "'r.glb' should end with .html"),
-        (["r.html", "box.xacro", "box.xacro", "box.xacro"], "give one file, two to compare"),
-        (["r.html", "box.xacro", "box.xacro", "--against", "HEAD"], "give one file, two to compare"),
+        (["r.html", "box.xacro", "box.xacro", "box.xacro"], "pass one file, two to compare"),
+        (["r.html", "box.xacro", "box.xacro", "--against", "HEAD"], "pass one file, two to compare"),
     ],
 )
 def test_what_cannot_be_compared_is_wrong_usage(model, words, message, capsys):

@@ -42,7 +42,7 @@ def test_a_table_with_a_verdict_on_each_link_worst_first(model, capsys):
     assert captured.out.splitlines() == [
         "link            mass (kg)           density (kg/m3)  principal moments (kg m2)  verdict",
         "wheel           - (4.189 computed)  -                -                          missing: it has no <inertial>",
-        "base_link       2                   250              0.02 0.02 0.02             it fits its shapes",
+        "base_link       2                   250              0.02 0.02 0.02             it matches its shapes",
         f"base_footprint  -{'-':>20}{'-':>17}{'':26}it is fixed to 'base_link', which has a mass",
     ]
     assert "--link NAME" in captured.err
@@ -104,7 +104,7 @@ def test_writing(model, capsys):
     assert robot.links["base_link"].inertial.ixx == 0.0133333
     assert robot.links["wheel"].inertial.mass == 4.18879
     assert main(["inertia", str(model)]) == 0
-    assert capsys.readouterr().out.count("it fits its shapes") == 2
+    assert capsys.readouterr().out.count("it matches its shapes") == 2
 
 
 def test_what_a_macro_writes_is_printed_and_refused(tmp_path, capsys):

@@ -28,7 +28,6 @@ async def test_of_two_editors_the_newer_text_counts_and_without_it_the_other_one
     assert texts_of(unsaved) == {real: "second"}
     await unsaved.remove_all("two")
     assert texts_of(unsaved) == {}
-    assert unsaved.overlay() is None
 
 
 async def test_listeners_tell_what_descriptions_make_of_a_text(tmp_path: Path) -> None:

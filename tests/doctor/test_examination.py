@@ -270,7 +270,7 @@ def test_frames_are_listed_with_chinese_quotes_in_chinese():
 def test_a_description_that_is_a_files_name():
     wrong = DescriptionSeen("/robot_description", RSP, "mbot.urdf")
     found = only(replace(WELL, descriptions=(wrong,), joints=()), "DOC501")
-    assert "not a file's name" in found.hint
+    assert "not the name of a file" in found.hint
 
 
 @pytest.mark.parametrize(("text", "severity"), [(ROBOT, Severity.WARNING), (ROBOT + " ", Severity.ERROR)])

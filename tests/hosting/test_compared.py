@@ -32,8 +32,8 @@ def _here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.parametrize(
     ("words", "status", "message"),
     [
-        (["good.urdf", "good.urdf", "good.urdf"], 2, "give one file, two to compare, or one and --against COMMIT"),
-        (["good.urdf", "good.urdf", "--against", "HEAD"], 2, "give one file, two to compare"),
+        (["good.urdf", "good.urdf", "good.urdf"], 2, "pass one file, two to compare, or one and --against COMMIT"),
+        (["good.urdf", "good.urdf", "--against", "HEAD"], 2, "pass one file, two to compare"),
         (["good.urdf", "missing.urdf"], 1, "error[XML101]: no such file"),
         (["missing.urdf", "good.urdf"], 1, "error[XML101]: no such file"),
         (["good.urdf", "prefix=left"], 1, "write prefix:=left"),

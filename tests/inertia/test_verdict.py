@@ -35,7 +35,7 @@ def inertial(mass=4.0, moment=0.016, origin="0 0 0"):
 @pytest.mark.parametrize(
     ("block", "standing", "words"),
     [
-        (inertial(), Standing.FITS, "it fits its shapes"),
+        (inertial(), Standing.FITS, "it matches its shapes"),
         (inertial(mass=-1), Standing.IMPOSSIBLE, "the mass is not positive"),
         (inertial(moment=-1), Standing.IMPOSSIBLE, "the inertia tensor is not positive definite"),
         (inertial(mass=1e40), Standing.IMPOSSIBLE, "its numbers are out of range"),

@@ -92,7 +92,7 @@ def test_a_drive_of_joints_whose_names_are_expressions_is_refused(write):
         "r.urdf.xacro",
     )
     assert "<gazebo>" not in text
-    assert any("the name 'p_l' in it comes from an expression" in each.message for each in written.refused)
+    assert any("the referenced name 'p_l' comes from an expression" in each.message for each in written.refused)
     assert text.count("<inertial>") == 3
 
 

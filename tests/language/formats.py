@@ -65,11 +65,12 @@ class Place:
     Args:
         file: the file, in a package.
         text: the text; the bar is the cursor.
+        folder: the folder of the workspace; by default that of the packages, for a file in a folder of its package.
     """
 
-    def __init__(self, file: Path, text: str) -> None:
+    def __init__(self, file: Path, text: str, folder: Path | None = None) -> None:
         self.offset = text.index("|")
-        workspace = Workspace([file.parents[2]])
+        workspace = Workspace([folder or file.parents[2]])
         text = text.replace("|", "", 1)
         self.document = Document(workspace, {file: text}, file, text)
         found = format_of(file)

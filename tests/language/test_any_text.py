@@ -13,13 +13,14 @@ from linkwright.language.extraction import selected_value
 from linkwright.language.format import Document
 from linkwright.language.formats import format_of
 from linkwright.language.highlighting import highlights_in
-from linkwright.language.hover import definitions_at, explain_at
+from linkwright.language.hover import definitions_at
 from linkwright.language.links import file_references
 from linkwright.language.macro_extraction import selected_elements
 from linkwright.language.refactoring import offers_at
 from linkwright.language.suppressing import code_at, suppression
 from linkwright.language.workspace import Workspace
 from linkwright.language.xml_completion import complete
+from linkwright.language.xml_hover import explain_at
 from linkwright.lsp.positions import TextPositions
 from linkwright.lsp.requests.navigation import uses_in_file
 from linkwright.lsp.requests.texts import folds, format_edits, linked_tags, selections, symbols
@@ -40,7 +41,7 @@ def test_no_state_of_a_text_is_too_much(cut, name):
     names = [*definitions_in(text, file)]
     for item in complete(Document(WORKSPACE, {file: text}, file, text), offset, names):
         assert 0 <= item.start <= offset
-    explained = explain_at(text, offset, file, names)
+    explained = explain_at(Document(WORKSPACE, {file: text}, file, text), offset, names)
     assert explained is None or explained.start <= explained.end <= len(text)
     assert set(definitions_at(text, offset, names)) <= set(names)
     positions = TextPositions(text)

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
+from linkwright.diagnostics.translation import localized
 from linkwright.language.expression_completion import FUNCTIONS, XACRO_FUNCTIONS
 from linkwright.language.extension_schema import DESCRIPTION
-from linkwright.language.format import Document
+from linkwright.language.format import Document, NotYetKnownError
 from linkwright.language.includes import real
-from linkwright.language.robot_names import PartNames
 from linkwright.language.simulator_plugins import simulator_plugins
 from linkwright.language.workspace import Workspace
 from linkwright.language.xml_completion import complete
+from linkwright.language.xml_hover import explain_at
 from linkwright.lint.extension_names import CHILDREN
 from linkwright.loading.extensions import extensions
 from linkwright.simulation.plugins.registry import PLUGINS
@@ -77,9 +79,7 @@ def offered(package: Path):
         project = Workspace([package])
         project.index.refresh()
         texts = {file: text}
-        parts = PartNames(project, texts, file)
-        parts.read()
-        found = complete(Document(project, texts, file, text), offset, project.names(file, texts), parts)
+        found = complete(Document(project, texts, file, text), offset, project.names(file, texts))
         assert len({item.label for item in found}) == len(found)
         return [item.label for item in found if item.label.startswith(text[item.start : offset])]
 
@@ -191,6 +191,50 @@ def test_types_of_sensors_and_choices_are_offered_in_worlds(offered):
     assert "directional" in offered("", "", "a.sdf", world.format('<light name="s" type="|">'))
 
 
+@pytest.fixture
+def explained(package: Path):
+    """Return the hover where a text replaces another one; the bar is the mouse."""
+
+    def hover(old: str, new: str, name: str = "urdf/arm.urdf.xacro", text: str = ROBOT) -> str:
+        text = text.replace(old, new, 1) if old else text
+        offset = text.index("|")
+        text, file = text.replace("|", "", 1), package / name
+        project = Workspace([package])
+        project.index.refresh()
+        found = explain_at(Document(project, {file: text}, file, text), offset, project.names(file, {file: text}))
+        return "" if found is None else localized(found.text)
+
+    return hover
+
+
+def test_a_plugin_of_a_simulator_and_its_parameters_are_explained(explained):
+    place = "<gazebo><plugin filename='libgazebo_ros_diff_drive.so' name='drive'>{}</plugin></gazebo>"
+    assert "drives a robot" in explained("<!-- here -->", place.format("").replace("_drive.so", "_dr|ive.so"))
+    assert "number in m" in explained("<!-- here -->", place.format("<wheel_sep|aration>0.3</wheel_separation>"))
+    assert "number in m" in explained("<!-- here -->", place.format("<wheel_separation>0.|3</wheel_separation>"))
+
+
+def test_hardware_and_its_parameters_are_explained(explained):
+    place = '<ros2_control name="a" type="system"><hardware><plugin>{}</plugin>{}</hardware></ros2_control>'
+    motors = explained("<!-- here -->", place.format("arm/Mo|tors", ""))
+    assert "The motors." in motors
+    assert "`serial_port`" in motors
+    assert "motors.cpp" in explained("<!-- here -->", place.format("arm/Motors", '<param name="ba|ud">1</param>'))
+    assert "rad/s" in explained(
+        "<!-- here -->", '<ros2_control><joint name="j"><command_interface name="velo|city"/></joint></ros2_control>'
+    )
+
+
+def test_parameters_of_macros_and_functions_are_explained(explained):
+    assert "= `0.02`" in explained('<xacro:wheel side="left">', '<xacro:wheel side="left" wid|th="1">')
+    assert "**parameter side**" in explained('name="${side}_wheel"', 'name="${si|de}_wheel"')
+    assert "square root" in explained("${radius / 2}", "${sq|rt(radius)}")
+
+
+def test_an_element_in_a_macro_call_is_explained(explained):
+    assert "rad" in explained("<origin/><a/>", '<origin rp|y="0 0 0"/><a/>')
+
+
 def test_the_tables_have_what_the_rules_know():
     for path, tags in CHILDREN.items():
         rule = DESCRIPTION
@@ -204,3 +248,23 @@ def test_the_tables_have_what_the_rules_know():
         for plugin in simulator_plugins().values()
         for child in plugin.rule.children
     )
+
+
+def test_an_editor_does_not_wait_for_an_expansion(package: Path):
+    file = package / "urdf/arm.urdf.xacro"
+    text = ROBOT.replace("<!-- here -->", '<gazebo reference="left_wheel"/>')
+    offset = text.index("left_wheel") + 2
+    project = Workspace([package])
+    project.index.refresh()
+    document = Document(project, {file: text}, file, text, waits=False)
+    with pytest.raises(NotYetKnownError):
+        complete(document, offset)
+    waiting = [item.label for item in complete(replace(document, waits=True), offset)]
+    assert waiting == [item.label for item in complete(document, offset)]
+    assert not document.refreshes
+    changed = text.replace('side="left"', 'side="right"')
+    document = Document(project, {file: changed}, file, changed, waits=False)
+    assert waiting == [item.label for item in complete(document, offset)]
+    for refresh in document.refreshes:
+        refresh()
+    assert "right_wheel" in [item.label for item in complete(document, offset)]

@@ -146,3 +146,20 @@ def test_a_default_in_a_variable_is_resolved():
     text = "x = LaunchConfiguration('a', default='false')\ny = 'b.yaml'\n"
     text += "DeclareLaunchArgument('a', default_value=x)\nDeclareLaunchArgument('b', default_value=y)\n"
     assert [argument.default for argument in arguments_in(text, Path("a.py"))] == ["false", "b.yaml"]
+
+
+def test_remappings_begin_with_the_topics_of_the_nodes_that_have_them(at):
+    node = 'Node(package="robot_state_publisher", executable="robot_state_publisher", remappings=[{}])'
+    assert at(node.format('("jo|", "a")')).labels() == ["joint_states"]
+    assert at(node.format('("/tf", "tf"), ("/tf|", "a")')).labels() == ["/tf_static"]
+    assert at(node.format('("/tf", "|")')).labels() == ["tf"]
+    assert "tf2_msgs/msg/TFMessage" in at(node.format('("/t|f", "tf")')).hover()
+    users = node.format("").replace("[]", "remappings")
+    assert at(f'remappings = [("jo|", "a")]\n{users}').labels() == ["joint_states"]
+
+
+def test_parameters_of_a_node_are_offered_and_explained(at):
+    node = 'Node(package="nav2_amcl", executable="amcl", parameters=[config, {{{}}}])'
+    assert at(node.format('"max_p|": 1')).labels() == ["max_particles"]
+    assert "max_particles" not in at(node.format('"max_particles": 1, "max_p|"')).labels()
+    assert "2000" in at(node.format('"max_par|ticles": 1')).hover()

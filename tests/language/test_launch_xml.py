@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+import linkwright.launch.model.actions.testing  # noqa: F401 - its tag exists once it has been imported
 from linkwright.language.launch_schema import LAUNCH
 from linkwright.launch.frontend.extensions import ACTIONS, load
 from linkwright.launch.frontend.xml import Entity, Parser
@@ -23,6 +24,7 @@ def at(tmp_path: Path):
 
 def test_the_table_has_the_tags_of_the_actions():
     assert list(load(ACTIONS))
+    assert "ready_to_test" in action_parse_methods
     assert {*action_parse_methods} - {"push-ros-namespace"} <= {*LAUNCH.child_rules}
 
 
@@ -127,3 +129,44 @@ def test_symbols_are_the_elements_with_what_names_them(at):
     )
     assert [child.name for child in launch.children] == ["arg a", "group"]
     assert [child.name for child in launch.children[1].children] == ["node e"]
+
+
+def test_remappings_begin_with_the_topics_of_the_node(at):
+    node = '<node pkg="robot_state_publisher" exec="robot_state_publisher"><remap {}/></node>'
+    assert at(node.format('from="jo|"')).labels() == ["joint_states"]
+    assert at(node.format('from="/jo|"')).labels() == ["/joint_states"]
+    assert at(node.format('from="/jo|int_states" to="a"')).hover().startswith("**joint_states** `sensor_msgs/msg/Joint")
+    assert at(node.format('from="/tf" to="|"')).labels() == ["tf"]
+    two = node.format('from="joint_states" to="a"/><remap from="jo|"')
+    assert at(two).labels() == []
+
+
+def test_remappings_of_an_own_node_are_in_its_sources(at):
+    node = '<node pkg="lamp_nodes" exec="blink"><remap from="{}"/></node>'
+    place = at(node.format("|"))
+    source = place.document.file.parents[2] / "lamp_nodes/lamp_nodes/blink.py"
+    source.write_text(
+        'def main():\n    node.create_publisher(Bool, "glow", 1)\n    ActionServer(self, Blink, "~/run", x)\n'
+    )
+    place.document.project.index.refresh()
+    assert place.labels() == ["glow", "~/run"]
+    found = at(node.format("gl|ow"))
+    found.document.project.index.refresh()
+    assert "publisher, blink.py" in found.hover()
+    assert found.targets() == ["blink.py:glow"]
+
+
+def test_parameters_are_found_by_the_executable(at):
+    assert at('<node pkg="controller_manager" exec="ros2_control_node"><param name="upd|"/></node>').labels() == [
+        "update_rate"
+    ]
+
+
+def test_a_command_has_paths_and_the_arguments_of_the_description(at):
+    place = at('<let name="a" value="$(command \'xacro $(find-pkg-share lamp_nodes)/urdf/|"/>')
+    urdf = place.document.file.parents[2] / "lamp_nodes/urdf/lamp.urdf.xacro"
+    urdf.parent.mkdir()
+    urdf.write_text('<robot><xacro:arg name="side" default="left"/><xacro:arg name="use_sim" default=""/></robot>')
+    assert place.labels() == ["lamp.urdf.xacro"]
+    command = "$(command 'xacro $(find-pkg-share lamp_nodes)/urdf/lamp.urdf.xacro use_sim:=1 |"
+    assert at(f'<let name="a" value="{command}"/>').labels() == ["side:="]

@@ -61,3 +61,9 @@ def test_symbols_are_the_actions(at):
     place = at(f"|{NODE}- group:\n  - executable:\n      cmd: ls\n")
     (launch,) = place.format.symbols(place.document)
     assert [child.name for child in launch.children] == ["node blink", "group"]
+
+
+def test_remappings_begin_with_the_topics_of_the_node(at):
+    node = "launch:\n- node:\n    pkg: joy\n    exec: joy_node\n    remap:\n    - from: {}\n      to: {}"
+    assert at(node.format("j|", "a")).labels() == ["joy"]
+    assert "sensor_msgs/msg/Joy" in at(node.format("jo|y", "a")).hover()

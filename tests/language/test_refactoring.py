@@ -160,7 +160,7 @@ def test_a_property_with_two_definitions_is_not_inlined(tmp_path):
 def test_a_text_in_an_expression_that_is_computed_is_not_inlined(tmp_path):
     body = '  <xacro:property name="r" value="${1}_b"/>\n  <b v="${r + \'c\'}"/>\n'
     description = Description(tmp_path, body)
-    assert "cannot contain its value" in description.refused(Action.INLINE_PROPERTY, "r +")
+    assert "cannot contain the value" in description.refused(Action.INLINE_PROPERTY, "r +")
 
 
 def test_the_inertia_of_a_link_comes_from_its_shapes(tmp_path):

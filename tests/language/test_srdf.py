@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -57,3 +58,17 @@ def test_a_link_is_explained_and_leads_to_the_macro_that_makes_it(at):
     assert "fixed joint from `foot` to `left_arm`" in place.hover()
     assert place.targets() == ["lamp.urdf.xacro:${side}_joint"]
     assert at('<group name="g"><link name="fo|ot"/></group>').targets() == ["lamp.urdf.xacro:foot"]
+
+
+def test_a_robot_with_another_name_is_found_by_its_links(at):
+    text = '<group name="g"><chain base_link="foot" tip_link="|"/></group>'
+    place = at(text)
+    text = place.document.text.replace('name="lamp"', 'name="other"')
+    document = replace(place.document, text=text, texts={place.document.file: text})
+    labels = [item.label for item in place.format.complete(document, text.index('tip_link="') + 10)]
+    assert labels == ["foot", "left_arm", "right_arm"]
+
+
+def test_a_group_is_explained_by_its_parts(at):
+    text = '<group name="a"><chain base_link="foot" tip_link="left_arm"/></group><group_state name="s" group="|a"/>'
+    assert "- chain `foot`, `left_arm`" in at(text).hover()

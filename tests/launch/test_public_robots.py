@@ -263,7 +263,7 @@ class TestNamesUpToFoxy:
     def test_not_both(self) -> None:
         from launch_ros.actions import Node
 
-        with pytest.raises(TypeError, match="both 'node_name' and 'name'"):
+        with pytest.raises(TypeError, match="received 'node_name' and 'name'"):
             Node(package="p", executable="e", name="a", node_name="b")
 
 

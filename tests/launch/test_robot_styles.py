@@ -266,7 +266,7 @@ async def test_what_an_include_does_not_get(launch: Any, write: Any) -> None:
     )
     done = await launch(_file(path))
     assert "requires argument 'model', which is not given" in done.err
-    assert "'modle' was passed; is its name misspelt?" in done.err
+    assert "did you mean 'model' instead of 'modle'?" in done.err
 
 
 async def test_a_package_that_is_not_installed(launch: Any, write: Any) -> None:

@@ -48,7 +48,7 @@ def test_a_file_that_the_package_has_not(package: Path) -> None:
     assert "did you mean 'display.launch.py'" in (caught.value.diagnostics[0].hint or "")
     with pytest.raises(LinkwrightError) as caught:
         LaunchTarget("zzz", "arm").resolve(PackageFinder())
-    assert "it has display.launch.py" in (caught.value.diagnostics[0].hint or "")
+    assert "the package has display.launch.py" in (caught.value.diagnostics[0].hint or "")
 
 
 def test_several_of_a_name(package: Path) -> None:
@@ -87,7 +87,7 @@ class TestWords:
             parse_launch_words([])
 
     def test_a_package_alone(self, package: Path) -> None:
-        with pytest.raises(LinkwrightError, match="'arm' is a package; also name a launch file in it") as caught:
+        with pytest.raises(LinkwrightError, match="'arm' is a package: add the name of a launch file in it") as caught:
             parse_launch_words(["arm"])
         assert "display.launch.py" in (caught.value.diagnostics[0].hint or "")
 
@@ -129,7 +129,7 @@ class TestChecks:
             check_arguments(self.description(), {"modl": "m", "launch-prefix": "gdb"})
         (error,) = caught.value.diagnostics
         assert error.code == "LAUNCH114"
-        assert error.hint == "argument 'modl' was passed; did you mean 'model'?"
+        assert error.hint == "did you mean 'model' instead of 'modl'?"
         with pytest.raises(LinkwrightError) as caught:
             check_arguments(self.description(), {"unlike": "m"})
         assert caught.value.diagnostics[0].hint == "add model:=VALUE"

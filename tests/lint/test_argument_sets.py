@@ -64,7 +64,7 @@ def test_what_fails_only_without_arguments_is_one_remark(check):
     assert codes(found) == [("info", "LINT303")]
     assert found[0]["message"] == "'arm.urdf.xacro' needs the arguments 'name' and 'type'"
     assert [note["message"] for note in found[0]["notes"]] == [
-        "for instance, it gets name:=a type:=small here",
+        "for instance, a caller passes name:=a type:=small here",
         "the file is checked with 2 sets of values",
     ]
     assert found[0]["notes"][0]["file"].endswith("view.launch.py")
@@ -290,7 +290,7 @@ def test_the_values_that_a_description_compares_an_argument_with_are_tried_where
     found = check({"arm/urdf/arm.urdf.xacro": SIDED}, ".", "--ignore", "LW102")
     assert codes(found) == [("info", "LINT303")]
     assert found[0]["message"] == "'arm.urdf.xacro' needs the argument 'side'"
-    assert found[0]["notes"][0]["message"] == "for instance, it can be expanded with side:=left"
+    assert found[0]["notes"][0]["message"] == "for instance, side:=left expands the file"
     assert codes(check({"arm/urdf/arm.urdf.xacro": SIDED}, "arm/urdf/arm.urdf.xacro")) == [("error", "XAC201")]
 
 

@@ -70,7 +70,8 @@ async def test_a_hover_lists_the_value_of_each_call(editor):
 
 async def test_a_lens_counts_the_uses_of_a_macro(editor):
     editor.open(PARTS_FILE)
-    (lens,) = await editor.client.text_document_code_lens_async(types.CodeLensParams(editor.document(PARTS_FILE)))
+    lens, page = await editor.client.text_document_code_lens_async(types.CodeLensParams(editor.document(PARTS_FILE)))
+    assert page.command.command == "linkwright.showRobot"
     assert lens.range.start == at(PARTS, 'xacro:macro name="')
     resolved = await editor.client.code_lens_resolve_async(lens)
     assert (resolved.command.title, resolved.command.command) == ("1 use", "")

@@ -105,7 +105,7 @@ async def test_a_hover_tells_about_links_joints_meshes_and_packages(editor, pack
         return "" if found is None else found.contents.value
 
     base = await hover(FILE, text, 'link name="ba')
-    assert "- root of the tree of links" in base
+    assert "- root of the link tree" in base
     assert "- parent of `upper`" in base
     assert "- mass 2 kg" in base
     assert "0.5 × 2 × 1 m, triangles: 1" in await hover(FILE, text, "meshes/a")
@@ -122,3 +122,20 @@ async def test_an_editor_can_filter_each_completion(editor):
     asked = types.CompletionParams(editor.document(FILE), types.Position(2, 5))
     found = await editor.client.text_document_completion_async(asked)
     assert {item.filter_text for item in found} >= {"link", "xacro:bar"}
+
+
+async def test_an_editor_without_snippets_gets_plain_texts_in_the_order_of_the_server(editor):
+    text = MAIN.replace("<xacro:bar", '<joint name="a" type="revolute">\n    █\n  </joint>\n  <xacro:bar', 1)
+    before = text[: text.index(CURSOR)]
+    editor.open(FILE, text.replace(CURSOR, ""))
+    at = types.Position(before.count("\n"), len(before) - before.rfind("\n") - 1)
+    found = await editor.client.text_document_completion_async(types.CompletionParams(editor.document(FILE), at))
+    first = found[0]
+    assert (first.label, first.text_edit.new_text, first.filter_text) == ("parent", "<parent", "<parent")
+    assert first.insert_text_format == types.InsertTextFormat.PlainText
+    assert [item.sort_text for item in found] == sorted(item.sort_text for item in found)
+    assert len({item.label for item in found}) == len(found)
+
+
+async def test_a_link_that_a_macro_makes_is_offered_while_the_text_cannot_be_expanded(editor):
+    assert "upper" in await complete(editor, MAIN.replace("</robot>", '<joint name="b"><parent link="up█'))

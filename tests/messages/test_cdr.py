@@ -131,7 +131,7 @@ class TestRefused:
         assert "it begins with 48 69 21 21" in self.refused(b"Hi!!", String)
 
     def test_a_text_that_is_not_utf_8(self):
-        assert "a string in it is not UTF-8" in self.refused(b"\0\1\0\0\3\0\0\0\xff\xfe\0", String)
+        assert "a string is not UTF-8" in self.refused(b"\0\1\0\0\3\0\0\0\xff\xfe\0", String)
 
     def test_a_text_without_its_end(self):
         assert "the end of a string does not match its length" in self.refused(b"\0\1\0\0\2\0\0\0ab", String)

@@ -64,7 +64,7 @@ def test_one_that_cannot_be_imported_says_whose_it_is(installed: NodeRegistry) -
     (finding,) = caught.value.diagnostics
     assert finding.code == "NODE002"
     assert finding.hint == (
-        "the Python package 'my_robot' provides it, but its import fails: No module named 'my_robot_that_is_not_there'"
+        "fix the Python package 'my_robot', whose import fails: No module named 'my_robot_that_is_not_there'"
     )
 
 

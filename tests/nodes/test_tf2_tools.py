@@ -163,7 +163,7 @@ async def test_misuse_of_view_frames(stage, logged, tmp_path):
     running, _ = started(stage, ViewFrames, "-t", "0", "-o", str(tmp_path / "no" / "folder"))
     await stage.clock.advance(0.01)
     assert running.finished.result() == 1
-    assert "cannot be written" in logged("ERROR")[0]
+    assert "cannot write" in logged("ERROR")[0]
 
 
 async def test_describing_a_transform_keeps_the_zeros_of_tf2(stage, send):

@@ -241,7 +241,7 @@ async def test_an_expression_that_fails_is_told_and_the_next_message_counts(test
         (Relay, [], "parameter 'input_topic' of 'relay' is not set"),
         (Relay, ["a", "b", "c"], "unexpected argument 'c'"),
         (Throttle, ["often", "a", "1"], "parameter 'throttle_type' of 'throttle' cannot be 'often'"),
-        (Throttle, ["messages", "a", "fast"], "'fast' is not a value of 'msgs_per_sec'"),
+        (Throttle, ["messages", "a", "fast"], "'fast' is not a valid value for 'msgs_per_sec'"),
         (Throttle, ["messages", "a", "0"], "parameter 'msgs_per_sec' of 'throttle' cannot be '0.0'"),
         (Drop, ["a", "1"], "parameter 'Y' of 'drop' is not set"),
         (Delay, ["a", "-1"], "parameter 'delay' of 'delay' cannot be '-1.0'"),

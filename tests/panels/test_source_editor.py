@@ -97,7 +97,7 @@ async def test_the_folder_is_listed_and_a_file_is_created(file: Path) -> None:
         assert created["refusal"] is None
         assert content(new) == b""
         again = await ask(client, "create_source_file", "source_file_written", number=2, path=str(new))
-        assert "exists already" in again["refusal"]["message"]
+        assert "already exists" in again["refusal"]["message"]
 
 
 @pytest.mark.parametrize("path", ["/etc/passwd", "{ws}/.git/config", "{ws}/../outside.txt"])

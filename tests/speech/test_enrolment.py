@@ -149,7 +149,7 @@ def test_there_is_a_most_of_words():
         (lambda document: document.update(words={}), "must contain a list of at most 200 words"),
         (lambda document: document["words"].append({"takes": []}), "word 3 has no valid name"),
         (lambda document: document["words"].append(document["words"][0]), "word 3 has no valid name, or the name of"),
-        (lambda document: document["words"][1].update(takes=[]), "the word 'stop' must have 1 to 10 takes"),
+        (lambda document: document["words"][1].update(takes=[]), "the word 'stop' must have 1 to 10 recordings"),
         (lambda document: document["words"][1]["takes"][0].update(frames="!"), "'stop' cannot be decoded"),
         (lambda document: document["words"][1]["takes"][0].update(frames=7), "'stop' cannot be decoded"),
         (lambda document: document["words"][1]["takes"][0].pop("noise"), "'stop' cannot be decoded"),

@@ -70,10 +70,10 @@ def test_what_is_written_is_read(tmp_path):
 @pytest.mark.parametrize(
     ("data", "why"),
     [
-        (b"", "has no header of a WAV file"),
-        (b"OggS" + bytes(60), "has no header of a WAV file"),
+        (b"", "has no WAV header"),
+        (b"OggS" + bytes(60), "has no WAV header"),
         (wav(b"")[:12], "no samples"),
-        (b"RIFF\0\0\0\0WAVEdata\0\0\0\0", "before the chunk with their format"),
+        (b"RIFF\0\0\0\0WAVEdata\0\0\0\0", "before its 'fmt ' chunk"),
         (wav(bytes(8), kind=7, bits=8), "mu-law with 8 bits"),
         (wav(bytes(8), kind=0x1234, bits=8), "0x1234"),
         (wav(bytes(8), bits=12), "PCM with 12 bits"),

@@ -60,7 +60,7 @@ def test_no_pygraphviz(tmp_path, monkeypatch):
 
 @pytest.mark.extra("diagram")
 def test_a_folder_that_is_not_there(tmp_path):
-    with pytest.raises(LinkwrightError, match="cannot be written"):
+    with pytest.raises(LinkwrightError, match="cannot write"):
         render(GV, tmp_path / "missing" / "robot.pdf")
 
 

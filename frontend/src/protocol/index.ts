@@ -149,6 +149,7 @@ import type {
   UnsavedTextShown,
   WriteSourceFile,
 } from "./source-editor";
+import type { EditorAttached, ElementSelected, ShowElement } from "./text-editor";
 import type {
   Clock,
   GoLive,
@@ -217,6 +218,7 @@ export * from "./points";
 export * from "./robot";
 export * from "./simulation";
 export * from "./source-editor";
+export * from "./text-editor";
 export * from "./time";
 export * from "./views-and-tools";
 export * from "./voice";
@@ -244,6 +246,7 @@ export type ServerMessage =
   | EditPreview
   | EditWritten
   | EditableParts
+  | EditorAttached
   | EditorOpened
   | ExportFailed
   | ExportReady
@@ -277,6 +280,7 @@ export type ServerMessage =
   | RobotScene
   | SavedViews
   | SeriesStates
+  | ShowElement
   | SimulationNotice
   | SimulationStatus
   | SourceFile
@@ -339,6 +343,7 @@ export type PageMessage =
   | Drive
   | DumpParameters
   | DuplicateDisplays
+  | ElementSelected
   | EndTake
   | GiveArguments
   | GoLive

@@ -25,6 +25,7 @@ import { SelectionState } from "./selection";
 import { SimulationState } from "./simulation";
 import { SlowConnection } from "./slow-connection";
 import { Slowness } from "./slowness";
+import { TextEditorLink } from "./text-editor";
 import { TimeControlState } from "./time";
 import { TimelineState } from "./timeline";
 import { ToolsState } from "./tools";
@@ -71,6 +72,7 @@ export class Session {
   readonly monitor: MonitorState;
   readonly voice: VoiceState;
   readonly words: WordsState;
+  readonly textEditor: TextEditorLink;
   diagnostics: readonly DiagnosticItem[] = [];
   private program: Hello | null = null;
 
@@ -93,6 +95,7 @@ export class Session {
     this.monitor = new MonitorState(connection, browserStorage());
     this.voice = new VoiceState(connection, browserStorage());
     this.words = new WordsState(connection, this.voice);
+    this.textEditor = new TextEditorLink(connection, this.focus);
     this.listen(connection);
     const followFixedFrame = (): void => {
       this.frames.fixedFrame = this.displays.fixedFrame;

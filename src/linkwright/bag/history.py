@@ -34,7 +34,7 @@ _MAX_RATIO = 0.8
 """The maximum size of a compressed message, as a share of its size: decompression takes time, too."""
 
 _MAX_QUEUED_BYTES = 64_000_000
-"""The maximum number of bytes that wait for compression; messages beyond that stay uncompressed."""
+"""The maximum number of bytes that wait for compression. Messages beyond that stay uncompressed."""
 
 _COMPRESSION_LEVEL = 1
 
@@ -42,7 +42,7 @@ K = TypeVar("K")
 
 
 class Packed(bytes):
-    """A compressed message. Its length is the number of compressed bytes."""
+    """A compressed message, as the compressed bytes."""
 
     __slots__ = ()
 
@@ -66,7 +66,7 @@ def uncompressed_bytes(data: bytes) -> bytes:
 
 
 class Shrinker(Generic[K]):
-    """Compresses messages in a separate thread. It starts when the first large message arrives.
+    """Compresses messages in a thread that starts when the first large message arrives.
 
     Args:
         done: called in that thread with the key of a message and its compressed form.
@@ -263,7 +263,7 @@ class _Track:
         return index if index < len(self.entries) and self.entries[index][1] == number else None
 
     def repeated_after(self, start_ns: int, end_ns: int) -> list[_Entry]:
-        """Return the messages in a time interval that also represent the equal messages after them."""
+        """Return the messages in a time interval that represent equal later messages, too."""
         return [item for item in self.between(start_ns, end_ns) if item[1] in self._repeated_numbers]
 
     def repeated_until(self, at_ns: int) -> list[_Entry]:
@@ -353,7 +353,7 @@ class History:
         Args:
             topic: the name of the topic.
             data: the serialized message.
-            at_ns: the reception time; None for the current time. A time before that of the newest message is replaced
+            at_ns: the reception time; None for the current time. A time before the newest message's is replaced
                 by the newest message's time.
             content: the content of the message (see `stillness`), so that a message that only repeats earlier ones
                 needs no additional memory; None if the content is not compared.
@@ -386,7 +386,10 @@ class History:
         self._shrinker.offer((track, number), data)
 
     def close(self) -> None:
-        """Stop compressing. The stored messages remain available."""
+        """Stop compressing.
+
+        The stored messages remain available.
+        """
         self._shrinker.close()
 
     def _comparable_clock(self, content: Content, clock_ns: int) -> Content:
@@ -416,7 +419,10 @@ class History:
         return True
 
     def _queue(self, track: _Track) -> None:
-        """Add a track to the queue. The queue is ordered by the oldest message of each track."""
+        """Add a track to the queue.
+
+        The queue is ordered by the oldest message of each track.
+        """
         if not track.is_queued and len(track) > 0:
             track.is_queued = True
             heappush(self._queue_by_oldest, (track.entries[track.first_index][1], track.name, track))

@@ -82,7 +82,7 @@ class McapLookup:
     def counts(self, channel: int, *, exact: bool) -> Iterator[tuple[int, int, int]]:
         """Yield start, end and number of messages for time intervals of a channel, in nanoseconds.
 
-        The intervals are those of the chunks, or single messages.
+        Each interval spans a chunk or a single message.
 
         Args:
             channel: the number of the channel.

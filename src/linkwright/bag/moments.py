@@ -1,4 +1,4 @@
-"""Find the state of a recording at a time: the last message of each topic, and the transforms."""
+"""The state of a recording at a time: the last message of each topic, and the transforms."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ class StateLookup:
         return max((stamp for _, stamp, _ in self._latest(topics, at_ns - 1)), default=None)
 
     def counts(self, intervals: int) -> dict[str, list[int]]:
-        """Return the number of messages of each topic in equal intervals of the recording's duration.
+        """Return the number of messages of each topic in equal intervals of the recording.
 
         The result is empty for a file without an index. In a long recording, the messages of a chunk, or of a short
         interval, are counted as if they were evenly distributed.
@@ -93,9 +93,10 @@ class StateLookup:
 
     @cached_property
     def _lookups(self) -> list[tuple[Any, McapLookup | RowLookup]]:
-        """The lookups of the files. The list is empty if one of the files cannot be searched.
+        """The lookups of the files.
 
-        A file cannot be searched if it has no index, or if its messages are compressed one by one.
+        The list is empty if one of the files cannot be searched. A file cannot be searched if it has no index, or if
+        its messages are compressed one by one.
         """
         storage: Any = self._reader.storage
         lookups: list[tuple[Any, McapLookup | RowLookup]] = []

@@ -20,7 +20,7 @@ METADATA = "metadata.yaml"
 """The name of the file that describes the other files in the folder of a recording."""
 
 ROS1_SUFFIX = ".bag"
-"""The suffix of recordings of ROS 1, which are rejected with a hint on how to convert them."""
+"""The suffix of ROS 1 recordings. They are rejected with a hint on how to convert them."""
 
 PACKED = ".zstd"
 """The suffix that follows the name of a file that is compressed as a whole."""

@@ -1,7 +1,7 @@
 """Read compressed files of recordings that have no metadata.
 
-The metadata is missing if only a file was copied, or if the recorder was killed. rosbag2 compresses whole files or
-single messages, and only ``metadata.yaml`` states the unit.
+The metadata is missing if only a file was copied, or if the recorder was killed. rosbag2 compresses either whole files
+or single messages, and records the choice only in ``metadata.yaml``.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ else:
     from backports import zstd
 
 _MAGIC = b"\x28\xb5\x2f\xfd"
-"""The first bytes of zstd data (RFC 8878); an uncompressed message begins with a zero."""
+"""The first bytes of zstd data (RFC 8878). An uncompressed message begins with a zero."""
 
 
 def decompress_file(path: Path, folder: Path) -> Path:
@@ -43,7 +43,7 @@ def decompress_file(path: Path, folder: Path) -> Path:
 
 
 def decompress_messages(reader: Reader) -> None:
-    """Make the reader of a single file decompress its messages, if the first message is compressed.
+    """Make a single file's reader decompress its messages if the first one is compressed.
 
     Args:
         reader: the library's reader of a single file; it must be open.

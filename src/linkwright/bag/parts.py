@@ -16,7 +16,7 @@ from linkwright.files import whole_files
 from linkwright.files.scratch_folders import ScratchFolder
 
 VERSION: Literal[8] = 8
-"""The version of the metadata. Humble reads versions up to 8, except for unknown fields; Jazzy writes 9."""
+"""The version of the metadata. Humble reads versions up to 8, except for unknown fields. Jazzy writes 9."""
 
 INFORMATION = "rosbag2_bagfile_information"
 """The top-level key of ``metadata.yaml``."""
@@ -156,7 +156,7 @@ def _allow_all_threads(storage: Any) -> None:
 
 
 class _FixedPath:
-    """Replaces the folder in which the library creates its file. The file then has a given path."""
+    """Replaces the library's folder, so that the library creates its file at a given path."""
 
     def __init__(self, path: Path) -> None:
         self.name = path.stem

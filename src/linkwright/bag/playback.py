@@ -19,14 +19,17 @@ _TICK_NS = 16_000_000
 """The real time between two checks for messages to publish."""
 
 _MAX_TICK_MESSAGES, _MAX_TICK_BYTES = 1000, 16 << 20
-"""The maximum number of messages and bytes in one tick; if there are more, playback is slower but skips nothing."""
+"""The maximum number of messages and bytes in one tick. If there are more, playback is slower but skips nothing."""
 
 SLOWEST, FASTEST = 0.1, 10.0
 """The minimum and maximum speed."""
 
 
 class Recording(Protocol):
-    """The interface of recordings that can be played. Times are in nanoseconds since the epoch."""
+    """The interface of recordings that can be played.
+
+    Times are in nanoseconds since the epoch.
+    """
 
     @property
     def start_ns(self) -> int:
@@ -110,7 +113,10 @@ class Playback:
         return self._recording.end_ns
 
     def play(self) -> None:
-        """Start playing. If the position is at the end, start from the beginning."""
+        """Start playing.
+
+        If the position is at the end, start from the beginning.
+        """
         if self.playing:
             return
         if self._target() >= self.end_ns:
@@ -232,7 +238,10 @@ class Playback:
             self._fail(error)
 
     def close(self) -> None:
-        """Stop playing, and remove the listeners. The recording stays open."""
+        """Stop playing, and remove the listeners.
+
+        The recording stays open.
+        """
         self._stop()
         self.changed.clear()
         self._stream, self._next_message = iter(()), None

@@ -147,7 +147,10 @@ class Player:
         self._schedule()
 
     def play_next(self) -> bool:
-        """Publish the next message while paused. Return False if there is none."""
+        """Publish the next message while paused.
+
+        Return False if there is none.
+        """
         return self.burst(1) == 1
 
     def burst(self, count: int) -> int:

@@ -1,6 +1,6 @@
 """Quality of service in recordings: conversion of profiles, and their choice.
 
-The rules for the choice are those of rosbag2 (``rosbag2_transport/qos.cpp``).
+The choice follows the rules of rosbag2 (``rosbag2_transport/qos.cpp``).
 """
 
 from __future__ import annotations
@@ -113,7 +113,7 @@ def profile_for_recording(offered: Sequence[QoSProfile]) -> QoSProfile:
 
 
 def profile_for_playing(recorded: Sequence[QoSProfile]) -> QoSProfile:
-    """Return the recorded profile if all publishers offered equivalent profiles, else the default.
+    """Return the recorded profile if all publishers offered equivalent ones, else the default.
 
     Depth and lifespan may differ. The largest depth is then used, because one publisher now represents all of them.
     rosbag2 always uses a depth of 10 messages.
@@ -142,7 +142,7 @@ def parse_overrides(document: object, source: str) -> dict[str, QoSProfile]:
     if not isinstance(document, Mapping) or not all(isinstance(item, Mapping) for item in document.values()):
         raise _overrides_error(
             source,
-            phrase("it must map topics to policies"),
+            phrase("the file must map topics to policies"),
             phrase("write the topic's name, and below it a policy such as `reliability: reliable`"),
         )
     return {str(topic): _parse_profile(policies, str(topic), source) for topic, policies in document.items()}
@@ -170,7 +170,7 @@ def _parse_profile(policies: Mapping[str, Any], topic: str, source: str) -> QoSP
             if not isinstance(value, Mapping) or set(value) - {"sec", "nsec"}:
                 raise _overrides_error(
                     source,
-                    phrase("{name} of topic '{topic}' is not a duration", name=name, topic=topic),
+                    phrase("policy '{name}' of topic '{topic}' is not a duration", name=name, topic=topic),
                     phrase("write `sec: 1` and `nsec: 0` below it"),
                 )
             values[name] = Duration(seconds=value.get("sec", 0), nanoseconds=value.get("nsec", 0))

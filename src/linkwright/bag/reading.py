@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 
 _ROS_FORMAT = "cdr"
-"""The serialization format of ROS 2 messages; topics with another format are left out."""
+"""The serialization format of ROS 2 messages. Topics with another format are left out."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,9 +59,10 @@ class BagTopic:
 
 
 class BagReader:
-    """An open recording. Close it, or use it in a ``with`` statement.
+    """An open recording.
 
-    Unknown message types are registered from the definitions in the recording.
+    Close it, or use it in a ``with`` statement. Unknown message types are registered from the definitions in the
+    recording.
 
     Args:
         path: a folder with a ``metadata.yaml``, or a single ``.mcap`` or ``.db3`` file. If the recorder was killed, and
@@ -146,7 +147,7 @@ class BagReader:
         return reader
 
     def _readable_target(self, target: Path) -> Any:
-        """Return a target that the library can open: the path, or a file in memory that has an index.
+        """Return a target that the library can open: the path, or an indexed file in memory.
 
         Data that the library would reject are removed from the file in memory.
         """
@@ -179,7 +180,7 @@ class BagReader:
         diagnostics = []
         if not self._is_truncated and not any(topic.count for topic in self.topics):
             message = phrase("recording '{path}' contains no messages", path=self._display_name)
-            hint = phrase("`linkwright topic list` and `linkwright topic hz TOPIC` show the published topics")
+            hint = phrase("run `linkwright topic list` or `linkwright topic hz TOPIC` to see the published topics")
             diagnostics.append(Diagnostic("BAG113", message, severity=Severity.WARNING, hint=hint))
         if self._is_truncated:
             message = phrase(
@@ -292,7 +293,7 @@ class BagReader:
         return self._search(lambda: self._state_lookup.time_before(topics, at_ns))
 
     def counts(self, intervals: int) -> dict[str, list[int]]:
-        """Return the number of messages of each topic in equal intervals of the recording's duration.
+        """Return the number of messages of each topic in equal intervals of the recording.
 
         The result is empty for a file without an index.
         """
@@ -315,7 +316,10 @@ class BagReader:
             yield connection.topic, stamp_ns, data
 
     def close(self) -> None:
-        """Close the files of the recording. A second call has no effect."""
+        """Close the files of the recording.
+
+        A second call has no effect.
+        """
         self._open.close()
 
     def __enter__(self) -> Self:
@@ -342,7 +346,7 @@ def open_recording(path: str | Path) -> BagReader:
 
 
 def _ignore_profiles_of_files(storage: Any) -> None:
-    """Let the library match the topics of ``metadata.yaml`` and of the files, whatever their QoS.
+    """Let the library match topics of ``metadata.yaml`` and of the files regardless of QoS.
 
     Otherwise it reads no messages from recordings made before rosbag2 stored profiles in files, and from some
     converted recordings.
@@ -380,7 +384,7 @@ def _storage_targets(path: Path, display_name: str) -> list[Path]:
         path=display_name,
         found=file_names,
     )
-    hint = phrase("name one of them, or name all files of one recording: linkwright view FILE FILE ...")
+    hint = phrase("pass one of them, or all files of one recording: linkwright view FILE FILE ...")
     raise LinkwrightError(Diagnostic("BAG102", message, hint=hint))
 
 

@@ -11,7 +11,7 @@ from linkwright.messages import get_message
 
 
 class RecorderServices:
-    """Offers the services that control a recorder, and publishes splits on ``events/write_split``.
+    """Offers the services that control a recorder, and publishes ``events/write_split``.
 
     The services are below the name of the node. Names and types follow ``rosbag2_transport::Recorder``.
 

@@ -13,9 +13,9 @@ from linkwright.messages import type_hash
 
 
 def reindex(folder: Path) -> None:
-    """Write the ``metadata.yaml`` of a recording. An existing file is replaced.
+    """Write the ``metadata.yaml`` of a recording.
 
-    An unfinished file is listed with its complete messages.
+    An existing file is replaced. An unfinished file is listed with its complete messages.
 
     Args:
         folder: the folder with the files of one recording; their names end with _0, _1 and so on.
@@ -28,7 +28,7 @@ def reindex(folder: Path) -> None:
     files = [path for path in folder.iterdir() if storage_format(path) is not None] if folder.is_dir() else []
     if len(files) != 1 and not belong_together(files):
         message = phrase("there are no files of a recording in '{path}'", path=display_path(folder))
-        hint = phrase("name a folder whose files end with a number and .mcap or .db3, such as drive_0.mcap")
+        hint = phrase("pass a folder whose file names end with a number and .mcap or .db3, such as drive_0.mcap")
         raise LinkwrightError(Diagnostic("BAG117", message, hint=hint))
     file_metadata = []
     for file in in_order(files):

@@ -141,7 +141,7 @@ def _entries(path: str | Path) -> list[Mapping[str, Any]]:
     entries = document.get("output_bags") if isinstance(document, dict) else None
     if not isinstance(entries, list) or not entries:
         raise _unusable_options(
-            str(path), phrase("it must have the key 'output_bags' with a list of the recordings to write")
+            str(path), phrase("the file must have the key 'output_bags' with a list of the recordings to write")
         )
     for entry in entries:
         if not isinstance(entry, dict) or not isinstance(entry.get("uri"), str):

@@ -68,7 +68,7 @@ class RowLookup:
             yield start_ns, start_ns + self._interval_ns - 1, count
 
     def _latest(self, topic: int, at_ns: int) -> Iterator[tuple[int, int]]:
-        """Yield the time and the row ID of the last message of a topic up to a time, if there is one."""
+        """Yield the time and row ID of a topic's last message up to a time, if there is one."""
         query = "SELECT timestamp, id FROM messages WHERE timestamp BETWEEN ? AND ? AND topic_id = ?"
         intervals = list(self._counts_by_topic.get(topic, {}))
         for interval in reversed(intervals[: bisect_right(intervals, (at_ns - self._start_ns) // self._interval_ns)]):
@@ -80,9 +80,9 @@ class RowLookup:
                 return
 
     def _sections(self, topic: int, start_ns: int, end_ns: int) -> list[tuple[int, int]]:
-        """Return the sections of a time interval that can contain messages of a topic, in nanoseconds.
+        """Return the parts of a time interval that can contain messages of a topic.
 
-        Adjacent sections are merged.
+        The bounds are in ns. Adjacent parts are merged.
         """
         sections: list[tuple[int, int]] = []
         for interval in self._counts_by_topic.get(topic, {}):

@@ -1,4 +1,7 @@
-"""Temporary folders for copies of recordings. Copies can be larger than the memory."""
+"""Temporary folders for copies of recordings.
+
+Copies can be larger than the memory.
+"""
 
 from __future__ import annotations
 
@@ -8,7 +11,7 @@ from pathlib import Path
 from linkwright.files.scratch_folders import ScratchFolder
 
 _ON_DISK = Path("/var/tmp")  # noqa: S108 - the folder below it gets an unpredictable name
-"""The system's folder for large temporary files; ``/tmp`` may be memory (file-hierarchy(7))."""
+"""The system's folder for large temporary files. ``/tmp`` may be memory (file-hierarchy(7))."""
 
 
 def scratch_folder() -> ScratchFolder:

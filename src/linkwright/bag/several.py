@@ -74,7 +74,7 @@ class _Storages:
     ) -> Generator[_Message, None, None]:
         """Yield the messages of all files, ordered by time.
 
-        A file is first read when its first message is the next one.
+        A file is opened only when its first message is due.
         """
         connection_by_key = {_key(connection): connection for connection in connections}
         unopened = [

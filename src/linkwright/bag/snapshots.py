@@ -6,7 +6,9 @@ from collections import deque
 
 
 class LatestMessages:
-    """The latest messages up to a total size. Older messages are dropped.
+    """The latest messages up to a total size.
+
+    Older messages are dropped.
 
     Args:
         size: the maximum number of bytes; a single message that is larger is not stored.
@@ -18,7 +20,7 @@ class LatestMessages:
         self._messages: deque[tuple[str, int, bytes]] = deque()
 
     def add(self, topic: str, stamp_ns: int, data: bytes | memoryview) -> None:
-        """Store a message. The arguments are those of `BagWriter.write`."""
+        """Store a message, with the arguments of `BagWriter.write`."""
         content = bytes(data)
         if len(content) > self._max_bytes:
             return

@@ -1,4 +1,4 @@
-"""Extract the content of messages without their stamps, to detect streams that repeat themselves."""
+"""Extract the content of messages without their stamps, to detect repeating streams."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ A simulated robot at rest moves by 1e-12 in each step.
 """
 
 _ENCAPSULATION_SIZE = 4
-"""The bytes of the encapsulation header before the message; alignment counts from its end."""
+"""The bytes of the encapsulation header before the message. Alignment counts from its end."""
 _STAMP_SIZE = 8
 _POSE_SIZE = 56
 _LITTLE_ENDIAN = 1
@@ -43,7 +43,10 @@ class Content(NamedTuple):
     clock_ns: int | None = None
 
     def is_repeated_by(self, newer: Content) -> bool:
-        """Return whether a newer message has the same content. Positions may differ by 1 nm."""
+        """Return whether a newer message has the same content.
+
+        Positions may differ by 1 nm.
+        """
         if self.state != newer.state or len(self.poses) != len(newer.poses):
             return False
         if self.poses == newer.poses:
@@ -70,7 +73,7 @@ def content_of(type_name: str, data: bytes) -> Content | None:
 
 
 def clock_between(earlier: bytes, later: bytes, fraction: float) -> bytes:
-    """Return a clock message with a time that is interpolated linearly between two clock messages.
+    """Return a clock message with a time interpolated linearly between two clock messages.
 
     Args:
         earlier: the data of the first message.
@@ -99,7 +102,7 @@ def _begins_with_header(type_name: str) -> bool:
 
 
 class _Layout(NamedTuple):
-    """The offsets of stamps and poses. They are the same in all messages with the same frames.
+    """The offsets of stamps and poses, which are the same in all messages with the same frames.
 
     Attributes:
         child_frames: the child frames, one per line.

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 _HEADER, _FOOTER, _SCHEMA, _CHANNEL, _MESSAGE, _CHUNK, _MESSAGE_INDEX, _CHUNK_INDEX = range(0x01, 0x09)
 _STATISTICS, _DATA_END = 0x0B, 0x0F
 _SUMMARY_TYPES = frozenset({_FOOTER, _CHUNK_INDEX, _STATISTICS, 0x0D, 0x0E, _DATA_END})
-"""The types of records that only occur at the end of a file; a damaged end is left out and created again."""
+"""The types of records that only occur at the end of a file. A damaged end is left out and created again."""
 
 _CHUNK_HEAD = struct.Struct("<QQQII")
 """The head of a chunk: first and last time, decompressed size, checksum, length of the compression's name."""
@@ -79,13 +79,15 @@ def make_readable(path: Path) -> ReadableFile | None:
 
 
 class ReadableFile:
-    """The complete records of an MCAP file with a summary. The library accepts it as a path.
+    """The complete records of an MCAP file with a summary.
+
+    The library accepts it as a path.
 
     Args:
         path: the file; it is not modified.
         size: the number of bytes of the file that are visible.
         tail: the bytes that follow the visible bytes.
-        patches: the bytes that replace those of the file, by offset.
+        patches: the bytes that replace bytes of the file, by offset.
 
     Attributes:
         name: the name of the file.
@@ -268,7 +270,7 @@ def _scan_chunk(file: BinaryIO, chunk: _Chunk, scan: _Scan, message_indexes: byt
 
 
 def _records(data: bytes) -> Iterator[tuple[int, int, int]]:
-    """Yield the type, the position and the content length of each record in a decompressed chunk."""
+    """Yield the type, position and content length of each record in a decompressed chunk."""
     offset = 0
     while offset + HEAD.size <= len(data):
         record_type, length = HEAD.unpack_from(data, offset)

@@ -28,7 +28,7 @@ def diagnose(path: Path, error: Exception) -> Verdict:
 
     Args:
         path: the path of the recording's file or folder.
-        error: the error of the library, which is the reason if the file itself does not show any.
+        error: the library's error, used as the reason if the file itself does not show one.
     """
     if path.suffix == ROS1_SUFFIX:
         return _ros1_failure()
@@ -96,7 +96,7 @@ def _missing_files(folder: Path) -> list[str]:
 def _has_tables(path: Path) -> bool:
     """Return whether a database has the tables of a recording.
 
-    The result is also True if the database is too damaged to tell.
+    The result is also True if the database is too damaged to be read.
     """
     import sqlite3
 

@@ -42,10 +42,10 @@ _MAX_WRITE_SECONDS = 30.0
 
 
 class BagWriter:
-    """A recording that is being written. Close it, or use it in a ``with`` statement.
+    """A recording that is being written.
 
-    The recording is completed even if a signal other than SIGKILL ends the process (`unfinished`). Files are named and
-    split as by rosbag2's ``SequentialWriter``.
+    Close it, or use it in a ``with`` statement. The recording is completed even if a signal other than SIGKILL ends the
+    process (`unfinished`). Files are named and split as by rosbag2's ``SequentialWriter``.
 
     Args:
         path: the folder to create, or the file if `single_file` is set.
@@ -176,7 +176,9 @@ class BagWriter:
             return True
 
     def split(self) -> None:
-        """Begin a new file. Do nothing for a single file or a closed recording.
+        """Begin a new file.
+
+        Do nothing for a single file or a closed recording.
 
         Raises:
             LinkwrightError: BAG108, a file cannot be written.
@@ -188,9 +190,9 @@ class BagWriter:
                 raise self._stop_with(error) from error
 
     def flush(self) -> None:
-        """Write buffered messages to the operating system, where they survive a crash of this process.
+        """Pass buffered messages to the operating system.
 
-        Raises:
+        There they survive a crash of this process.
             LinkwrightError: BAG108, the file cannot be written.
         """
         with self._lock:
@@ -254,7 +256,7 @@ class BagWriter:
                         path=display_path(self.path),
                         reason=foreign(reason),
                     ),
-                    hint=phrase("name another file") if self._is_single_file else phrase("name another folder"),
+                    hint=phrase("choose another file") if self._is_single_file else phrase("choose another folder"),
                 )
             ) from error
 

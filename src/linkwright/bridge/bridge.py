@@ -40,7 +40,7 @@ def new_bridge_id() -> str:
 async def run_bridge(
     networks: tuple[Network, Network], names: NameFilter, bridge_id: str, log: LogSink, on_ready: Callable[[], object]
 ) -> None:
-    """Carry the traffic with permitted names between two networks, in both directions, until cancelled.
+    """Forward traffic with permitted names between two networks, both ways, until cancelled.
 
     Args:
         networks: the networks.

@@ -1,4 +1,4 @@
-"""One direction of a bridge, which mirrors the source network's endpoints in the target network."""
+"""One direction of a bridge: mirrors the source network's endpoints in the target network."""
 
 from __future__ import annotations
 
@@ -152,7 +152,7 @@ class Direction:
         )
 
     def settle(self) -> bool:
-        """Continue pending work (messages, removals, matching), and return whether all of it is done."""
+        """Continue pending work (messages, removals, matching), and return whether all is done."""
         is_settled = not self._departed_publishers
         self._publish_early()
         self._remove_departed()
@@ -196,7 +196,7 @@ class Direction:
         return self._nodes[info.node.full_name]
 
     def _select_endpoints(self) -> None:
-        """Decide which endpoints and nodes of the source are mirrored, and which streams are awaited."""
+        """Decide which endpoints and nodes of the source to mirror, and which streams to await."""
         source_snapshot, target_snapshot = self._source.snapshot, self._target.snapshot
         self._selected_publishers, self._selected_services, self._selected_nodes = {}, {}, {}
         self._selected_presences = {}
@@ -253,11 +253,11 @@ class Direction:
         return False
 
     def _update_taps(self) -> None:
-        """Subscribe to the streams that have subscriptions in the target. Unsubscribe from others.
+        """Subscribe to the streams that have subscriptions in the target.
 
-        The subscription to a stream with history ends only when the publishers have left. If the bridge subscribed
-        again, late joiners would receive the history twice. While a topic has no publisher, and while its first
-        publisher is being matched, every possible stream is subscribed to.
+        Unsubscribe from others. The subscription to a stream with history ends only when the publishers have left. If
+        the bridge subscribed again, late joiners would receive the history twice. While a topic has no publisher, and
+        while its first publisher is being matched, every possible stream is subscribed to.
         """
         subscriptions = self._target.snapshot.subscriptions
         streams = {

@@ -181,7 +181,10 @@ class MirroredService:
         return self._service is not None
 
     def close(self) -> None:
-        """Remove the service. The network notifies clients that wait for a response."""
+        """Remove the service.
+
+        The network notifies clients that wait for a response.
+        """
         if self._service is not None:
             self._service.destroy()
         self._client.destroy()

@@ -1,4 +1,7 @@
-"""A queue and a thread for a publisher that may block. The rest of the bridge is not blocked."""
+"""A queue and a thread for a publisher that may block.
+
+The rest of the bridge is not blocked.
+"""
 
 from __future__ import annotations
 

@@ -88,7 +88,7 @@ class Side:
         return self.graph.open_node(NodeIdentity(node.name, node.namespace, self._enclave), Remappings(()))
 
     def watch(self, callback: Callable[[], None]) -> None:
-        """Register a callback for every change of the graph, including processes that were killed.
+        """Register a callback for every change to the graph, including processes that were killed.
 
         The callback is called from any thread.
         """

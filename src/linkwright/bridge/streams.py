@@ -82,7 +82,7 @@ def awaited_streams(subscription: EndpointInfo, *, keyed: bool) -> set[Stream]:
 
 
 def can_receive(subscription: EndpointInfo, publisher: EndpointInfo, *, keyed: bool) -> bool:
-    """Return whether a subscription can receive from the mirror of a publisher of the same topic.
+    """Return whether a subscription can receive from the mirror of a topic's publisher.
 
     Args:
         subscription: the subscription, in the target network.

@@ -89,7 +89,7 @@ def run_type(arguments: argparse.Namespace) -> int:
         lambda session: session.node.get_action_names_and_types(),
         "CLI429",
         lambda action_name: phrase("Unknown action '{action_name}'", action_name=action_name),
-        phrase("`linkwright action list` lists the actions"),
+        phrase("run `linkwright action list` to list the actions"),
     )
     return actions.print_types(arguments, arguments.action_name)
 
@@ -113,7 +113,10 @@ def configure_send_goal(parser: argparse.ArgumentParser) -> None:
 
 
 def run_send_goal(arguments: argparse.Namespace) -> int:
-    """Send a goal and print its progress as ros2 does. Ctrl-C cancels the goal."""
+    """Send a goal and print its progress as ros2 does.
+
+    Ctrl-C cancels the goal.
+    """
     from linkwright.messages import get_action, to_yaml
 
     name = absolute(arguments.action_name)

@@ -1,4 +1,4 @@
-"""The replacement of this process by another program, which then receives the signals."""
+"""The replacement of this process by another program, so that it receives the signals."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def become(command: list[str], environment: Mapping[str, str]) -> int:
     sys.stderr.flush()
     try:
         if os.name == "posix":
-            os.execvpe(command[0], command, environment)  # noqa: S606 - what the user asks to run
+            os.execvpe(command[0], command, environment)  # noqa: S606 - the user requested this program
         return subprocess.run(command, env=environment, check=False).returncode  # noqa: S603 - as above
     except OSError as error:
         message = phrase(

@@ -56,7 +56,7 @@ def run(arguments: argparse.Namespace) -> int:
             Diagnostic(
                 "CLI452",
                 phrase("both networks are the same: {network}", network=first.label),
-                hint=phrase("a bridge connects two networks, such as: linkwright bridge dds zenoh"),
+                hint=phrase("pass two networks, as in: linkwright bridge dds zenoh"),
             )
         )
     names = NameFilter(arguments.allow, arguments.deny)

@@ -59,7 +59,7 @@ async def call(
                         service_name=service_name,
                         service_type=service_type,
                     ),
-                    hint=phrase("the node may have exited, or may not offer this service"),
+                    hint=phrase("check whether the node has exited or does not offer this service"),
                 )
             )
         future = client.call_async(request)
@@ -104,7 +104,7 @@ async def find_node(session: Session, name: str, *, hidden: bool = False, timeou
     if not await session.wait_until(lambda: full_name in node_names(session, hidden=hidden), timeout):
         existing_names = node_names(session, hidden=hidden)
         hint = (
-            phrase("running nodes: {known}", known=joined(dict.fromkeys(existing_names)))
+            phrase("running nodes: {nodes}", nodes=joined(dict.fromkeys(existing_names)))
             if existing_names
             else phrase("no nodes are running")
         )

@@ -94,14 +94,14 @@ def run(arguments: argparse.Namespace | SimpleNamespace) -> int:
     """
     paths = [Path(word) for word in arguments.words if ":=" not in word]
     if not paths:
-        return _usage("name a file or folder to check")
+        return _usage("pass a file or folder to check")
     select = None if arguments.select is None else _split_selectors(arguments.select)
     ignore = _split_selectors(arguments.ignore or ())
     usage_error = _unknown_selector((*(select or ()), *ignore))
     if usage_error:
         return _usage(usage_error)
     if arguments.config is not None and not Path(arguments.config).is_file():
-        return _usage(phrase("no such file: '{config}'", config=arguments.config))
+        return _usage(phrase("no such file: '{path}'", path=arguments.config))
 
     from linkwright.lint.checking import Checker
 
@@ -138,7 +138,7 @@ def run(arguments: argparse.Namespace | SimpleNamespace) -> int:
 
 
 def _contents_text(checked_file: Checked) -> str:
-    """Return the tree of a robot's links or the list of a world's models, or an empty string for other files."""
+    """Return a robot's tree of links, a world's list of models, or an empty string."""
     if checked_file.robot is not None:
         from linkwright.urdf import tree_text
 

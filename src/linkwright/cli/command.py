@@ -204,7 +204,7 @@ def _report_unknown(name: str, names: Iterable[str], prog: str) -> int:
     """Report an unknown command or option, and return the exit status for wrong usage."""
     hint = did_you_mean(name, names) or f"`{prog} --help` lists the commands"
     if _workbench() is None:
-        hint += "; linkwright-core is installed alone, and linkwright has more commands"
+        hint += "; only linkwright-core is installed, and linkwright has more commands"
     noun = "option" if name.startswith("-") else "command"
     print(f"{prog}: there is no {noun} '{name}'; {hint}", file=sys.stderr)
     return USAGE

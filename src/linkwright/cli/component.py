@@ -208,7 +208,7 @@ async def find_container(session: Session, name: str, timeout: float = _DISCOVER
     if not await session.wait_until(lambda: full_name in containers(session), timeout):
         container_names = containers(session)
         hint = (
-            phrase("running nodes: {known}", known=joined(container_names))
+            phrase("running nodes: {nodes}", nodes=joined(container_names))
             if container_names
             else phrase("no container is running")
         )
@@ -246,7 +246,7 @@ async def _load_component(session: Session, container: str, arguments: argparse.
     if not response.success:
         error_message = response.error_message
         reason = foreign(error_message) if error_message else phrase("the container gives no reason")
-        hint = phrase("`linkwright component types` lists the components that come with Linkwright")
+        hint = phrase("run `linkwright component types` to list the components that come with Linkwright")
         raise LinkwrightError(
             Diagnostic("CLI433", phrase("Failed to load component: {reason}", reason=reason), hint=hint)
         )
@@ -322,7 +322,7 @@ def _log_level(text: str | None) -> int:
         raise LinkwrightError(
             Diagnostic(
                 "CLI435",
-                phrase("there is no log level '{text}'", text=text),
+                phrase("there is no log level '{level}'", level=text),
                 hint=phrase("levels are {levels}", levels=levels),
             )
         ) from None

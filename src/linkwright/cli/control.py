@@ -1,4 +1,4 @@
-"""``linkwright control``: list and change the controllers and hardware of a controller manager.
+"""``linkwright control``: list and change the controllers and hardware of a robot.
 
 Source: ros2controlcli (verbs, options, output without colours).
 """

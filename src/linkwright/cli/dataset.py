@@ -120,7 +120,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Render the data set, and return the exit status, which is 130 if the command was interrupted."""
+    """Render the data set, and return the exit status, which is 130 after an interruption."""
     from linkwright.vision.datasets.dataset import make_dataset
     from linkwright.vision.datasets.options import Options
     from linkwright.vision.datasets.statistics import as_table

@@ -41,7 +41,7 @@ def run(arguments: argparse.Namespace) -> int:
         try:
             pair = requested_pair(arguments, stack)
             if pair is None:
-                print("linkwright diff: give two files, or one and --against COMMIT", file=sys.stderr)
+                print("linkwright diff: pass two files, or one and --against COMMIT", file=sys.stderr)
                 return FAILURE
             comparison = pair.read_and_compare()
         except LinkwrightError as error:

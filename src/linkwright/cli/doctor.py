@@ -1,4 +1,4 @@
-"""``linkwright doctor``: explain what is wrong with the running graph, why, and how to fix it."""
+"""``linkwright doctor``: explain what is wrong with the running graph and how to fix it."""
 
 from __future__ import annotations
 

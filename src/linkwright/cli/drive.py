@@ -1,4 +1,7 @@
-"""``linkwright drive``: drive a robot in a simulated world, with inferred elements that its description lacks."""
+"""``linkwright drive``: drive a robot in a simulated world.
+
+Elements that its description lacks are inferred.
+"""
 
 from __future__ import annotations
 

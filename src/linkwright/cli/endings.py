@@ -90,7 +90,7 @@ def _open_null_device(stream_number: int, flags: int, mode: str) -> object:
 
 
 def _system_error_diagnostic(error: OSError) -> Diagnostic | None:
-    """Return the diagnostic for an error of the operating system, or None for a bug in Linkwright."""
+    """Return the diagnostic for an operating system error, or None for a bug in Linkwright."""
     reason = foreign(error.strerror or error)
     # Functions that write files name the file in the error, so an error without a file name concerns standard output.
     if error.filename is None and error.errno in _OUTPUT_ERRORS:

@@ -30,9 +30,9 @@ def run(arguments: argparse.Namespace) -> int:
     if not explanations:
         suggestions = list(dict.fromkeys([*nearest_codes(arguments.code), *nearest(arguments.code, names(), 2)]))
         hint = (
-            phrase("did you mean {near}?", near=joined(suggestions, last=" or "))
+            phrase("did you mean {names}?", names=joined(suggestions, last=" or "))
             if suggestions
-            else phrase("docs/rules.md lists the rules")
+            else phrase("see docs/rules.md for the rules")
         )
         message = phrase("there is no code, rule, element or attribute '{code}'", code=arguments.code)
         raise LinkwrightError(Diagnostic("CLI301", message, hint=hint))

@@ -54,7 +54,7 @@ def run(arguments: argparse.Namespace) -> int:
         if arguments.against or any(map(names_file, arguments.words)):
             pair = requested_pair(arguments, stack)
             if pair is None or not arguments.out.lower().endswith(".html"):
-                usage_error = "give one file, two to compare, or one and --against COMMIT"
+                usage_error = "pass one file, two to compare, or one and --against COMMIT"
                 extension_error = f"'{arguments.out}' should end with .html, as two descriptions are compared"
                 print(f"linkwright export: {usage_error if pair is None else extension_error}", file=sys.stderr)
                 return 2

@@ -70,7 +70,7 @@ def run(arguments: argparse.Namespace) -> int:
             Diagnostic("CLI305", phrase("there is no XML file to format in {named}", named=path_list))
         )
     if arguments.range and len(files) > 1:
-        hint = phrase("name one file: linkwright format --range 10-20 robot.xacro")
+        hint = phrase("pass one file: linkwright format --range 10-20 robot.xacro")
         raise LinkwrightError(Diagnostic("CLI306", phrase("--range needs a single file"), hint=hint))
     dry_run = arguments.check or arguments.diff
     changes = [_format_file(file, arguments, dry_run=dry_run) for file in files]

@@ -104,7 +104,7 @@ def _warn_if_local_only() -> None:
 
     if middleware() == CYCLONE and read_settings().range in (Range.MACHINE, Range.LOCALHOST, Range.OFF):
         text = phrase(
-            "the topic stays on this computer: set ROS_AUTOMATIC_DISCOVERY_RANGE=SUBNET on each computer to "
-            "reach others"
+            "the topic is only visible on this computer: set ROS_AUTOMATIC_DISCOVERY_RANGE=SUBNET "
+            "on each computer to reach others"
         )
         print(localized(text), file=sys.stderr)

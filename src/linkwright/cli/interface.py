@@ -26,7 +26,7 @@ def _add_kind_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def _requested_kinds(arguments: argparse.Namespace) -> list[str]:
-    """Return the requested kinds (``msg``, ``srv``, ``action``), or all kinds if none is requested."""
+    """Return the requested kinds (``msg``, ``srv``, ``action``), by default all."""
     return [kind for kind in _TITLES if getattr(arguments, kind)] or list(_TITLES)
 
 
@@ -77,7 +77,7 @@ def run_package(arguments: argparse.Namespace) -> int:
     packages = sorted({name.split("/")[0] for names in names_by_kind.values() for name in names})
     if package not in packages:
         hint = did_you_mean(package, packages) or phrase(
-            "`linkwright interface packages` lists the packages with types"
+            "run `linkwright interface packages` to list the packages with types"
         )
         raise LinkwrightError(Diagnostic("CLI441", phrase("Unknown package '{package}'", package=package), hint=hint))
     names = [name for kind in _requested_kinds(arguments) for name in names_by_kind[kind]]
@@ -182,7 +182,10 @@ def nested_type(line: str, package: str) -> str | None:
 
 
 def _without_comment(line: str) -> str:
-    """Return a line without its comment. A ``#`` in a string does not start a comment."""
+    """Return a line without its comment.
+
+    A ``#`` in a string does not start a comment.
+    """
     quote = ""
     for index, character in enumerate(line):
         if quote:

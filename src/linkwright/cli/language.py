@@ -49,7 +49,7 @@ def _parse_language(text: str) -> str:
 
 
 def translate_help(text: str) -> str:
-    """Return a help text in the user's language, or unchanged if the catalogue does not contain it."""
+    """Return a help text in the user's language, or unchanged if it has no translation."""
     lang = language()
     if lang == "en" or not text:
         return text

@@ -169,9 +169,9 @@ async def state(session: Session, node: str, timeout: float | None = None) -> An
 
 
 async def transitions(session: Session, node: str, *, all_states: bool = False) -> Sequence[Any]:
-    """Return the transitions of a managed node, as lifecycle_msgs/msg/TransitionDescription messages.
+    """Return a managed node's transitions, as lifecycle_msgs/msg/TransitionDescription.
 
-    These are the transitions available in the current state or, if `all_states` is set, those of all states.
+    These are the transitions available in the current state or, if `all_states` is set, the transitions of all states.
     """
     from linkwright.messages import get_service
 

@@ -18,7 +18,7 @@ _POLL_INTERVAL = 0.1
 
 
 def visible(names_and_types: NamesAndTypes, *, hidden: bool) -> list[tuple[str, list[str]]]:
-    """Return names with their types, sorted by name and without hidden names unless `hidden` is set."""
+    """Return names and types, sorted by name, without hidden names unless `hidden` is set."""
     from linkwright.graph.names.rules import is_hidden
 
     return [(name, list(types)) for name, types in sorted(names_and_types) if hidden or not is_hidden(name)]

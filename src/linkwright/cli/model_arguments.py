@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def add_model(parser: argparse.ArgumentParser) -> None:
-    """Declare `file`, the description of a robot, and `values`, the values of its xacro arguments."""
+    """Declare the arguments `file`, a robot description, and `values`, its xacro arguments."""
     parser.add_argument("file", metavar="FILE", help="the URDF or xacro file")
     add_values(parser, values_help="values for the file's <xacro:arg>")
 
@@ -54,7 +54,7 @@ def add_against(parser: argparse.ArgumentParser) -> None:
 
 
 def names_file(word: str) -> bool:
-    """Return whether a word names a file, as opposed to ``name:=value`` or a mistyped ``name=value``."""
+    """Return whether a word names a file, and is not ``name:=value`` or ``name=value``."""
     from pathlib import Path  # imported late, because the frequent command `xacro` needs only the functions above
 
     return ":=" not in word and ("=" not in word or Path(word).exists())

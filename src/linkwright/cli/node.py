@@ -65,7 +65,7 @@ def run_info(arguments: argparse.Namespace) -> int:
         if not count:
             message = phrase("Unable to find node '{node_name}'", node_name=arguments.node_name)
             raise unknown_name_error(
-                "CLI423", message, full_name, names, phrase("`linkwright node list` lists the nodes")
+                "CLI423", message, full_name, names, phrase("run `linkwright node list` to list the nodes")
             )
         if count > 1:
             print(

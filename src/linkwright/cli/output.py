@@ -25,6 +25,6 @@ def write_output(path: Path, content: str | bytes) -> None:
 
 def cannot_write(path: Path, error: OSError) -> LinkwrightError:
     """Return the error for a result file that cannot be written (CLI201)."""
-    message = phrase("cannot write '{path}': {strerror}", path=path, strerror=foreign(error.strerror or error))
+    message = phrase("cannot write '{path}': {reason}", path=path, reason=foreign(error.strerror or error))
     hint = phrase("choose a file in a writable folder")
     return LinkwrightError(Diagnostic("CLI201", message, hint=hint))

@@ -168,7 +168,7 @@ def run_describe(arguments: argparse.Namespace) -> int:
 
 
 def _description(descriptor: Any) -> list[str]:
-    """Return the output lines of ``param describe`` for a rcl_interfaces/msg/ParameterDescriptor."""
+    """Return the output lines of ``param describe`` for a ParameterDescriptor message."""
     lines = [f"Parameter name: {descriptor.name}", f"  Type: {TYPE_NAMES.get(descriptor.type, 'unknown')}"]
     if descriptor.description:
         lines.append(f"  Description: {descriptor.description}")
@@ -194,7 +194,7 @@ def configure_set(parser: argparse.ArgumentParser) -> None:
 
 
 def run_set(arguments: argparse.Namespace) -> int:
-    """Set parameters of a node, and print for each whether it was set."""
+    """Set parameters of a node, and print the results."""
     words = arguments.words
     if len(words) % 2:
         text = f"Parameters must be provided as name/value pairs: name value [name value ...]. Got {len(words)} word(s)"

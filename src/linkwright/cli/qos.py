@@ -1,4 +1,4 @@
-"""The options ``--qos-...`` of ``topic echo``, ``topic pub`` and others, which set a QoS profile."""
+"""The options ``--qos-...`` of ``topic echo``, ``topic pub`` and other commands."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Access to the parameters of a running node through its services, and parsing of their values."""
+"""Access to a running node's parameters through its services, and parsing of values."""
 
 from __future__ import annotations
 
@@ -99,7 +99,7 @@ class RemoteParameters:
                 "CLI424",
                 phrase("Parameter not set: node '{node}' has no parameter '{name}'", node=self.node, name=name),
                 hint=did_you_mean(name, declared_names)
-                or phrase(("`linkwright param list {node}` lists its parameters"), node=self.node),
+                or phrase(("run `linkwright param list {node}` to list its parameters"), node=self.node),
             )
             for name in names
             if name not in declared_names

@@ -27,7 +27,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Replace this process by an executable of a package, which then receives the signals.
+    """Replace this process by a package's executable, so that it receives the signals.
 
     On Windows, run the executable and return its exit status.
     """

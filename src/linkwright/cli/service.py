@@ -42,7 +42,7 @@ _SERVICES = Kind(
     lambda session: session.node.get_service_names_and_types(),
     "CLI427",
     lambda service_name: phrase("Unknown service '{service_name}'", service_name=service_name),
-    phrase("`linkwright service list` lists the services"),
+    phrase("run `linkwright service list` to list the services"),
 )
 
 

@@ -1,4 +1,4 @@
-"""The shared options of ``linkwright sim``, ``drive`` and ``spawn``, and loading of their models."""
+"""The shared options of ``linkwright sim``, ``drive`` and ``spawn``, and model loading."""
 
 from __future__ import annotations
 
@@ -105,7 +105,9 @@ class LoadedModel(NamedTuple):
 
 
 def load_model(path: Path, values: Mapping[str, str], finder: PackageFinder) -> LoadedModel | None:
-    """Load a robot or model. If it cannot be loaded, print the errors and return None.
+    """Load a robot or model.
+
+    If it cannot be loaded, print the errors and return None.
 
     Args:
         path: a URDF, xacro or SDF file.

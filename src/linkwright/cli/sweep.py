@@ -108,7 +108,7 @@ def _runner(arguments: argparse.Namespace, path: Path) -> Runner:
 
 
 def _rerun(scenario: Scenario, row: int) -> int:
-    """Run one row of the sweep in this process, and print its parameters and results, or its error."""
+    """Run one row of the sweep in this process, and print its parameters and its outcome."""
     from linkwright.sweep.plan import plan_runs
     from linkwright.sweep.running import run_scenario
 
@@ -138,7 +138,7 @@ class _Progress:
         self._line = ProgressLine()
 
     def show(self, done_count: int, count: int, failed: int) -> None:
-        """Count one more run, and show the number of finished runs and the number of failed ones."""
+        """Count a run, and show the numbers of finished and of failed runs."""
         self.run_count += 1
         self._line.show(phrase("{done} of {count} runs, {failed} failed", done=done_count, count=count, failed=failed))
 

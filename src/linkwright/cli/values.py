@@ -1,4 +1,4 @@
-"""The values of a message, request or goal that a user types as YAML, checked against the type."""
+"""The values of a message, request or goal, parsed from YAML and checked with the type."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ def read_values(arguments: argparse.Namespace) -> str:
     except (OSError, UnicodeDecodeError) as error:
         reason = getattr(error, "strerror", None) or error
         raise LinkwrightError(
-            Diagnostic("CLI404", phrase("'{file}' cannot be read: {reason}", file=file, reason=foreign(reason)))
+            Diagnostic("CLI404", phrase("cannot read '{path}': {reason}", path=file, reason=foreign(reason)))
         ) from None
 
 
@@ -94,7 +94,7 @@ def parse_values(text: str) -> list[dict[str, Any]]:
         raise LinkwrightError(
             Diagnostic(
                 "CLI402",
-                phrase("the values are not YAML: {what}", what=foreign(problem)),
+                phrase("the values are not YAML: {error}", error=foreign(problem)),
                 span,
                 notes=notes,
                 hint=hint,

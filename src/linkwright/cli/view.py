@@ -1,4 +1,4 @@
-"""``linkwright view``: show a model with joint sliders in the browser, or compare two models."""
+"""``linkwright view``: show a model with joint sliders in the browser, or compare two."""
 
 from __future__ import annotations
 
@@ -33,6 +33,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         action="store_true",
         help="join the ROS 2 network (ROS_DOMAIN_ID), so that other programs see the nodes",
     )
+    parser.add_argument("--editor", action="store_true", help=argparse.SUPPRESS)  # see hosting/text_editor.py
     add_viewer_options(parser)
 
 
@@ -94,6 +95,7 @@ def run(arguments: argparse.Namespace) -> int:
         network=arguments.join,
         history=arguments.history,
         rviz=rviz,
+        follows_editor=arguments.editor,
     )
     if is_recording(Path(arguments.file)):
         return _view_recordings(arguments, options)
@@ -102,7 +104,7 @@ def run(arguments: argparse.Namespace) -> int:
         return _report_misuse(f"'{bag}' is a recording, which is shown by itself: linkwright view {bag}")
     if arguments.against or any(map(names_file, arguments.words)):
         if rviz is not None:
-            return _report_misuse("two descriptions are compared with displays of their own: leave -d out")
+            return _report_misuse("leave -d out: a comparison of two descriptions has its own displays")
         return _view_comparison(arguments, options)
     values = parse_assignments(arguments.words)
     from linkwright.hosting.view import run_view
@@ -151,5 +153,5 @@ def _view_comparison(arguments: argparse.Namespace, options: HostOptions) -> int
     with ExitStack() as stack:
         pair = requested_pair(arguments, stack)
         if pair is None:
-            return _report_misuse("give one file, two to compare, or one and --against COMMIT")
+            return _report_misuse("pass one file, two to compare, or one and --against COMMIT")
         return run_compared_view(pair, options, foxglove=arguments.foxglove)

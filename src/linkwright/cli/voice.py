@@ -69,7 +69,7 @@ def run_try(arguments: argparse.Namespace) -> int:
 
 
 class _Trial:
-    """A trial that feeds recordings to an engine in blocks, as a microphone does, and prints the results.
+    """A trial that feeds recordings to an engine as a microphone does, and prints results.
 
     Args:
         engine: the speech engine.
@@ -215,7 +215,7 @@ def configure_engines(parser: argparse.ArgumentParser) -> None:
 
 
 def run_engines(_: argparse.Namespace) -> int:
-    """Create each speech engine in each language, and print what is missing for those that fail."""
+    """Create each speech engine in each language, and print the reason for each failure."""
     from linkwright.speech.engine import engine_names
 
     for name in engine_names():

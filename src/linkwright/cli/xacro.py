@@ -1,4 +1,4 @@
-"""``linkwright xacro``: expand a xacro file to URDF, list its arguments, or explain its elements."""
+"""``linkwright xacro``: expand a xacro file, list its arguments or explain its elements."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "-i",
         "--inorder",
         action="store_true",
-        help="process the file in reading order; this is always the case",
+        help="accepted for compatibility with xacro; the file is always processed in order",
     )
     parser.add_argument(
         "-q",

@@ -44,7 +44,7 @@ class Revision:
         self.name = name
         real_path = path.resolve()
         if not real_path.is_file():
-            hint = phrase("name an existing file; the commit follows `--against`")
+            hint = phrase("pass an existing file, and the commit after `--against`")
             raise LinkwrightError(
                 Diagnostic("CLI344", phrase("there is no file '{path}'", path=display_path(path)), hint=hint)
             )
@@ -119,7 +119,7 @@ def _find_repository_root(path: Path) -> Path:
         hint = phrase("compare it with another file: `linkwright diff OLD NEW`")
         if "dubious ownership" in result.stderr:
             message = phrase("git does not trust the repository of '{path}'", path=display_path(path))
-            hint = phrase("another user owns it; to trust it, add it to git's setting safe.directory")
+            hint = phrase("add the repository to git's setting safe.directory if you trust the other user who owns it")
         raise LinkwrightError(Diagnostic("CLI342", message, hint=hint))
     return Path(result.stdout.rstrip("\r\n")).resolve()
 
@@ -161,7 +161,7 @@ def _path_before_rename(top: Path, commit: str, relative_path: Path, name: str) 
             return Path(old_name)
     message = phrase("commit '{name}' has no file '{inside}'", name=name, inside=new_path)
     if _git(top, "log", "--max-count=1", "--format=%h", "--", new_path).stdout:
-        hint = phrase("`git log -- {inside}` lists the commits that have it", inside=new_path)
+        hint = phrase("run `git log -- {inside}` to list the commits that have it", inside=new_path)
     else:
         hint = phrase("no commit has it yet; compare it with another file: `linkwright diff OLD NEW`")
     raise LinkwrightError(Diagnostic("CLI344", message, hint=hint))

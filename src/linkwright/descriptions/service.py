@@ -170,7 +170,7 @@ class DescriptionLibrary:
         return self._descriptions.get(text)
 
     def files(self, text: str) -> tuple[Path, ...]:
-        """Return the files of a stored description, the main file first, or no files if it is not stored."""
+        """Return the files of a stored description, the main file first, or an empty tuple."""
         description = self._descriptions.get(text)
         return () if description is None else description.files
 

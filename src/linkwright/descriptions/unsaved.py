@@ -7,7 +7,6 @@ from collections.abc import Awaitable, Callable, Hashable, Mapping
 
 from linkwright.loading.lean_dataclasses import NamedTuple, dataclass
 from linkwright.loading.lean_typing import Literal
-from linkwright.xmltree import Overlay
 
 Outcome = Literal["shown", "errors", "elsewhere"]
 """Whether descriptions are shown with a new text, stay as they were because of its errors, or do not contain it."""
@@ -62,10 +61,6 @@ class UnsavedTexts:
     def texts(self) -> Mapping[str, UnsavedText]:
         """The texts by the real paths of their files."""
         return {key.real_path: unsaved for key, unsaved in self._texts.items()}
-
-    def overlay(self) -> Overlay | None:
-        """Return the texts for reading descriptions, or None if there are none."""
-        return Overlay({path: unsaved.text for path, unsaved in self.texts.items()}) if self._texts else None
 
     async def put(self, unsaved: UnsavedText) -> Outcome:
         """Replace the editor's text of a file, and return what descriptions make of it."""

@@ -14,7 +14,7 @@ _MAX_PLACES = 2
 
 
 def group_similar(diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:
-    """Replace each large group of similar diagnostics by its first one, with notes on the others.
+    """Replace each large group of similar diagnostics by its first, with notes on the others.
 
     Diagnostics are similar if they have the same code and severity, and their messages differ only in names and
     numbers.

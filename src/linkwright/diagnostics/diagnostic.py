@@ -26,7 +26,7 @@ POINTER_HINT = phrase("run `git lfs pull` in its repository")
 
 
 def is_pointer(data: bytes) -> bool:
-    """Return whether the content of a file, or its beginning, is that of a Git LFS pointer."""
+    """Return whether the content or the beginning of a file is a Git LFS pointer."""
     return data.startswith(_POINTER_START)
 
 
@@ -105,13 +105,16 @@ class SourceText:
         return min(start + column - 1, len(self.text))
 
     def span(self, start: int, end: int | None = None) -> Span:
-        """Return the span between two character offsets or, without an end, of one character at the start."""
+        """Return the span between two character offsets, or of one character if `end` is None."""
         line, column = self.position(start)
         end_line, end_column = self.position(start + 1 if end is None else end)
         return Span(self.name, line, column, end_line, end_column)
 
     def line(self, number: int) -> str:
-        """Return a line, counted from 1, without its line end, or an empty string if there is no such line."""
+        """Return a line, counted from 1, without its line end.
+
+        The result is an empty string if there is no such line.
+        """
         starts = self._line_starts()
         if not 1 <= number <= len(starts):
             return ""
@@ -131,7 +134,10 @@ class SourceText:
 
 
 class Severity(Enum):
-    """The severity of a finding. An error makes a command exit with status 1."""
+    """The severity of a finding.
+
+    An error makes a command exit with status 1.
+    """
 
     ERROR = "error"
     WARNING = "warning"
@@ -139,16 +145,19 @@ class Severity(Enum):
 
 
 class Note(NamedTuple):
-    """A fact that belongs to a diagnostic, such as the macro call that led to it, with its position."""
+    """A fact that belongs to a diagnostic, and its position.
+
+    An example is the macro call that led to the diagnostic.
+    """
 
     message: Phrase
     span: Span | None = None
 
 
 class Diagnostic:
-    """A finding with a stable code: what is wrong, where, why, and how to fix it. It is immutable.
+    """A finding with a stable code: what is wrong, where, why, and how to fix it.
 
-    Two diagnostics with the same content are equal.
+    Diagnostics are immutable. Two diagnostics with the same content are equal.
 
     Attributes:
         code: letters for the room and three digits, such as ``XAC101``. A code is never reused with another meaning.

@@ -174,7 +174,10 @@ def _parse_extras(requirement: str) -> frozenset[str]:
 
 
 def _quote_command(words: list[str]) -> str:
-    """Return a command line for the user's shell. On Windows, it has double quotes, because cmd has no others."""
+    """Quote a command line for the user's shell.
+
+    Windows gets double quotes, because cmd has no others.
+    """
     if sys.platform == "win32":
         return " ".join(word if _UNQUOTED_PATTERN.fullmatch(word) else f'"{word}"' for word in words)
     return shlex.join(words)

@@ -1,7 +1,7 @@
-"""The search for the existing name that another name misspells, but never for the name of a sibling.
+"""The search for the existing name that another name misspells.
 
-``wheel_2`` does not misspell ``wheel_1``, nor ``lwheel`` ``rwheel``, nor ``stopKp`` ``stopKd``: they name different
-parts, and a fix that confuses them breaks the robot.
+The name of a sibling is not a misspelling: ``wheel_2`` does not misspell ``wheel_1``, nor ``lwheel`` ``rwheel``, nor
+``stopKp`` ``stopKd``. They name different parts, and a fix that confuses them breaks the robot.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ def find_misspelt(name: str, names: Iterable[str]) -> str | None:
 
 
 def _is_misspelling(name: str, known: str) -> bool:
-    """Return whether two names differ only in case, in separators, or by a typing error in one word."""
+    """Return whether two names differ only in case, separators, or a typing error in one word."""
     words, others = words_of(name), words_of(known)
     if not words or not others:
         return False

@@ -41,7 +41,7 @@ class Wording(Protocol):
 
 
 class Phrase(str):
-    """An English text that can be translated. It is created by `phrase` and the other functions of this module.
+    """An English text that can be translated, created by the functions of this module.
 
     Attributes:
         template: the text with a named placeholder for each argument; without arguments, the literal text.
@@ -76,7 +76,7 @@ class Phrase(str):
 
     @property
     def chosen_template(self) -> str:
-        """The English template or, for a phrase with singular and plural, the template for its count."""
+        """The English template, or the template for the count of a phrase with a plural."""
         return self.template
 
     def translated(self, wording: Wording) -> Phrase:
@@ -278,7 +278,7 @@ def _join_items(items: Iterable[str], separator: str, last: str) -> str:
 
 
 def _join_spaced(left: str, right: str) -> str:
-    """Join two texts, with a space where a Latin and a Chinese letter meet, as is usual in Chinese."""
+    """Join two texts, with a space between a Latin and a Chinese letter, as usual in Chinese."""
     return f"{left} {right}" if _needs_space(left[-1:], right[:1]) else left + right
 
 

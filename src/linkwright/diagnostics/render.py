@@ -79,7 +79,10 @@ def print_diagnostics(diagnostics: Iterable[Diagnostic], stream: IO[str]) -> Non
 
 
 def _most_severe(diagnostics: Sequence[Diagnostic]) -> Sequence[Diagnostic]:
-    """Return the findings to print, in their order. If there are too many, errors take precedence."""
+    """Return the findings to print, in their original order.
+
+    If there are too many, errors take precedence.
+    """
     if len(diagnostics) <= MAX_PRINTED:
         return diagnostics
     indices = sorted(range(len(diagnostics)), key=lambda index: diagnostics[index].severity is not Severity.ERROR)

@@ -35,7 +35,10 @@ def nearest(name: str, candidates: Iterable[str], limit: int = 3) -> list[str]:
 
 @lru_cache(maxsize=256)
 def _nearest(name: str, candidates: tuple[str, ...], limit: int) -> tuple[str, ...]:
-    """Return the result of `nearest`, cached because a description may use a missing property very often."""
+    """Return the result of `nearest`.
+
+    It is cached, because a description may use a missing property very often.
+    """
     from difflib import get_close_matches  # imported here, because most commands need no hint
 
     by_fold: dict[str, str] = {}
@@ -78,7 +81,10 @@ def _is_similar(name: str, other: str) -> bool:
 
 
 def _is_misspelling(word: str, other: str) -> bool:
-    """Return whether a word is a misspelling or an abbreviation of another word, which a number never is."""
+    """Return whether a word misspells or abbreviates another word.
+
+    A number does neither.
+    """
     shorter, longer = sorted((word, other), key=len)
     if word.isdigit() or other.isdigit():
         return False
@@ -92,7 +98,7 @@ def _is_misspelling(word: str, other: str) -> bool:
 
 
 def _is_abbreviation(shorter: str, longer: str) -> bool:
-    """Return whether a word abbreviates another one by omitting letters, as ``cnt`` abbreviates ``count``.
+    """Return whether a word abbreviates another by omitting letters, as ``cnt`` for ``count``.
 
     At most half of the letters may be omitted.
     """
@@ -101,9 +107,10 @@ def _is_abbreviation(shorter: str, longer: str) -> bool:
 
 
 def is_misspelt(name: str, names: Iterable[str]) -> bool:
-    """Return whether a name differs from one of some names by a missing, extra, wrong or swapped letter.
+    """Return whether a name differs from one of some names by a typing error.
 
-    Long names may have more errors, one more for every ten letters.
+    The error is a missing, extra, wrong or swapped letter. Long names may have more errors, one more for every ten
+    letters.
     """
     return any(_is_within(name, other, 1 + len(name) // 10) for other in names)
 

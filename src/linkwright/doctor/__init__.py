@@ -1,4 +1,7 @@
-"""Finds common problems of a running graph. The graph is observed for a few seconds."""
+"""Finds common problems of a running graph.
+
+The graph is observed for a few seconds.
+"""
 
 from linkwright.doctor.examination import examine
 from linkwright.doctor.parameter_files import examine_parameter_files

@@ -1,4 +1,4 @@
-"""Problems of time: stamps that differ from the clock, and simulated time in only some nodes."""
+"""Problems of time: stamps that differ from the clock, and mixed use of simulated time."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def _examine_simulated_time(observation: Observation) -> Iterator[Diagnostic]:
             "DOC603",
             phrase("no message was received on /clock in {seconds:g} s", seconds=observation.seconds),
             severity=Severity.WARNING,
-            notes=(Note(phrase("its publisher is {senders}", senders=listed(senders))),),
+            notes=(Note(phrase("it is published by {senders}", senders=listed(senders))),),
             hint=phrase("check whether the simulation is paused or has not been started"),
         )
     if simulated_nodes and other_nodes:
@@ -72,14 +72,16 @@ def _examine_simulated_time(observation: Observation) -> Iterator[Diagnostic]:
                 off=listed(other_nodes),
             ),
             severity=Severity.WARNING,
-            notes=(Note(phrase("their stamps are far apart, so transforms and messages do not match")),),
+            notes=(Note(phrase("the stamps of these nodes are far apart, so transforms and messages do not match")),),
             hint=phrase("set it for all of them: SetParameter('use_sim_time', True) in the launch file"),
         )
     if len(senders) > 1:
         yield Diagnostic(
             "DOC604",
             phrase("{count} nodes publish /clock: {senders}", count=len(senders), senders=listed(senders)),
-            notes=(Note(phrase("time jumps between them, and each jump back clears the buffers of transforms")),),
+            notes=(
+                Note(phrase("the time jumps between the clocks, and each jump back clears the buffers of transforms")),
+            ),
             hint=phrase("stop one of them; play only one bag with --clock"),
         )
 

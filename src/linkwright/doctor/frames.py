@@ -28,7 +28,7 @@ def examine_frames(observation: Observation, robots: Sequence[RobotSeen]) -> Ite
         yield Diagnostic(
             "DOC307",
             phrase("the parents of frames form a cycle: {circle}", circle=" -> ".join(cycle)),
-            hint=phrase("two nodes disagree about the parents; publish each frame's transform from one node only"),
+            hint=phrase("publish each frame's transform from one node only: two nodes disagree about the parents"),
         )
     for robot in robots:
         yield from _examine_missing(observation, robot)
@@ -65,7 +65,7 @@ def _examine_contradictions(observation: Observation) -> Iterator[Diagnostic]:
                     parents=listed(parents),
                 ),
                 notes=notes,
-                hint=phrase("a frame has one parent: remove one of the publishers, or invert one transform"),
+                hint=phrase("remove one of the publishers, or invert one transform: a frame has only one parent"),
             )
         elif len(senders) > 1:
             children_by_senders.setdefault(senders, []).append(child)
@@ -143,7 +143,7 @@ def _examine_missing(observation: Observation, robot: RobotSeen) -> Iterator[Dia
             notes=(
                 Note(
                     phrase(
-                        "they are links of the robot on topic '{topic}', published by '{sender}'",
+                        "these frames are links of the robot on topic '{topic}', published by '{sender}'",
                         topic=robot.topic,
                         sender=robot.sender,
                     )

@@ -1,4 +1,4 @@
-"""Greetings between computers on a topic and by UDP multicast, with a table of those received."""
+"""Greetings between computers, on a topic and by UDP multicast, and a table of them."""
 
 from __future__ import annotations
 

@@ -35,7 +35,10 @@ class RobotSeen:
 
     @property
     def root(self) -> str:
-        """The name of the root link. No joint has it as its child."""
+        """The name of the root link.
+
+        No joint has it as its child.
+        """
         return self.model.root
 
     @property
@@ -90,7 +93,7 @@ def robots_in(observation: Observation) -> tuple[list[RobotSeen], list[Diagnosti
                     topic=description.topic,
                     first=foreign(error_text),
                 ),
-                hint=phrase("it must be the text of the description, as `xacro FILE` prints it, not a file's name"),
+                hint=phrase("publish the text of the description, as `xacro FILE` prints it, not the name of a file"),
             )
         )
     return list(robots.values()), findings
@@ -157,7 +160,7 @@ def _examine_joint_senders(observation: Observation) -> Iterator[Diagnostic]:
                 senders=listed(senders),
             ),
             severity=Severity.WARNING,
-            notes=(Note(phrase("the robot jumps between their values")),),
+            notes=(Note(phrase("the robot jumps between the published values")),),
             hint=phrase(
                 "stop one of them; joint_state_publisher_gui is only for descriptions without a running robot, "
                 "and a second driver must publish to another topic"
@@ -183,5 +186,6 @@ def _examine_unknown_joints(observation: Observation, robot: RobotSeen) -> Itera
                 model_name=robot.model.name,
             ),
             severity=Severity.WARNING,
-            hint=suggestion or phrase("its joints are {joint_names}", joint_names=listed(sorted(robot.joint_names))),
+            hint=suggestion
+            or phrase("the joints of the robot are {joint_names}", joint_names=listed(sorted(robot.joint_names))),
         )

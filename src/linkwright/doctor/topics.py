@@ -45,7 +45,11 @@ def _examine_names(observation: Observation) -> Iterator[Diagnostic]:
                 phrase("{count} nodes have the name '{name}'", count=count, name=name),
                 severity=Severity.WARNING,
                 notes=(
-                    Note(phrase("their parameter services respond in turn, so a command reaches a random one of them")),
+                    Note(
+                        phrase(
+                            "the parameter services of these nodes respond in turn, so a command reaches a random node"
+                        )
+                    ),
                 ),
                 hint=phrase(
                     "stop the node that is still running from before, or rename one of them: --ros-args -r "
@@ -357,7 +361,7 @@ def _examine_clients(observation: Observation) -> Iterator[Diagnostic]:
                     type_name=type_name,
                     served=service_types[name],
                 ),
-                hint=phrase("client and server must have the same type"),
+                hint=phrase("use the same type for the client and the server"),
             )
             continue
         same_type = [service for service, service_type in service_types.items() if service_type == type_name]

@@ -29,7 +29,7 @@ def write_whole_file(path: str | os.PathLike[str], data: str | bytes, *, mode: i
     Args:
         path: the path of the file, whose folder must exist. Devices and pipes are written directly.
         data: the new contents. A string is encoded as UTF-8, without converting its line ends.
-        mode: the permissions; None for those of the existing file, or the usual ones of a new file.
+        mode: the permissions; None for the permissions of the existing file, or the usual permissions of a new file.
 
     Raises:
         OSError: the file cannot be written; its contents are unchanged.

@@ -17,7 +17,7 @@ Array = NDArray[np.float64]
 
 IDENTITY: Array = np.array((0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0))
 IDENTITY.flags.writeable = False
-"""The pose of a frame in itself; shape (7,)."""
+"""The pose of a frame in itself, shape (7,)."""
 
 _PARALLEL = 0.9995
 """Quaternions with a larger dot product than this are interpolated linearly."""

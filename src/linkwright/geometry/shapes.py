@@ -125,7 +125,10 @@ def product(first: Matrix, second: Matrix) -> Matrix:
 
 
 def transposed(matrix: Matrix) -> Matrix:
-    """Return the transpose of a matrix. For a rotation matrix, this is the inverse."""
+    """Return the transpose of a matrix.
+
+    For a rotation matrix, this is the inverse.
+    """
     return (
         (matrix[0][0], matrix[1][0], matrix[2][0]),
         (matrix[0][1], matrix[1][1], matrix[2][1]),

@@ -1,6 +1,6 @@
 """Mass properties of the primitive shapes, in closed form.
 
-The formulae are those in any table of moments of inertia of homogeneous bodies, for instance Beer, Johnston: *Vector
+The formulae are found in any table of moments of inertia of homogeneous bodies, for instance Beer, Johnston: *Vector
 Mechanics for Engineers: Dynamics*, inside back cover. All refer to the centre of mass and the shape's own axes.
 """
 

@@ -37,7 +37,7 @@ ROUNDING = 1e-9
 _CONVERGED = 1e-20
 """A product of inertia below this fraction of the tensor's largest entry changes no moment."""
 _MAX_SWEEPS = 30
-"""The maximum number of sweeps; five are usual."""
+"""The maximum number of sweeps. Five are usual."""
 
 
 def largest_entry(tensor: Array | Matrix) -> float:

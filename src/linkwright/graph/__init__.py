@@ -200,4 +200,4 @@ __getattr__ = deferred(
         "transforms.listener": ("TransformListener",),
     },
 )
-"""Names that most nodes do not use; transforms need numpy, whose import takes longer than everything else here."""
+"""Names that most nodes do not use. Transforms need numpy, whose import takes longer than everything else here."""

@@ -33,7 +33,7 @@ class NodeNotFoundError(RclError):
 class NotInitializedError(Exception):
     """Raised when a call needs a context that is not initialized or was shut down.
 
-    Its class name and message at run time are those of rclpy.
+    At run time it has the class name and message of rclpy's exception.
     """
 
     def __init__(self, message: str | None = None) -> None:

@@ -24,9 +24,10 @@ from linkwright.graph.time.clock import SystemClock, Timebase
 
 
 class LocalGraph(GraphQueries):
-    """The graph as nodes see it. The subclass `Graph` creates the nodes.
+    """The graph as nodes see it.
 
-    All methods may be called from any thread except `settle` and `close`, which must be called in the loop's thread.
+    The subclass `Graph` creates the nodes. All methods may be called from any thread except `settle` and `close`, which
+    must be called in the loop's thread.
 
     Args:
         clock: stamps messages and wakes timers; the system's clock by default.
@@ -146,7 +147,7 @@ class LocalGraph(GraphQueries):
     # --- the transport -----------------------------------------------------------------------------------------------
 
     def attach(self, transport: Transport) -> None:
-        """Attach a transport. It mirrors the graph's endpoints outside the process.
+        """Attach a transport, which mirrors the graph's endpoints outside the process.
 
         Both existing and later endpoints are mirrored.
 
@@ -169,7 +170,10 @@ class LocalGraph(GraphQueries):
         self._on_outside_change()
 
     def detach(self) -> None:
-        """Close the transport, if there is one. Endpoints inside the process stay connected."""
+        """Close the transport, if there is one.
+
+        Endpoints inside the process stay connected.
+        """
         with self._lock:
             transport, self._transport = self._transport, None
         if transport is not None:
@@ -218,7 +222,7 @@ class LocalGraph(GraphQueries):
     # --- shutdown ----------------------------------------------------------------------------------------------------
 
     async def settle(self) -> None:
-        """Wait until all published messages are delivered, including messages that callbacks publish."""
+        """Wait until all messages are delivered, including messages that callbacks publish."""
         if self._dispatcher is not None:
             await self._dispatcher.settle()
 

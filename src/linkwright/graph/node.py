@@ -166,7 +166,7 @@ class Node(NodeParameters, NodeQueries):
 
     @property
     def handle(self) -> NodeHandle:
-        """The node's handle in the graph. It is entered while the node is in use."""
+        """The node's handle in the graph, which is entered while the node is in use."""
         return self.__handle
 
     @property
@@ -213,7 +213,7 @@ class Node(NodeParameters, NodeQueries):
         return self.__handle.logger
 
     def get_clock(self) -> ROSClock:
-        """Return the node's clock. It follows ``/clock`` while ``use_sim_time`` is true."""
+        """Return the node's clock, which follows ``/clock`` while ``use_sim_time`` is true."""
         return self.__clock
 
     # --- creation ----------------------------------------------------------------------------------------------------
@@ -383,7 +383,9 @@ class Node(NodeParameters, NodeQueries):
         return self.__handle.add(Timer(self.__handle, callback, period_ns, clock, callback_group, autostart=autostart))
 
     def create_rate(self, frequency: float, clock: Clock | None = None) -> Rate:
-        """Create a rate. A loop uses it to sleep until its next iteration.
+        """Create a rate.
+
+        A loop uses it to sleep until its next iteration.
 
         Args:
             frequency: iterations per second.
@@ -399,7 +401,7 @@ class Node(NodeParameters, NodeQueries):
     def create_guard_condition(
         self, callback: Callable[[], object] | None, callback_group: CallbackGroup | None = None
     ) -> GuardCondition:
-        """Create a guard condition. Its callback is called soon after a trigger.
+        """Create a guard condition, which calls its callback soon after a trigger.
 
         Several triggers before the call result in a single call.
         """
@@ -444,14 +446,14 @@ class Node(NodeParameters, NodeQueries):
     # --- destruction -------------------------------------------------------------------------------------------------
 
     def destroy_publisher(self, publisher: Publisher[Any]) -> bool:
-        """Destroy a publisher. Messages that it has published are still delivered.
+        """Destroy a publisher.
 
-        Returns whether the publisher belonged to this node.
+        Messages that it has published are still delivered. Returns whether the publisher belonged to this node.
         """
         return self.__handle.remove(publisher)
 
     def destroy_subscription(self, subscription: Subscription[Any]) -> bool:
-        """Destroy a subscription. Its callback is not called again.
+        """Destroy a subscription, and end the calls of its callback.
 
         Returns whether the subscription belonged to this node.
         """
@@ -462,7 +464,7 @@ class Node(NodeParameters, NodeQueries):
         return self.__handle.remove(service)
 
     def destroy_client(self, client: Client[Any, Any]) -> bool:
-        """Destroy a client. Its pending futures stay pending.
+        """Destroy a client, without completing its pending futures.
 
         Returns whether the client belonged to this node.
         """
@@ -484,7 +486,10 @@ class Node(NodeParameters, NodeQueries):
         return rate.destroy()
 
     def destroy_node(self) -> None:
-        """Remove the node and all its parts from the graph. A second call does nothing."""
+        """Remove the node and all its parts from the graph.
+
+        A second call does nothing.
+        """
         self.__handle.destroy()
 
     def __enter__(self) -> Self:

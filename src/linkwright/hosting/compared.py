@@ -1,4 +1,7 @@
-"""The view of two descriptions in one scene. The old description is translucent."""
+"""The view of two descriptions in one scene.
+
+The old description is translucent.
+"""
 
 from __future__ import annotations
 
@@ -124,7 +127,7 @@ class ComparedView(ModelView):
 
 
 class _OldDescriptions(Descriptions):
-    """Descriptions whose texts differ from those of the new file, even if both files are equal."""
+    """Descriptions whose texts differ from the new file's texts, even if both files are equal."""
 
     def __init__(self, finder: PackageFinder, library: DescriptionLibrary) -> None:
         super().__init__(finder, reads_unsaved=True)

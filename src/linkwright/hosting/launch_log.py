@@ -160,7 +160,7 @@ class LaunchLog:
             process: the name of the process, such as ``talker-1``.
             stream: 1 for stdout, 2 for stderr.
             line: the line as it is displayed.
-            destinations: those of the launch log's destinations to which the line is written.
+            destinations: the subset of the launch log's destinations to which the line is written.
         """
         if SCREEN in destinations:
             self._print(stream, line)
@@ -197,7 +197,7 @@ class LaunchLog:
         if self._closed:
             return
         if name not in self._files:
-            folder = self.folder  # This may log a line, which may fail too.
+            folder = self.folder  # This may log a line, and logging may fail, too.
             if name not in self._files:
                 self._files[name] = self._open(folder / name)
         file = self._files[name]

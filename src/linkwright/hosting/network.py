@@ -151,4 +151,4 @@ def _list_names(names: list[str]) -> Phrase:
     names_text = joined(names[:_MAX_LISTED_NAMES])
     if len(names) <= _MAX_LISTED_NAMES:
         return names_text
-    return phrase("{names} and {count} more", names=names_text, count=len(names) - _MAX_LISTED_NAMES)
+    return phrase("{names} and {more} more", names=names_text, more=len(names) - _MAX_LISTED_NAMES)

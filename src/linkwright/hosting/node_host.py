@@ -1,4 +1,4 @@
-"""The nodes and viewers in this process, of a launch or of the view of one robot description."""
+"""The nodes and viewers in this process, of a launch or of the view of a description."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ class NodeHost:
 
     @property
     def launcher_node(self) -> Node:
-        """The launcher's own node. It calls services and subscribes to topics.
+        """The launcher's own node, which calls services and subscribes to topics.
 
         The node is created on first access.
         """
@@ -154,7 +154,7 @@ class NodeHost:
         """End the nodes with a matching owner, as a signal would end their processes.
 
         Args:
-            matcher: returns whether the owner of a node is that of a node to end.
+            matcher: returns whether a node with a given owner is to end.
         """
         for plan, node in tuple(self._running.values()):
             if matcher(plan.owner):
@@ -312,7 +312,10 @@ class NodeHost:
     # --- viewers --------------------------------------------------------------------------------------------
 
     async def _start_viewer(self, plan: HostedPlan, *, with_world: bool = False) -> bool:
-        """Start a viewer, and return whether it started. If not, log the reason and end the launch."""
+        """Start a viewer, and return whether it started.
+
+        If not, log the reason and end the launch.
+        """
         session = self._session
         nodes = [running for _, running in self._running.values()]
         try:

@@ -74,7 +74,7 @@ class HostedPlan:
 
     @property
     def is_viewer(self) -> bool:
-        """Whether the node is RViz. Linkwright's viewer replaces it."""
+        """Whether the node is RViz, which Linkwright's viewer replaces."""
         return is_viewer(self.package, self.executable)
 
     @property
@@ -124,7 +124,7 @@ class HostedPlan:
 
 
 def is_viewer(package: str | None, executable: str) -> bool:
-    """Return whether a node is RViz. Linkwright's viewer replaces it."""
+    """Return whether a node is RViz, which Linkwright's viewer replaces."""
     return (package, executable) == VIEWER
 
 
@@ -140,6 +140,7 @@ class HostOptions:
         network: whether the nodes join the ROS 2 network, where other programs can discover them.
         history: the maximum number of bytes of messages that a viewer stores; 0 to store none.
         rviz: the path of the viewer's configuration file; None for the default configuration.
+        follows_editor: whether a text editor is connected, see `linkwright.hosting.text_editor`.
     """
 
     host: str = "127.0.0.1"
@@ -149,10 +150,11 @@ class HostOptions:
     network: bool = True
     history: int = DEFAULT_HISTORY
     rviz: Path | None = None
+    follows_editor: bool = False
 
 
 class Supervisor(Protocol):
-    """The interface of the run to which a host belongs: a launch, or the view of one description."""
+    """The interface of the run that owns a host: a launch, or the view of one description."""
 
     @property
     def finder(self) -> PackageFinder:
@@ -172,7 +174,7 @@ class Supervisor(Protocol):
 
     @property
     def reload(self) -> LiveReload:
-        """The live reload. It passes new texts of descriptions to nodes."""
+        """The live reload, which passes new texts of descriptions to nodes."""
 
     @property
     def ending(self) -> bool:
@@ -183,13 +185,16 @@ class Supervisor(Protocol):
         """Whether the run has any processes in addition to its nodes."""
 
     def fail(self, failure: object) -> None:
-        """Record a failure. It sets the exit status to 1 unless it is cleared."""
+        """Record a failure, which sets the exit status to 1 unless it is cleared."""
 
     def clear_failure(self, failure: object) -> None:
         """Clear a failure whose cause has been fixed."""
 
     def spawn(self, coroutine: Coroutine[Any, Any, None]) -> None:
-        """Run a coroutine in the background. The run does not end before it has finished."""
+        """Run a coroutine in the background.
+
+        The run does not end before it has finished.
+        """
 
     def shut_down(self, reason: str) -> None:
         """End the run when the current work is done."""

@@ -10,7 +10,7 @@ import asyncio
 import os
 import stat
 import threading
-from collections.abc import Awaitable, Callable, Coroutine, Iterable, Sequence
+from collections.abc import Awaitable, Callable, Coroutine, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -85,7 +85,7 @@ class LiveReload:
         self._show(self.findings())
 
     def report(self, subject: object, diagnostics: Iterable[Diagnostic]) -> None:
-        """Print and show findings. They replace the earlier findings about the same object.
+        """Print and show findings, in place of the earlier findings about the same object.
 
         Errors are printed at each call, but warnings and notes only when they are new.
         """
@@ -103,11 +103,20 @@ class LiveReload:
         return [finding for findings in self._findings.values() for finding in findings]
 
     def start(self) -> None:
-        """Start to watch the files. An event loop must be running."""
+        """Start to watch the files.
+
+        An event loop must be running.
+        """
         self._is_started = True
         self._watch_files()
         if self.descriptions.reads_unsaved:
             self.descriptions.library.unsaved.listen(self._reload_unsaved)
+
+    def set_texts(self, texts: Mapping[str | os.PathLike[str], str]) -> None:
+        """Replace the unsaved texts of a text editor, and reload the descriptions that read the changed ones."""
+        before, self.descriptions.texts = self.descriptions.texts, texts
+        changed = {path for path in {*before, *texts} if before.get(path) != texts.get(path)}
+        self._on_change({Path(path) for path in changed})
 
     def close(self) -> None:
         """Stop watching the files."""
@@ -120,7 +129,7 @@ class LiveReload:
     # --- which files ----------------------------------------------------------------------------------------
 
     def _files_of_interest(self, call: XacroCall) -> set[Path]:
-        """Return the files from which a description was read, and the files that its findings mention."""
+        """Return the files of a description, and the files that its findings mention."""
         files = {call.path, *self.descriptions.files_of(call)}
         for finding in self._findings.get(call, ()):
             spans = (finding.span, *(note.span for note in finding.notes))
@@ -179,9 +188,7 @@ class LiveReload:
 
     def _is_unsaved(self, call: XacroCall) -> bool:
         """Return whether a description is read with unsaved texts, whose findings are shown and not printed."""
-        return self.descriptions.reads_unsaved and any(
-            self._contains(call, path) for path in self.descriptions.library.unsaved.texts
-        )
+        return any(self._contains(call, os.path.realpath(path)) for path in self.descriptions.unsaved_texts)
 
     def _is_broken(self, call: XacroCall) -> bool:
         return has_errors(self._findings.get(call, ()))
@@ -257,7 +264,7 @@ def _finding_key(finding: Diagnostic) -> tuple[object, ...]:
 
 
 def _modified_ns(path: Path) -> int:
-    """Return the modification time of a file in ns since the epoch, or 0 if there is no such file."""
+    """Return a file's modification time in ns since the epoch, or 0 if it does not exist."""
     try:
         return path.stat().st_mtime_ns
     except OSError:

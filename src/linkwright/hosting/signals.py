@@ -47,7 +47,10 @@ class Session(Protocol):
 
     @property
     def is_blocking(self) -> bool:
-        """Whether code is running that blocks the event loop. A KeyboardInterrupt may interrupt it."""
+        """Whether code is running that blocks the event loop.
+
+        A KeyboardInterrupt may interrupt it.
+        """
 
     def interrupt(self, reason: str) -> None:
         """End the run because the user interrupted it."""
@@ -215,7 +218,7 @@ def run_to_end(run: Callable[[SignalWatch], bool], finder: PackageFinder, log: L
 def own_environment(finder: PackageFinder) -> Iterator[None]:
     """Use a package finder in a ``with`` block, and set ``AMENT_PREFIX_PATH`` to its prefixes.
 
-    Changes of this process's environment are undone at the end of the block.
+    Changes to this process's environment are undone at the end of the block.
     """
     saved_environment = dict(os.environ)
     try:

@@ -1,4 +1,4 @@
-"""The files of a simulated world and its robot. They are reloaded when the user saves them."""
+"""The files of a simulated world and its robot, reloaded when the user saves them."""
 
 from __future__ import annotations
 

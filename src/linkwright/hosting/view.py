@@ -1,4 +1,4 @@
-"""A view of one robot description, with sliders for its joints, that runs without a launch file."""
+"""A view of one robot description with sliders for its joints, without a launch file."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from linkwright.viewer import Viewer
 
 _PUBLISH_FREQUENCY_HZ = 60.0
-"""The rate in Hz; at the default of robot_state_publisher, 20 Hz, a dragged slider lags visibly."""
+"""The rate in Hz. At the default of robot_state_publisher, 20 Hz, a dragged slider lags visibly."""
 _FIRST_LINK = re.compile(r"""<link\s[^>]*?\bname\s*=\s*["']([^"'$]+)["']""")
 
 
@@ -226,6 +226,10 @@ class ModelView:
     def _set_viewer(self, viewer: Viewer) -> None:
         self._viewer = viewer
         self._show_form()
+        if self.options.follows_editor:
+            from linkwright.hosting.text_editor import TextEditorConnection
+
+            TextEditorConnection(viewer, self.reload, partial(self.shut_down, "the text editor has ended"))
 
     def _publish_fixed(self, _: str) -> None:
         self._publish_again(self._call)
@@ -316,7 +320,7 @@ class ModelView:
     # --- interface for nodes and signals ------------------------------------------------------------------------
 
     def fail(self, failure: object) -> None:
-        """Record a failure. It sets the exit status to 1 unless it is cleared."""
+        """Record a failure, which sets the exit status to 1 unless it is cleared."""
         self._failures.add(failure)
 
     def clear_failure(self, failure: object) -> None:
@@ -324,7 +328,10 @@ class ModelView:
         self._failures.discard(failure)
 
     def spawn(self, coroutine: Coroutine[Any, Any, None]) -> None:
-        """Run a coroutine in the background. The view does not close before it has finished."""
+        """Run a coroutine in the background.
+
+        The view does not close before it has finished.
+        """
         task = asyncio.get_running_loop().create_task(coroutine)
         self._tasks.add(task)
         task.add_done_callback(self._handle_done)

@@ -1,4 +1,4 @@
-"""The viewers in this process. Their pages replace RViz's windows."""
+"""The viewers in this process, whose pages replace RViz's windows."""
 
 from __future__ import annotations
 
@@ -176,7 +176,10 @@ class ViewerHost:
             self._port_owner = ""
 
     def pop_viewer(self, plan: HostedPlan) -> Viewer:
-        """Remove a viewer from the running viewers, and return it. The caller must end it."""
+        """Remove a viewer from the running viewers, and return it.
+
+        The caller must end it.
+        """
         self._release_port(plan)
         return self._viewers.pop(plan.process_name)[1]
 
@@ -198,7 +201,10 @@ class ViewerHost:
 
 
 def load_viewer() -> None:
-    """Import the modules of viewers. This takes time, and may run in another thread."""
+    """Import the modules of viewers.
+
+    This takes time, and may run in another thread.
+    """
     import linkwright.viewer.guests
     import linkwright.viewer.viewer  # noqa: F401 - only loaded
 

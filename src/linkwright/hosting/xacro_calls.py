@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from contextvars import ContextVar
 from dataclasses import dataclass, field
@@ -57,7 +57,10 @@ class DescriptionError(LinkwrightError):
 
     @property
     def missing(self) -> bool:
-        """Whether the description file itself cannot be read. Editing the file cannot fix this."""
+        """Whether the description file itself cannot be read.
+
+        Editing the file cannot fix this.
+        """
         return not self.call.path.is_file() or not os.access(self.call.path, os.R_OK)
 
 
@@ -67,11 +70,16 @@ class Descriptions:
     Args:
         finder: the finder of ROS packages.
         reads_unsaved: whether descriptions are read with the unsaved texts of editors in pages.
+
+    Attributes:
+        finder: the finder of ROS packages.
+        texts: the unsaved texts of a text editor by absolute path, which replace those of the files.
     """
 
     def __init__(self, finder: PackageFinder, *, reads_unsaved: bool = False) -> None:
         self.finder = finder
         self.reads_unsaved = reads_unsaved
+        self.texts: Mapping[str | os.PathLike[str], str] = {}
         self._warnings: dict[XacroCall, tuple[Diagnostic, ...]] = {}
         self._read_ns: dict[XacroCall, int] = {}
         self._calls: dict[str, XacroCall] = {}
@@ -81,6 +89,13 @@ class Descriptions:
         self._meshes: dict[XacroCall, tuple[Path, ...]] = {}
         self._known_findings: set[tuple[str, str]] = set()
         self._library: DescriptionLibrary | None = None
+
+    @property
+    def unsaved_texts(self) -> Mapping[str | os.PathLike[str], str]:
+        """The unsaved texts of the text editor and of the editors in pages, by path. Those in pages take precedence."""
+        if not self.reads_unsaved:
+            return self.texts
+        return {**self.texts, **{path: unsaved.text for path, unsaved in self.library.unsaved.texts.items()}}
 
     @property
     def library(self) -> DescriptionLibrary:
@@ -131,6 +146,7 @@ class Descriptions:
         if isinstance(call, WorldCall):
             return self._read_world(call)
         from linkwright.descriptions import examine
+        from linkwright.xmltree import Overlay
 
         self.record_read_time(call)
         try:
@@ -139,7 +155,7 @@ class Descriptions:
                 call.path,
                 arguments=dict(call.arguments),
                 packages=self.finder,
-                overlay=self.library.unsaved.overlay() if self.reads_unsaved else None,
+                overlay=Overlay(self.unsaved_texts) if self.unsaved_texts else None,
                 xacro=xacro,
                 partly=True,
             )
@@ -150,7 +166,7 @@ class Descriptions:
         return description
 
     def record_read_time(self, call: XacroCall) -> None:
-        """Record the current time as the time at which the files of a description are read."""
+        """Record the current time as the start of reading a description's files."""
         self._read_ns[call] = time.time_ns()
 
     def store(self, call: XacroCall, description: Description, text: str | None = None) -> str:
@@ -190,7 +206,7 @@ class Descriptions:
         return self._warnings.get(call, ())
 
     def read_ns(self, call: XacroCall) -> int:
-        """Return the time at which the files of a call were last read, in nanoseconds since the epoch.
+        """Return the time at which a call's files were last read, in nanoseconds since the epoch.
 
         The time is 0 if the files have not been read.
         """

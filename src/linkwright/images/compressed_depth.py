@@ -1,4 +1,4 @@
-"""The transport ``compressedDepth``: a header, and the depths as a 16-bit PNG or compressed by RVL.
+"""The transport ``compressedDepth``: a header, then the depths as 16-bit PNG or RVL.
 
 It follows compressed_depth_image_transport. The header consists of an unused int32 and two float32. Float32 depths are
 quantised to integers, which grow as the distance decreases: ``depth = first / (number - second)``. 0 means that there
@@ -6,7 +6,7 @@ is no depth. An RVL stream is preceded by its columns and rows, each a uint32.
 
 RVL is the lossless compression of depth images by Wilson ("Fast Lossless Depth Image Compression", ISS 2017). A stream
 is a sequence of numbers in groups of four bits: three bits of the number, the lowest first, and one bit that is set if
-more groups follow. Eight groups make a little-endian word, with the first group in its highest bits. The sequence
+more groups follow. Eight groups form a little-endian word, and the first group has the highest bits. The sequence
 repeats: the number of zero pixels, the number of other pixels, and for each of the others the difference from the
 previous one, with the sign in the lowest bit.
 """
@@ -163,7 +163,7 @@ def _read_numbers(stream: NDArray[np.uint8]) -> NDArray[np.int64]:
 def _read_runs(numbers: NDArray[np.int64], pixels: int) -> tuple[list[int], list[int]]:
     """Return the positions of the runs' counts among the numbers, and the lengths of the runs.
 
-    Each run of zeros and the run after it share one position. The lengths are those of zeros, others, zeros, and so on.
+    Each run of zeros and the run after it share one position. Runs of zeros alternate with others, zeros first.
     """
     count_positions: list[int] = []
     runs: list[int] = []

@@ -82,7 +82,10 @@ class DecodedImage:
         return DecodedImage((sums // step**2).astype(np.uint8))
 
     def subsample(self, max_pixels: int) -> DecodedImage:
-        """Return every n-th pixel of each row and column, with the smallest n for at most `max_pixels` pixels."""
+        """Return every n-th pixel of each row and column.
+
+        The result has at most `max_pixels` pixels, with the smallest possible n.
+        """
         step = 1
         while -(-self.width // step) * -(-self.height // step) > max_pixels:
             step += 1
@@ -101,7 +104,10 @@ def _reorder_channels(pixels: Pixels, order: Sequence[int]) -> Pixels:
 
 
 def has_range(encoding: str) -> bool:
-    """Return whether an encoding has more than 8 bits, so that RViz determines limits for black and white."""
+    """Return whether an encoding has more than 8 bits per value.
+
+    RViz determines limits for black and white for such encodings.
+    """
     return encoding in _RANGED_TYPES
 
 
@@ -207,7 +213,10 @@ class RangeFinder:
         self._maxima.clear()
 
     def range_of(self, values: NDArray[Any]) -> Range:
-        """Return the range for an image. Values that are not finite are ignored."""
+        """Return the range for an image.
+
+        Values that are not finite are ignored.
+        """
         if self.fixed is not None:
             return self.fixed
         minimum, maximum = (float(values.min()), float(values.max())) if values.size else (0.0, 0.0)

@@ -1,4 +1,4 @@
-"""Elevation models: TIFF files with 64-bit floating-point numbers, which Pillow does not read."""
+"""Elevation models: TIFF files with 64-bit floats, which Pillow does not read."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _MAX_PIXELS = 1 << 26
 
 
 def read_elevation(path: Path) -> Array:
-    """Read the heights in m of a TIFF with uncompressed strips of 32-bit or 64-bit floating-point numbers.
+    """Read the heights in m of a TIFF with uncompressed strips of 32-bit or 64-bit floats.
 
     The first row is at the top.
 

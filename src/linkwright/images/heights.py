@@ -49,7 +49,7 @@ def read_heights(path: Path) -> Heights:
         try:
             mode, values = "F", read_elevation(path)
         except (OSError, ValueError):
-            message = phrase("cannot read the image '{path}': {why}", path=display_path(path), why=str(error))
+            message = phrase("cannot read the image '{path}': {reason}", path=display_path(path), reason=str(error))
             raise LinkwrightError(Diagnostic("SIM113", message)) from None
     stride = -(-max(values.shape) // _MAX_ROWS)
     values = values[::-stride, ::stride]

@@ -1,4 +1,4 @@
-"""Images that are stored as files: the transport ``compressed``, and PNG files inside ``compressedDepth``."""
+"""Images stored as files: the transport ``compressed``, and PNG in ``compressedDepth``."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ class RawImage:
 
     @classmethod
     def of(cls, header: Any, encoding: str, values: NDArray[Any]) -> RawImage:
-        """Return the image of an array of values, shape (height, width) or (height, width, channels)."""
+        """Return the image of an array, shape (height, width) or (height, width, channels)."""
         height, width = values.shape[:2]
         data = np.ascontiguousarray(values, values.dtype.newbyteorder("<")).view(np.uint8).ravel()
         return cls(header, width, height, encoding, data, data.size // max(1, height))
@@ -134,13 +134,13 @@ def unpacked(message: Any) -> RawImage:
 
 
 def encoding_of(message: Any) -> str:
-    """Return the encoding of the raw image that the format of a sensor_msgs/msg/CompressedImage names."""
+    """Return the raw image's encoding, as named by the format of a CompressedImage."""
     encoding: str = message.format.partition(";")[0].strip()
     return encoding
 
 
 def _to_array(file: Any) -> NDArray[Any]:
-    """Return the pixels of a file, converted to one of the array types that `decode_file` returns."""
+    """Return a file's pixels, converted to one of the array types that `decode_file` returns."""
     if file.mode in ("I;16", "L", "RGB", "RGBA"):
         return np.asarray(file)
     has_alpha = file.mode in ("LA", "PA") or "transparency" in file.info

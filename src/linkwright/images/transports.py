@@ -45,7 +45,7 @@ class ImageSource:
         return cls(topic, hint if topic and hint else RAW)
 
     def with_types(self, types: Collection[str]) -> ImageSource:
-        """Return the source with the transport that the message types show, if the topic does not name it."""
+        """Return the source with the transport that message types imply, unless the topic names it."""
         if self.transport == RAW and _COMPRESSED_IMAGE in types and _IMAGE not in types:
             return ImageSource(self.base, COMPRESSED, is_renamed=True)
         return self
@@ -78,7 +78,7 @@ class ImageSource:
 class Unpacker:
     """A converter of the messages of a transport to raw images.
 
-    It keeps the latest image, which may be shown more than once.
+    It keeps the latest image, so that it can be shown more than once.
     """
 
     def __init__(self) -> None:

@@ -1,4 +1,4 @@
-"""Comparison of the mass properties in a file with the mass properties computed from the shapes."""
+"""Comparison of a file's mass properties with those computed from the shapes."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from linkwright.loading.lean_dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """The result of comparing a file's mass properties with the mass properties computed from the shapes.
+    """The result of comparing a file's mass properties with those computed from the shapes.
 
     Attributes:
         mass: the mass in the file, in kg.

@@ -1,4 +1,4 @@
-"""Insertion of ``<inertial>`` blocks into the source of a description, without changing any other text."""
+"""Insertion of ``<inertial>`` blocks into a description's source, without other changes."""
 
 from __future__ import annotations
 
@@ -81,7 +81,7 @@ def written_link(link: Link) -> Element:
     """Return a ``<link>`` as written in its file, if its shapes do not depend on xacro.
 
     Raises:
-        NotWritableError: see `written_element`; also if expressions define its shapes, which numbers would not follow.
+        NotWritableError: see `written_element`; or expressions, which numbers would not follow, define the shapes.
     """
     link_element = written_element(link.element, "link")
     xacro_tag = next((child.tag for child in link_element.elements() if child.tag.startswith("xacro:")), None)

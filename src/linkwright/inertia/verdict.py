@@ -114,7 +114,7 @@ def judge(link: Link, estimate: Estimate, bodies: Bodies) -> Verdict:
     if not is_alone:
         words = phrase("its mass includes links that are fixed to it")
         return Verdict(Standing.UNJUDGED, words, 0.0, file_properties, None, comparison)
-    return Verdict(Standing.FITS, phrase("it fits its shapes"), 0.0, file_properties, density, comparison)
+    return Verdict(Standing.FITS, phrase("it matches its shapes"), 0.0, file_properties, density, comparison)
 
 
 def _verdict_without_inertial(link: Link, bodies: Bodies) -> Verdict:

@@ -126,6 +126,6 @@ def _save(file: str, text: str, changes: list[Replacement]) -> None:
         write_whole_file(file, new_text)
     except OSError as error:
         message = phrase(
-            "cannot write '{file}': {strerror}", file=display_path(file), strerror=foreign(error.strerror or error)
+            "cannot write '{path}': {reason}", path=display_path(file), reason=foreign(error.strerror or error)
         )
         raise LinkwrightError(Diagnostic("INR201", message, hint=phrase("make the file writable"))) from None

@@ -37,7 +37,7 @@ def complete_description(document: Document, inference: Inference) -> Document:
 
 
 def _with_children(element: Element, added: dict[int, list[Element]]) -> Element:
-    """Return a copy of an element with its new children, or the element itself if there are none."""
+    """Return a copy of an element with its new children, or the element if there are none."""
     new_children = added.pop(id(element), [])
     if not new_children and element.tag != "robot":
         return element

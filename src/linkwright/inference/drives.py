@@ -103,7 +103,7 @@ def _drive_from_pairs(
 
 
 def _suggested_kind(survey: Survey, fixed_pairs: list[Pair], steered_pairs: list[Pair]) -> DriveKind | None:
-    """Return the kind of drive that the wheel pairs suggest, or None if they suggest several kinds or none."""
+    """Return the kind of drive that the wheel pairs suggest, or None if it is unknown."""
     if steered_pairs:
         return "ackermann" if len(steered_pairs) == 1 and fixed_pairs else None
     if not fixed_pairs:
@@ -122,7 +122,7 @@ def _why_unknown(fixed_pairs: list[Pair], steered_pairs: list[Pair]) -> Phrase:
     if len(steered_pairs) > 1:
         return phrase("there are {count} pairs of steered wheels", count=len(steered_pairs))
     if steered_pairs:
-        return phrase("there are steered wheels, but no other pair that could drive")
+        return phrase("there are steered wheels, but no other pair of wheels that could be driven")
     if fixed_pairs:
         return phrase("there are pairs of wheels of different sizes, one of which may only support the robot")
     return phrase("there is no pair of wheels, one on the left and one on the right")
@@ -165,7 +165,7 @@ def _drive_reason(drive: Drive) -> Phrase:
 
 
 def _pair_wheels(wheels: Sequence[Wheel]) -> tuple[list[Pair], list[Wheel]]:
-    """Return the pairs of opposite left and right wheels, the foremost pair first, and the other wheels."""
+    """Return the pairs of opposite wheels, the foremost pair first, and the other wheels."""
     left_wheels = sorted((wheel for wheel in wheels if wheel.center[1] > 0.0), key=lambda other: -other.center[0])
     right_wheels = [wheel for wheel in wheels if wheel.center[1] <= 0.0]
     pairs: list[Pair] = []

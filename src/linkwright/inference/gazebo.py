@@ -1,4 +1,4 @@
-"""The ``<gazebo>`` elements with which Gazebo Classic and Linkwright's simulation drive a robot.
+"""The ``<gazebo>`` elements that drive a robot in Gazebo Classic and in Linkwright.
 
 Sources: the plugins of gazebo_ros_pkgs for ROS 2, and of gz-sim for joints that hold their positions, with their
 parameters.
@@ -46,12 +46,12 @@ _UPDATE_RATE = "50"
 
 
 def own_drive(robot: Robot) -> Element | None:
-    """Return the plugin of the description that drives the robot, or None if no such plugin works here."""
+    """Return the description's plugin that drives the robot, or None if none works here."""
     return next((plugin for plugin in _drive_plugins(robot) if _is_working(plugin)), None)
 
 
 def idle_drive(robot: Robot) -> Element | None:
-    """Return an element of the description that should drive the robot but has no effect here, or None.
+    """Return an element that should drive the robot but has no effect here, or None.
 
     The element is a plugin or a ``<ros2_control>``. Examples are controllers of ROS 1, controllers with a missing
     parameter file, and a ``<ros2_control>`` for a simulator without the plugin that runs it. Such a plugin is often in
@@ -75,7 +75,10 @@ def idle_drive(robot: Robot) -> Element | None:
 
 
 def commanded_joints(robot: Robot) -> frozenset[str]:
-    """Return the joints that controllers can command by ``<ros2_control>`` or, as in ROS 1, ``<transmission>``."""
+    """Return the joints that controllers can command.
+
+    The description lists them in ``<ros2_control>`` or, as in ROS 1, in ``<transmission>``.
+    """
     return frozenset(
         joint.attributes.get("name", "")
         for extension in robot.extensions
@@ -93,7 +96,7 @@ def _drive_plugins(robot: Robot) -> Iterator[Element]:
 
 
 def _is_working(plugin: Element) -> bool:
-    """Return whether the simulation supports a plugin, and the parameter files of the plugin exist."""
+    """Return whether the simulation supports a plugin, and the plugin's parameter files exist."""
     supported = extensions(_PLUGIN_GROUP)
     names = library_name(plugin.attributes.get("filename", "")), original_library(plugin.attributes.get("name", ""))
     files = [Path(element.text().strip()) for element in plugin.elements("parameters")]
@@ -173,7 +176,7 @@ def joint_states(joints: Sequence[str]) -> Element:
 
 
 def joint_controllers(joints: Iterable[str]) -> Element:
-    """Return the ``<gazebo>`` element with plugins that hold joints in position, and move them on command."""
+    """Return the ``<gazebo>`` element with plugins that hold joints, and move them on command."""
     return _gazebo_element(
         *(
             _plugin_element(
@@ -237,7 +240,7 @@ def _ackermann(drive: Drive, torque: float) -> tuple[str, str, list[tuple[str, s
 
 
 def _torque(robot: Robot, drive: Drive, mass: float) -> float:
-    """Return the maximum torque of a wheel in N m: the slip torque, plus friction and damping of the joint."""
+    """Return the maximum torque of a wheel in N m: slip torque, joint friction and damping."""
     wheels = (*drive.left, *drive.right)
     slip_torque = _GRAVITY * mass * drive.radius / len(wheels)
     dynamics = [robot.joints[wheel.joint].dynamics for wheel in wheels]

@@ -32,7 +32,7 @@ def infer(robot: Robot, meshes: MeshLibrary, *, kind: DriveKind | None = None, w
     Args:
         robot: the robot; the findings refer to its elements.
         meshes: the library that loads the robot's meshes.
-        kind: the kind of drive that the user has chosen, which overrides that of the description; None to infer it.
+        kind: the kind of drive that the user has chosen, which overrides the kind in the description; None to infer it.
         wheels: the joints, or the links, of the driven wheels that the user has chosen; empty to find them.
 
     Raises:
@@ -49,7 +49,7 @@ def infer(robot: Robot, meshes: MeshLibrary, *, kind: DriveKind | None = None, w
         else _choose_drive(survey, undercarriage, kind, chosen_wheels)
     )
     if working_drive is None and idle_drive is not None and verdict.drive is None:
-        verdict = Verdict(Drive("joints"), phrase("its own controllers do not work here"))
+        verdict = Verdict(Drive("joints"), phrase("the controllers of the robot do not work here"))
     if is_requested and verdict.drive is None:
         message = phrase("'{robot}' cannot be driven as requested: {why}", robot=robot.name, why=verdict.reason)
         raise LinkwrightError(Diagnostic("DRIVE211", message, hint=_DRIVE_HINT))
@@ -239,7 +239,8 @@ class _InferenceBuilder:
     def _tipping_findings(self, drive: Drive) -> Iterator[Finding]:
         if drive.kind == "differential" and not self._casters and len(self._under.wheels) == 2:
             message = phrase(
-                "only the two driven wheels of '{robot}' touch the ground: it tips over until another part touches it",
+                "only the two driven wheels of '{robot}' touch the ground: the robot tips over until "
+                "another part touches the ground",
                 robot=self._robot.name,
             )
             hint = phrase("add a caster, such as a ball that touches the ground in front of or behind the wheels")
@@ -258,7 +259,7 @@ def _diagnostic_at(
     severity: Severity = Severity.INFO,
     hint: Phrase | None = None,
 ) -> Diagnostic:
-    """Return a diagnostic at the position of an element, or without a position if the element is None."""
+    """Return a diagnostic at an element's position, or without a position for None."""
     if element is None:
         return Diagnostic(code, message, None, severity, hint=hint)
     return Diagnostic(code, message, element.span(), severity, hint=hint, source=element.source)

@@ -92,7 +92,7 @@ def _link_collisions(survey: Survey, link: Link, wheel: Wheel | None) -> Iterato
 def _visual_to_collision(
     visual: Shape, link: Link, wheel: Wheel | None, survey: Survey
 ) -> tuple[Element, Phrase] | None:
-    """Return a collision for a visual, with its description, or None if the visual's mesh cannot be read."""
+    """Return a collision for a visual and its description, or None if its mesh is unreadable."""
     geometry = visual.geometry
     if not isinstance(geometry, Mesh):
         shape_name = term(type(geometry).__name__.lower())
@@ -175,19 +175,20 @@ def _missing_body_mass(members: list[Link], densities: Mapping[str, float], mesh
         yield _inertial_finding("DRIVE102", message, link, limited)
     if not has_mass_source and members[0].element is not None:
         name = members[0].name
-        message = phrase("no link that moves with link '{link}' has a shape or a mass: it gets 10 g", link=name)
+        message = phrase("no link that moves with link '{link}' has a shape or a mass: the link gets 10 g", link=name)
         yield _inertial_finding("DRIVE103", message, members[0], _SHAPELESS_BODY)
 
 
 def _missing_tensor(link: Link, meshes: MeshLibrary) -> Iterator[Finding]:
-    """Yield a finding with the ``<inertial>`` of a link that has a mass, but only zero moments of inertia."""
+    """Yield a finding with the ``<inertial>`` of a link with mass and zero moments of inertia."""
     inertial = link.inertial
     if inertial is None or not has_mass(inertial) or any(_moments(inertial)) or link.element is None:
         return
     properties = estimate(link, meshes, mass=inertial.mass).properties
     if properties is not None:
         message = phrase(
-            "the moments of inertia of link '{link}' are zero: it gets those of its shapes with {mass:.3g} kg",
+            "the moments of inertia of link '{link}' are zero: the link gets the moments of its "
+            "shapes with {mass:.3g} kg",
             link=link.name,
             mass=inertial.mass,
         )

@@ -1,4 +1,4 @@
-"""The measurement of links' shapes: their lowest points, and whether they are round about an axis."""
+"""The measurement of links' shapes: lowest points, and roundness about an axis."""
 
 from __future__ import annotations
 
@@ -100,10 +100,10 @@ def lowest_z(shape: Shape, link_frame: Placement, meshes: MeshLibrary) -> float 
 def round_shape(
     members: Iterable[tuple[Link, Placement]], point: Vector3, axis: Vector3, meshes: MeshLibrary
 ) -> tuple[RoundShape | None, list[str]]:
-    """Return the shape with which a body rolls about an axis, and the names of meshes that cannot be read.
+    """Return the shape with which a body rolls about an axis, and unreadable meshes.
 
-    It is the largest shape that is round about the axis; collisions take precedence over visuals. It is None if no
-    shape is round, or if another shape extends beyond it, so that the body cannot roll.
+    The meshes are listed by name. The shape is the largest one that is round about the axis; collisions take precedence
+    over visuals. It is None if no shape is round, or if another shape extends beyond it, so that the body cannot roll.
 
     Args:
         members: the links of the body, with their poses in a common frame.
@@ -221,7 +221,7 @@ def _points_from(shape: Shape, frame: Placement, point: Vector3, meshes: MeshLib
 
 
 def _split_along(vector: Vector3, axis: Vector3) -> tuple[float, float]:
-    """Return the signed component of a vector along an axis, and the length of the perpendicular component."""
+    """Return a vector's signed component along an axis, and its perpendicular length."""
     along = dot(vector, axis)
     return along, length(subtract_vectors(vector, scaled(axis, along)))
 

@@ -93,7 +93,7 @@ class Survey:
 
     @cached_property
     def rolling(self) -> tuple[Wheel, ...]:
-        """The links that are round about the horizontal axis of an unlimited rotating joint, in file order."""
+        """The links that are round about an unlimited joint's horizontal axis, in file order."""
         return tuple(filter(None, map(self.wheel_on, self.robot.joints.values())))
 
     def wheel_on(self, joint: Joint) -> Wheel | None:
@@ -195,7 +195,7 @@ class Survey:
         return None
 
     def _is_caster(self, wheel: Wheel) -> bool:
-        """Return whether a wheel is a caster by its name, or swivels without limits and is not steered."""
+        """Return whether a wheel is a caster by its name, or swivels freely and is not steered."""
         names = f"{wheel.joint} {wheel.link}"
         if _CASTER_PATTERN.search(names):
             return True
@@ -206,7 +206,10 @@ class Survey:
         return bool(_CASTER_PATTERN.search(names)) or (is_endless(steering) and not _STEERING_PATTERN.search(names))
 
     def _sliding_links(self, ground: float) -> Iterator[str]:
-        """Yield the links that slide: links except the chassis that touch the ground and are fixed to the base."""
+        """Yield the links that slide on the ground.
+
+        They are fixed to the base, touch the ground, and are not the chassis.
+        """
         for name, height in self.heights.items():
             root = self.bodies.of(self.robot.root)
             if root is not None and name in root.frames and name != self.chassis and height - ground <= _MAX_GROUND_GAP:
@@ -214,7 +217,7 @@ class Survey:
 
     @cached_property
     def chassis(self) -> str:
-        """The name of the link of the root's body with the largest shapes, or an empty string without shapes."""
+        """The link of the root's body with the largest shapes, or an empty string without shapes."""
         root = self.bodies.of(self.robot.root)
         names = [] if root is None else [name for name in root.links if shapes_of(self.robot.links[name])]
         return max(names, key=lambda name: self._volume(self.robot.links[name]), default="")

@@ -125,7 +125,7 @@ class _Writer:
             if joint_or_link is not None and (
                 joint_or_link.element is None or not is_literal(joint_or_link.element, "name")
             ):
-                raise NotWritableError(phrase("the name '{name}' in it comes from an expression", name=name))
+                raise NotWritableError(phrase("the referenced name '{name}' comes from an expression", name=name))
         return _source_text(written), list(_insertion(written, added))
 
 

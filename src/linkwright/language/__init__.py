@@ -1,1 +1,1 @@
-"""The answers to questions of editors about files of robot packages, without a protocol."""
+"""Editor features for the files of robot packages, independent of any protocol."""

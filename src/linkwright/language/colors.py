@@ -1,4 +1,4 @@
-"""The colours in an XML text: ``rgba`` of URDF, and the colours of SDF's materials and lights."""
+"""The colours in an XML text: URDF's ``rgba``, and the colours of SDF materials and lights."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class WrittenColor(NamedTuple):
 
 
 def colors_in(text: str) -> Iterator[WrittenColor]:
-    """Yield the colours that are written as numbers, in the order of the text."""
+    """Yield the colours that are written as plain numbers, in text order."""
     tag = ""
     for token in tokens(text):
         if token.kind is Kind.START:
@@ -41,7 +41,7 @@ def colors_in(text: str) -> Iterator[WrittenColor]:
 
 
 def written_color(rgba: tuple[float, float, float, float], *, with_alpha: bool) -> str:
-    """Return the numbers of a colour, as a description writes them."""
+    """Return the numbers of a colour as they are written in a description."""
     return " ".join(f"{value:.4g}" for value in rgba[: 4 if with_alpha else 3])
 
 

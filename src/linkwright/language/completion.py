@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from enum import Enum
 
@@ -30,12 +30,12 @@ class Completion:
     """A completion.
 
     Attributes:
-        label: the text to show and, without a snippet, to write.
+        label: the text to show and, without a snippet, to insert.
         kind: its kind.
         start: the offset from which the typed text is replaced, up to the cursor.
         detail: a few words beside the label.
         description: a text in Markdown.
-        snippet: the text to write in the syntax of snippets; empty for the label.
+        snippet: the text to insert, in snippet syntax, or empty to insert the label.
     """
 
     label: str
@@ -44,10 +44,6 @@ class Completion:
     detail: str = ""
     description: str | Phrase = ""
     snippet: str = ""
-
-
-Parts = Callable[[], Sequence[NameDefinition]]
-"""Returns the links and joints of the robots that a description is part of, after their expansion."""
 
 
 def of_kind(names: Sequence[NameDefinition], kind: NameKind) -> list[NameDefinition]:
@@ -60,5 +56,5 @@ def of_kind(names: Sequence[NameDefinition], kind: NameKind) -> list[NameDefinit
 
 
 def most_used(names: Iterable[NameDefinition], text: str) -> list[NameDefinition]:
-    """Return definitions, those first whose names a text contains most often."""
+    """Return definitions, sorted by how often a text contains their names, the most used first."""
     return sorted(names, key=lambda name: -text.count(name.name))

@@ -1,4 +1,4 @@
-"""Conversion of a URDF file to xacro, as a new file beside it."""
+"""Conversion of a URDF file to a new xacro file in the same folder."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class NewFile:
 
 
 def can_be_converted(text: str, file: Path) -> bool:
-    """Return whether a file is a URDF without xacro."""
+    """Return whether a file is plain URDF, without xacro."""
     if not file.name.endswith(".urdf"):
         return False
     root = next(iter(written_elements(text)), None)
@@ -36,7 +36,7 @@ def can_be_converted(text: str, file: Path) -> bool:
 
 
 def convert_to_xacro(project: Workspace, texts: Mapping[Path, str], file: Path, text: str) -> NewFile:
-    """Return a xacro file that expands to the elements of a URDF file.
+    """Return a new xacro file that expands to the same elements as a URDF file.
 
     Args:
         project: the workspace.
@@ -71,7 +71,7 @@ def convert_to_xacro(project: Workspace, texts: Mapping[Path, str], file: Path, 
 
 
 def _escaped(text: str) -> str:
-    """Return a text in which dollars before brackets have no meaning for xacro, outside of comments."""
+    """Escape the dollar signs before brackets for xacro, except in comments."""
     return "".join(
         token.text if token.kind is Kind.COMMENT else _BEFORE_BRACKET.sub(lambda dollars: f"${dollars[0]}", token.text)
         for token in tokens(text)
@@ -79,7 +79,7 @@ def _escaped(text: str) -> str:
 
 
 def _normal(root: Element) -> list[tuple[object, ...]]:
-    """Return the elements with their attributes and texts, without the declaration of xacro."""
+    """Return the elements with attributes and texts, without the xacro namespace declaration."""
     return [
         (
             element.tag,

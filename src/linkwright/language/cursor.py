@@ -1,4 +1,4 @@
-"""The place of a cursor in an XML text that is being typed."""
+"""The context of a cursor in an XML text that is being typed."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _NAME = re.compile(r"[A-Za-z_][\w.]*")
 
 
 class Spot(Enum):
-    """The kinds of places that differ for an editor."""
+    """The kinds of cursor positions that an editor distinguishes."""
 
     TAG = "tag"
     CLOSING_TAG = "closing tag"
@@ -26,15 +26,15 @@ class Spot(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Cursor:
-    """A place in a text.
+    """A cursor position in a text, with its context.
 
     Attributes:
-        spot: its kind.
+        spot: the kind of position.
         offset: the character offset.
-        tags: the names of the elements around it, from the root; the element itself is the last in its start tag.
-        token: the tag at the place; None for texts.
-        attribute: the attribute whose name or value contains the place.
-        typed: the part of the name or value before the place.
+        tags: the names of the enclosing elements, from the root. Inside an attribute, the last is the element itself.
+        token: the tag at the cursor, or None in a text.
+        attribute: the attribute whose name or value contains the cursor.
+        typed: the part of the name, value or text before the cursor.
         elements: the start tags of `tags`.
     """
 
@@ -48,29 +48,29 @@ class Cursor:
 
     @property
     def in_expression(self) -> bool:
-        """Whether the place is inside ``${...}``."""
+        """Whether the cursor is inside ``${...}``."""
         return _EXPRESSION.search(self.typed) is not None
 
     @property
     def substitution(self) -> tuple[str, str] | None:
-        """The command of a ``$(...)`` around the place, and the typed part of its argument; None if there is none."""
+        """The command and typed argument of the ``$(...)`` around the cursor, or None."""
         found = _SUBSTITUTION.search(self.typed)
         return None if found is None else (found[1], found[2] if found[2] is not None else "")
 
     @property
     def macro(self) -> Token | None:
-        """The start tag of the innermost macro definition around the place, or None."""
+        """The start tag of the innermost macro definition around the cursor, or None."""
         return next((element for element in reversed(self.elements) if element.name == "xacro:macro"), None)
 
     @property
     def word(self) -> str:
-        """The name in an expression that is typed at the place."""
+        """The name in an expression that is being typed at the cursor."""
         found = re.search(r"[A-Za-z_][\w.]*$", self.typed)
         return found[0] if found else ""
 
 
 def cursor_at(text: str, offset: int) -> Cursor:
-    """Return the place of an offset in a text, which may be incomplete."""
+    """Return the cursor at an offset of a text, which may be incomplete."""
     tags: list[str] = []
     elements: list[Token] = []
     for token in tokens(text):
@@ -109,7 +109,7 @@ def _in_tag(text: str, offset: int, token: Token, tags: tuple[str, ...], element
 
 
 def name_at(text: str, offset: int) -> tuple[str, int] | None:
-    """Return the name of an expression around an offset, and where it starts; None if there is none."""
+    """Return the name around an offset and its start offset, or None if there is no name."""
     line_start = text.rfind("\n", 0, offset) + 1
     line_end = text.find("\n", offset)
     line = text[line_start : line_end if line_end >= 0 else len(text)]

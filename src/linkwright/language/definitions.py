@@ -44,7 +44,7 @@ class NameDefinition:
         file: the file.
         start: the offset of the name in the text of the file.
         detail: the parameters of a macro, the value of a property, the default of an argument, the type of a joint.
-        owner: the macro whose content defines the name; empty outside of macros, and for properties of a wider scope.
+        owner: the macro whose content defines the name, or empty outside macros and for properties of a wider scope.
     """
 
     kind: NameKind
@@ -58,7 +58,7 @@ class NameDefinition:
 def definitions_in(text: str, file: Path) -> Iterator[NameDefinition]:
     """Yield the definitions in a text, which may be incomplete.
 
-    A ``<material name="..."/>`` without content is a use and not a definition.
+    A ``<material name="..."/>`` without content is a use, not a definition.
     """
     macros: list[str] = []
     for token in tokens(text):

@@ -1,4 +1,4 @@
-"""The expansion of a description as a text, with the location in the source of each element."""
+"""The expansion of a description as text, with the source location of each element."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class ExpandedText:
     elements: tuple[ExpandedElement, ...]
 
     def at(self, offset: int) -> ExpandedElement | None:
-        """Return the element whose start tag contains an offset, or the nearest one before the offset."""
+        """Return the last element whose start tag begins at or before an offset, or None."""
         return next((element for element in reversed(self.elements) if element.start <= offset), None)
 
     def of(self, file: Path, offset: int) -> list[ExpandedElement]:
@@ -60,7 +60,7 @@ class ExpandedText:
 def expanded_text(
     project: Workspace, texts: Mapping[Path, str], entry: Path, arguments: Mapping[str, str]
 ) -> ExpandedText:
-    """Return the expansion of a description.
+    """Return the expansion of a description with the source of its elements.
 
     Args:
         project: the workspace.

@@ -1,4 +1,4 @@
-"""Completions in ``${...}`` and ``$(...)`` of a description: names in scope with their values, functions, packages."""
+"""Completion in expressions ``${...}`` and substitutions ``$(...)`` of a description."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ from linkwright.xacro.faults import Fault
 from linkwright.xacro.macros import Parameter, parse_parameters
 
 FUNCTIONS = tuple(sorted({*MATHEMATICS, *BARE}))
-"""Names of functions and constants that expressions have (ros/xacro 2.1)."""
+"""The names of the functions and constants in expressions (ros/xacro 2.1)."""
 XACRO_FUNCTIONS = {
     "xacro.load_yaml": "the content of a YAML file",
     "xacro.arg": "the value of an argument",
     "xacro.abs_filename": "a path relative to this file as an absolute path",
-    "xacro.dotify": "a mapping whose items are also found with a dot",
+    "xacro.dotify": "a mapping whose items can also be accessed with a dot",
     "xacro.tokenize": "the parts of a text between separators",
     "xacro.message": "prints a message",
     "xacro.warning": "prints a warning",
@@ -31,7 +31,7 @@ XACRO_FUNCTIONS = {
     "xacro.fatal": "ends the expansion with an error",
     "xacro.print_location": "prints where the expression is",
 }
-"""The functions of the group ``xacro``, with their purposes."""
+"""The functions of the namespace ``xacro``, with their purposes."""
 _COMMANDS = {
     "arg": "the value of an argument",
     "find": "the folder of a package",
@@ -50,11 +50,11 @@ _LONGEST_VALUE = 60
 
 
 def complete_expression(document: Document, cursor: Cursor, names: Sequence[NameDefinition]) -> Iterator[Completion]:
-    """Yield the names that an expression may contain: parameters and properties first, those that are used more first.
+    """Yield the names for an expression: parameters, properties by use, then functions.
 
     Args:
         document: the text.
-        cursor: a place in ``${...}``.
+        cursor: a cursor in ``${...}``.
         names: the names that the files of the description define.
     """
     item = _ITEM.search(cursor.typed)
@@ -80,16 +80,16 @@ def complete_expression(document: Document, cursor: Cursor, names: Sequence[Name
     for function, purpose in XACRO_FUNCTIONS.items():
         yield Completion(function, ItemKind.FUNCTION, begin, purpose)
     for function in sorted(FUNCTIONS, key=lambda name: (name not in _USUAL, -uses.get(name, 0))):
-        yield Completion(function, ItemKind.FUNCTION, begin, _purpose(function))
+        yield Completion(function, ItemKind.FUNCTION, begin, purpose_of(function))
 
 
 def parameters_in_scope(cursor: Cursor) -> list[Parameter]:
-    """Return the parameters of the macro around a place, without its blocks."""
+    """Return the parameters of the macro around a cursor, without block parameters."""
     return [parameter for parameter in _parameters(cursor) if not parameter.is_block]
 
 
 def blocks_in_scope(cursor: Cursor) -> list[Parameter]:
-    """Return the block parameters of the macro around a place."""
+    """Return the block parameters of the macro around a cursor."""
     return [parameter for parameter in _parameters(cursor) if parameter.is_block]
 
 
@@ -114,7 +114,7 @@ def _uses(text: str) -> Mapping[str, int]:
 def _items(
     document: Document, item: re.Match[str], cursor: Cursor, names: Sequence[NameDefinition]
 ) -> Iterator[Completion]:
-    """Yield the keys of a mapping that a property has from a YAML file."""
+    """Yield the keys of a mapping that a property loads from a YAML file."""
     value: Any = yaml_value(document, item[1], names)
     for key in _KEY.finditer(item[2]):
         value = value.get(key[1] or key[2]) if isinstance(value, Mapping) else None
@@ -128,7 +128,7 @@ def complete_substitution(document: Document, cursor: Cursor, names: Sequence[Na
 
     Args:
         document: the text.
-        cursor: a place in ``$(...)``.
+        cursor: a cursor in ``$(...)``.
         names: the names that the files of the description define.
     """
     substitution = cursor.substitution
@@ -150,7 +150,7 @@ def complete_substitution(document: Document, cursor: Cursor, names: Sequence[Na
 
 
 def packages(document: Document, start: int) -> Iterator[Completion]:
-    """Yield the packages that are found: that of the file first, then those that its text names most often."""
+    """Yield the packages: the file's own first, then by the number of mentions in the text."""
     found = document.finder.packages()
     folder = document.file.parent
 
@@ -166,6 +166,7 @@ def _short(text: str) -> str:
     return line if len(line) <= _LONGEST_VALUE else f"{line[: _LONGEST_VALUE - 3]}..."
 
 
-def _purpose(function: str) -> str:
+def purpose_of(function: str) -> str:
+    """Return the first line about a function or constant of expressions."""
     found = getattr(math, function, None) or getattr(builtins, function, None)
     return (getattr(found, "__doc__", None) or "").partition("\n")[0] if callable(found) else str(found)

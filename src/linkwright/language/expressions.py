@@ -1,4 +1,4 @@
-"""Python expressions in the texts of xacro files, as they are written there."""
+"""Python expressions in xacro files, as written."""
 
 from __future__ import annotations
 
@@ -36,12 +36,14 @@ class WrittenExpression(NamedTuple):
 
 
 def decoded(text: str) -> str:
-    """Return a text with a character, and blanks up to the same length, in place of each entity of XML."""
+    """Replace each XML entity by its character, padded with spaces to the length of the entity."""
     return _ENTITY.sub(lambda entity: _CHARACTERS[entity[0]].ljust(len(entity[0])), text)
 
 
 def expressions_in(text: str) -> Iterator[WrittenExpression]:
-    """Yield the ``${...}`` of an attribute's value or of character data; nothing if it is incomplete.
+    """Yield the ``${...}`` of an attribute's value or of character data.
+
+    Yields nothing if an expression is incomplete.
 
     Args:
         text: the text, as written.
@@ -60,7 +62,7 @@ def expressions_in(text: str) -> Iterator[WrittenExpression]:
 def parsed(source: str) -> ast.expr | None:
     """Return the syntax tree of an expression as written, or None if it is not valid.
 
-    Offsets in the tree are those of the source without leading blanks. A ``$(...)`` in it counts as a name.
+    Offsets in the tree refer to the source without leading spaces. A ``$(...)`` counts as a name.
     """
     body = _SUBSTITUTION.sub(lambda command: "_" * len(command[0]), re.sub(r"[\n\r\t]", " ", decoded(source)).strip())
     try:
@@ -70,7 +72,9 @@ def parsed(source: str) -> ast.expr | None:
 
 
 def is_part(source: str, start: int, end: int) -> bool:
-    """Return whether a range of an expression is a subexpression of it that needs nothing of the rest.
+    """Return whether a range of an expression is a self-contained subexpression.
+
+    Such a subexpression uses no variable that the expression binds.
 
     Args:
         source: the expression as written.
@@ -90,7 +94,9 @@ def is_part(source: str, start: int, end: int) -> bool:
 
 
 def inserted(source: str, start: int, end: int, new: str) -> str | None:
-    """Return an expression with another one in place of a name, in parentheses where precedence needs them.
+    """Replace a name in an expression by another expression.
+
+    The other expression is put in parentheses where precedence requires them.
 
     Args:
         source: the expression as written.

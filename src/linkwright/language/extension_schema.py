@@ -1,4 +1,4 @@
-"""The elements of a description that other programs than its readers need: ros2_control, Gazebo and transmissions.
+"""The extension elements of a description: ros2_control, Gazebo and transmissions.
 
 Sources: hardware_interface's parser and schema (ros2_control), libsdformat's parser of URDF (Gazebo).
 """
@@ -68,7 +68,7 @@ def _in_transmission(tag: str, name: AttributeRule, meaning: str) -> ElementRule
     return ElementRule(
         tag,
         meaning,
-        (name, AttributeRule("role", TEXT, "its place in the transmission, such as joint1 or actuator1", usual=True)),
+        (name, AttributeRule("role", TEXT, "its role in the transmission, such as joint1 or actuator1", usual=True)),
         (
             value("mechanical_reduction", NUMBER, "the ratio of the speeds of actuator and joint", default="1"),
             value("offset", NUMBER, "the position of the joint where the actuator is at zero", "rad or m", default="0"),

@@ -24,26 +24,26 @@ from linkwright.xmltree.tokens import Kind, TokenAttribute, tokens
 
 _NUMBER = lazy_pattern(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 _COMPONENTS = {"xyz": ("x", "y", "z"), "rpy": ("roll", "pitch", "yaw"), "size": ("x", "y", "z")}
-"""Attributes with several numbers, and the names of the numbers."""
+"""The attributes that contain several numbers, and the names of these numbers."""
 _NAMING = frozenset({(MACRO, "params"), ("xacro:include", "ns"), ("xacro:property", "scope")})
-"""Attributes whose value is not evaluated as a text."""
+"""The attributes whose value xacro does not evaluate as a text."""
 _DEFINING = frozenset({"xacro:macro", "xacro:property", "xacro:arg", "xacro:insert_block"})
-"""Elements whose ``name`` is not evaluated as a text."""
+"""The elements whose ``name`` xacro does not evaluate as a text."""
 _GROUPS = ("math", "python", "xacro")
-"""The groups of functions in expressions."""
+"""The namespaces of functions in xacro expressions."""
 
 
 @dataclass(frozen=True, slots=True)
 class ValueSelection:
-    """A value, or a part of one, that can become a property.
+    """A value, or a part of a value, that can become a property.
 
     Attributes:
         element: the element that has the value as an attribute or text.
-        attribute: the name of the attribute; empty for the text of the element.
+        attribute: the name of the attribute, or empty for the text of the element.
         start: the character offset of the selection.
-        end: the offset after it.
-        in_expression: whether it is a part of an expression, and not of the text around one.
-        component: the name of the number, such as ``x``; empty if it is not one of several.
+        end: the offset after the selection.
+        in_expression: whether the selection is inside ``${...}``.
+        component: the name of the number, such as ``x``, or empty if it is not one of several.
     """
 
     element: WrittenElement
@@ -55,12 +55,15 @@ class ValueSelection:
 
 
 def selected_value(text: str, start: int, end: int) -> ValueSelection | None:
-    """Return the value that a selection covers, or the number at a cursor; None if it cannot become a property.
+    """Return the selected value, or the number at a cursor.
 
     Args:
         text: the text of a file.
         start: the character offset of the selection.
-        end: the offset after it; equal to `start` for a cursor.
+        end: the offset after the selection, equal to `start` for a cursor.
+
+    Returns:
+        The value, or None if it cannot become a property.
     """
     elements = written_elements(text)
     element = innermost(elements, start)
@@ -88,7 +91,15 @@ def _is_evaluated(element: WrittenElement, attribute: TokenAttribute) -> bool:
 def _selection(
     element: WrittenElement, attribute: str, value: str, at: int, selected: tuple[int, int]
 ) -> ValueSelection | None:
-    """Return the selection in a value that begins at an offset, without the blanks at its ends."""
+    """Return the selected part of a value, without the spaces at its ends, or None.
+
+    Args:
+        element: the element.
+        attribute: the name of the attribute, or empty for the text of the element.
+        value: the value.
+        at: the offset of the value in the file.
+        selected: the start and end offset of the selection in the file.
+    """
     start, end = selected[0] - at, selected[1] - at
     if start == end:
         number = next((match for match in _NUMBER.finditer(value) if match.start() <= start <= match.end()), None)
@@ -115,7 +126,7 @@ def _selection(
 
 
 def _is_plain_part(value: str, start: int, end: int) -> bool:
-    """Return whether a range of a value cuts no expression, and no word unless it is all literal."""
+    """Return whether a range of a value cuts through no expression, substitution or number."""
     if "$" in value and any(one.start < edge < one.end for edge in (start, end) for one in expressions_in(value)):
         return False
     cut = value[start:end]
@@ -138,7 +149,7 @@ def _component(attribute: str, value: str, start: int, end: int) -> str:
 def extract_property(
     project: Workspace, texts: Mapping[Path, str], file: Path, text: str, selection: ValueSelection
 ) -> tuple[Edit, ...]:
-    """Return the proved edits that define a property with a value and use it in place of the value.
+    """Return the proved edits that replace a value by a new property.
 
     Args:
         project: the workspace.
@@ -148,7 +159,7 @@ def extract_property(
         selection: the value.
 
     Raises:
-        UnprovedError: the expansions would differ.
+        UnprovedError: the expansions would differ wherever the property is defined.
     """
     element, tag = selection.element, selection.element.name.removeprefix(PREFIX)
     name = unique_name(
@@ -175,7 +186,7 @@ def extract_property(
             error = error or reason
         else:
             return edits
-    raise error or UnprovedError(phrase("there is no place for its definition"))
+    raise error or UnprovedError(phrase("there is no position for the definition of '{name}'", name=name))
 
 
 def _quoted(content: str, quote: str) -> str:
@@ -183,7 +194,7 @@ def _quoted(content: str, quote: str) -> str:
 
 
 def _places(text: str, element: WrittenElement, *, is_local: bool) -> Iterator[int]:
-    """Yield the offsets at which a definition may be inserted, the best first.
+    """Yield the offsets at which a definition can be inserted, the best first.
 
     A comment directly above an element belongs to it, so a definition is inserted above the comment.
     """
@@ -199,7 +210,7 @@ def _places(text: str, element: WrittenElement, *, is_local: bool) -> Iterator[i
 
 
 def start_with_comments(text: str, start: int) -> int:
-    """Return the start of an element, or that of the comments directly above it.
+    """Return the start of an element, including the comments directly above it.
 
     Args:
         text: the text.
@@ -216,20 +227,20 @@ def start_with_comments(text: str, start: int) -> int:
 
 
 def insertion_before(file: Path, text: str, start: int, new: str) -> Edit:
-    """Return the edit that inserts lines before an offset, with the indentation there."""
+    """Return the edit that inserts lines before an offset, with the indentation of that line."""
     blanks = indentation(text, start)
     separator = "" if blanks is None else f"{line_ending(text)}{blanks}"
     return Edit(file, start, start, new + separator)
 
 
 def unique_name(project: Workspace, texts: Mapping[Path, str], file: Path, wish: str) -> str:
-    """Return a name for expressions that no file of the description uses.
+    """Return a name for a property or macro that no file of the description contains.
 
     Args:
         project: the workspace.
         texts: the texts of the open files.
         file: the file.
-        wish: what the name should be.
+        wish: the preferred name.
     """
     base = re.sub(r"\W+", "_", wish).strip("_") or "value"
     if base[0].isdigit():

@@ -67,7 +67,7 @@ def facts_at(
 def _parts(
     project: Workspace, texts: Mapping[Path, str], part: Occurrence, values: Sequence[ValuedText]
 ) -> Iterator[str]:
-    """Yield the facts about the links or joints that a name with or without expressions represents."""
+    """Yield the facts about the links or joints that a name denotes when it is evaluated."""
     if part.kind not in (NameKind.LINK, NameKind.JOINT):
         return
     names = [part.name]
@@ -82,9 +82,9 @@ def _parts(
 
 
 def robots_of(project: Workspace, texts: Mapping[Path, str], file: Path) -> Iterator[Robot]:
-    """Yield the robots of the descriptions that include a file, one for each argument set that can be expanded.
+    """Yield the robots of the descriptions that include a file, one for each valid argument set.
 
-    If none of them can be expanded, these are the valid parts of the descriptions, and the robot of the file alone.
+    If no description can be expanded, the robots are those in the valid parts of the descriptions and of the file.
     """
     overlay = Overlay({str(path): text for path, text in texts.items()})
     entries, is_found = project.index.entries(file, texts), False
@@ -106,7 +106,7 @@ def robots_of(project: Workspace, texts: Mapping[Path, str], file: Path) -> Iter
 
 
 def part_facts(robot: Robot, kind: NameKind, name: str) -> str | None:
-    """Return the facts about a link or joint of a robot, or None if it has no such link or joint."""
+    """Return the facts about a link or joint of a robot, or None if the robot lacks it."""
     if kind is NameKind.LINK and name in robot.links:
         return "\n".join(_link_facts(robot, robot.links[name]))
     if kind is NameKind.JOINT and name in robot.joints:
@@ -115,7 +115,7 @@ def part_facts(robot: Robot, kind: NameKind, name: str) -> str | None:
 
 
 def mesh_facts(file: Path) -> str | None:
-    """Return the size, the number of triangles and the length in bytes of a mesh file, or None if it is unreadable."""
+    """Return the size, triangle count and file size of a mesh, or None if it is unreadable."""
     if file.suffix.lower() not in _MESH_FILES:
         return None
     try:
@@ -143,7 +143,7 @@ def package_facts(finder: PackageFinder, name: str) -> str | None:
 def _link_facts(robot: Robot, link: Link) -> Iterator[str]:
     parent = parent_joints(robot).get(link.name)
     if parent is None:
-        yield "- " + localized(phrase("root of the tree of links"))
+        yield "- " + localized(phrase("root of the link tree"))
     else:
         yield "- " + localized(
             phrase(

@@ -26,7 +26,7 @@ _SHARED = re.compile(
 )
 _WORD = re.compile(r"(?<![\w./$-])[\w.-]+(?:/[\w.-]+)*")
 _MAX_TEXT = 1_000_000
-"""Characters; longer files are data and not configuration."""
+"""The maximum length in characters. Longer files are data, not configuration."""
 
 
 class FileRenaming(NamedTuple):
@@ -34,7 +34,7 @@ class FileRenaming(NamedTuple):
 
     Attributes:
         edits: the edits of references that certainly mean the file.
-        unchanged: texts with the name of the file that may mean it; the edits leave them unchanged.
+        unchanged: occurrences of the file name that may mean the file, and stay unchanged.
     """
 
     edits: tuple[Edit, ...]
@@ -42,7 +42,7 @@ class FileRenaming(NamedTuple):
 
 
 def rename_file(project: Workspace, texts: Mapping[Path, str], old: Path, new: Path) -> FileRenaming:
-    """Return the edits of the descriptions, worlds, launch files, configurations and build files that refer to a file.
+    """Return the edits of the files that refer to a renamed file.
 
     Args:
         project: the workspace.
@@ -71,7 +71,7 @@ def rename_file(project: Workspace, texts: Mapping[Path, str], old: Path, new: P
 def _references(
     project: Workspace, texts: Mapping[Path, str], file: Path, text: str, old: Path, new: Path
 ) -> list[Edit]:
-    """Return the edits of the references in a text that mean the old file."""
+    """Return the edits of the references to the old file in a text."""
     edits: dict[int, Edit] = {}
     for link in (*_links(project, texts, file, text), *_paths(project, file, text)):
         if real(link.file) == old:
@@ -82,7 +82,7 @@ def _references(
 
 
 def _links(project: Workspace, texts: Mapping[Path, str], file: Path, text: str) -> Iterator[FileReference]:
-    """Yield the references that the format of a file tells."""
+    """Yield the references in a file that its format defines."""
     known = format_of(file)
     if known is not None:
         yield from known.links(Document(project, texts, file, text))
@@ -95,7 +95,7 @@ def _links(project: Workspace, texts: Mapping[Path, str], file: Path, text: str)
 
 
 def _paths(project: Workspace, file: Path, text: str) -> Iterator[FileReference]:
-    """Yield the paths in a share folder, and those in build files, which begin in the folder of the build file."""
+    """Yield the references into share folders, and the paths in build files."""
     for found in _SHARED.finditer(text):
         share = project.finder(file).find(found["package"])
         if share is not None:
@@ -108,9 +108,10 @@ def _paths(project: Workspace, file: Path, text: str) -> Iterator[FileReference]
 
 
 def _edit(file: Path, text: str, start: int, end: int, old: Path, new: Path) -> Edit | None:
-    """Return the edit of the part of a reference that the renaming changes; None if it is computed or leads elsewhere.
+    """Return the edit of a reference to a renamed file, or None if it cannot be edited.
 
-    The reference and the old path end with the same names. The new path must be below the same folder.
+    The edit replaces the last names, which the reference shares with the old path. The new path must be below the
+    folder that contains them.
     """
     written = PurePosixPath(text[start:end])
     count = 0

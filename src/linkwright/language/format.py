@@ -1,9 +1,9 @@
-"""The requests of an editor about a file of any format, and the functions of a format that answer them."""
+"""File formats: their functions for completion, hover, definitions, links and symbols."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import Enum
 from pathlib import Path
 
@@ -14,6 +14,10 @@ from linkwright.language.workspace import Workspace
 from linkwright.packages import PackageFinder
 
 
+class NotYetKnownError(Exception):
+    """Raised if a function needs an expansion or a search for which it may not wait."""
+
+
 @dataclass(frozen=True, slots=True)
 class Document:
     """A text that an editor shows.
@@ -22,13 +26,18 @@ class Document:
         project: the files of the editor.
         texts: the texts of all open files.
         file: the file, as `linkwright.language.includes.real` returns it.
-        text: its text, in any state.
+        text: its text, which may be incomplete.
+        waits: whether functions may expand descriptions and search sources. Otherwise they use the results of earlier
+            requests, add the updates of outdated results to `refreshes`, and raise `NotYetKnownError` without results.
+        refreshes: the functions to call in the check thread after a request, so that the next one has current results.
     """
 
     project: Workspace
     texts: Mapping[Path, str]
     file: Path
     text: str
+    waits: bool = True
+    refreshes: list[Callable[[], object]] = field(default_factory=list, compare=False)
 
     @property
     def finder(self) -> PackageFinder:
@@ -36,18 +45,18 @@ class Document:
         return self.project.finder(self.file)
 
     def other(self, file: Path) -> str:
-        """Return the text of another file, which may be open; empty if it cannot be read."""
+        """Return the text of another file, open or not, or empty if it cannot be read."""
         return self.project.text(file, self.texts) or ""
 
 
 @dataclass(frozen=True, slots=True)
 class Target:
-    """A place that a name leads to.
+    """A location that a name refers to.
 
     Attributes:
         file: the file.
-        start: the character offset of the place in its text.
-        end: the offset behind it.
+        start: the character offset of the location in its text.
+        end: the offset after it.
     """
 
     file: Path
@@ -56,7 +65,7 @@ class Target:
 
 
 class SymbolKind(Enum):
-    """The kinds of symbols; the values are the names of the Language Server Protocol."""
+    """The kinds of symbols, with their names in the Language Server Protocol."""
 
     FILE = "File"
     GROUP = "Module"
@@ -72,15 +81,15 @@ class SymbolKind(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Symbol:
-    """A part of a text with a name.
+    """A named part of a text.
 
     Attributes:
         name: the name.
         kind: its kind.
         start: the character offset of the part.
-        end: the offset behind it.
-        children: the parts in it.
-        detail: a few words behind the name.
+        end: the offset after it.
+        children: its named parts.
+        detail: a few words after the name.
     """
 
     name: str
@@ -101,16 +110,19 @@ def _no_explanation(*_: object) -> None:
 
 @dataclass(frozen=True, slots=True)
 class Format:
-    """A format of files: its functions take any text, and any character offset in it, and raise nothing.
+    """A file format with its editor functions.
+
+    The functions accept any text and any character offset in it, and raise no exceptions.
 
     Attributes:
-        covers: returns whether a file has the format, by its path alone.
+        covers: returns whether a path has the format.
         complete: returns the completions at an offset, the most likely first.
-        explain: explains what is at an offset; None if there is nothing to say.
-        define: returns the places where the name at an offset is defined.
+        explain: returns an explanation of the text at an offset, or None.
+        define: returns the definitions of the name at an offset.
         links: returns the references to other files.
-        symbols: returns the parts with names; None for the elements of an XML text.
+        symbols: returns the named parts, or is None if the symbols are the elements of an XML text.
         needs_index: whether the functions use the descriptions in the folders of the editor.
+        prepare: imports slow dependencies of the functions. It may run in any thread, any number of times.
     """
 
     covers: Callable[[Path], bool]
@@ -120,3 +132,4 @@ class Format:
     links: Callable[[Document], Iterable[FileReference]] = _nothing
     symbols: Callable[[Document], Iterable[Symbol]] | None = None
     needs_index: bool = False
+    prepare: Callable[[], object] = _nothing

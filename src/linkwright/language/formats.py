@@ -1,9 +1,13 @@
-"""The formats of files with functions of their own; the other XML files are read as descriptions."""
+"""The file formats with their own editor functions.
+
+Other XML files are treated as descriptions.
+"""
 
 from __future__ import annotations
 
 from pathlib import Path
 
+from linkwright.language.cmake_files import CMAKE_FILES
 from linkwright.language.format import Format
 from linkwright.language.interfaces import INTERFACES
 from linkwright.language.launch_python import LAUNCH_PYTHON
@@ -12,6 +16,7 @@ from linkwright.language.launch_yaml import LAUNCH_YAML
 from linkwright.language.manifest import PACKAGE_XML
 from linkwright.language.parameter_files import PARAMETER_FILES
 from linkwright.language.rviz_files import RVIZ_FILES
+from linkwright.language.setup_files import SETUP_FILES
 from linkwright.language.srdf import SRDF_FILES
 
 FORMATS: tuple[Format, ...] = (
@@ -23,10 +28,12 @@ FORMATS: tuple[Format, ...] = (
     SRDF_FILES,
     PARAMETER_FILES,
     RVIZ_FILES,
+    CMAKE_FILES,
+    SETUP_FILES,
 )
-"""The formats, the first that covers a file decides."""
+"""The formats, in order of precedence."""
 
 
 def format_of(file: Path) -> Format | None:
-    """Return the format of a file, by its path; None if it has no functions of its own."""
+    """Return the first format that covers a path, or None if no format does."""
     return next((known for known in FORMATS if known.covers(file)), None)

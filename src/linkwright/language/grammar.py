@@ -1,4 +1,4 @@
-"""The elements and attributes that a place in a file may have: the table of its language, with xacro's tags."""
+"""The elements and attributes that are allowed at a position in an XML file."""
 
 from __future__ import annotations
 
@@ -94,7 +94,7 @@ PREFIX = "xacro:"
 
 
 def root_of(path: Path) -> ElementRule | None:
-    """Return the rule of the root element of a file, by its name; None for other languages."""
+    """Return the rule of a file's root element, derived from the file name, or None."""
     name = path.name.removesuffix(".xacro")
     if name.endswith((".sdf", ".world")):
         return SDF
@@ -120,13 +120,13 @@ def has_xacro(root: ElementRule) -> bool:
 def rule_at(root: ElementRule, tags: Sequence[str], elements: Sequence[Token] = ()) -> ElementRule | None:
     """Return the rule of an element.
 
-    Content of xacro's tags and of macro calls is that of the element around them; the content of a macro may belong to
-    any element, so the first tag in it that URDF has anywhere decides.
+    The content of xacro tags belongs to the element around them. The content of a macro or a call may belong to any
+    element, so its first tag that occurs anywhere in the language decides.
 
     Args:
         root: the rule of the root element.
         tags: the names of the elements from the root to the element.
-        elements: their start tags, which tell the parameters of a simulator's plugin; they may be left out.
+        elements: their start tags, which determine the parameters of simulator plugins, or an empty sequence.
     """
     current: ElementRule | None = None
     for number, tag in enumerate(tags):
@@ -150,11 +150,12 @@ def _rule_of_plugin(element: Token) -> ElementRule | None:
 
 
 def _in_macro(root: ElementRule, tags: Sequence[str], tag: str) -> ElementRule | None:
-    return _anywhere(root, tag) if "xacro:macro" in tags else None
+    is_call = any(other.startswith(PREFIX) and other not in XACRO for other in tags)
+    return _anywhere(root, tag) if is_call or "xacro:macro" in tags else None
 
 
 def _anywhere(root: ElementRule, tag: str) -> ElementRule | None:
-    """Return the rule with a tag that is nearest to the root."""
+    """Return the rule of a tag nearest to the root, or None."""
     pending, seen = [root], {id(root)}
     for rule in pending:
         if rule.tag == tag:

@@ -1,4 +1,4 @@
-"""The hardware plugins of ros2_control that a description can name, with their parameters."""
+"""The hardware plugins of ros2_control for descriptions, with their parameters."""
 
 from __future__ import annotations
 
@@ -54,8 +54,8 @@ class HardwareParameter:
 
     Attributes:
         name: the name.
-        meaning: the purpose; may be empty.
-        target: the place in the sources that reads it; None if it is not known.
+        meaning: the purpose, or empty if it is unknown.
+        target: the location in the sources that reads it, or None if it is unknown.
     """
 
     name: str
@@ -64,27 +64,27 @@ class HardwareParameter:
 
 
 def hardware_plugins(document: Document) -> dict[str, str]:
-    """Return the hardware plugins by type, each with its purpose: those of the workspace, then the usual ones."""
-    found = {plugin.name: plugin.description for plugin in plugin_classes(document.project, document.finder, BASE)}
+    """Return the purposes of hardware plugins by type, the workspace's own plugins first."""
+    found = {plugin.name: plugin.description for plugin in plugin_classes(document, BASE)}
     found |= {name: about for name, (about, _) in _KNOWN.items() if name not in found}
     return found | {name: "" for name in sorted(extensions("linkwright.hardware")) if name not in found}
 
 
 def hardware_class(document: Document, name: str) -> PluginClass | None:
     """Return the class of a hardware plugin that a package of the workspace exports, or None."""
-    plugins = plugin_classes(document.project, document.finder, BASE)
+    plugins = plugin_classes(document, BASE)
     return next((plugin for plugin in plugins if name in (plugin.name, plugin.type)), None)
 
 
 def hardware_parameters(document: Document, name: str, apart: int = -1) -> dict[str, HardwareParameter]:
     """Return the parameters of a hardware plugin, by name.
 
-    They are known, or the sources of the plugin's package read them, or the text gives them to the same plugin.
+    They are the known parameters, the parameters that the plugin's sources read, and those that the text sets.
 
     Args:
         document: a description.
         name: the type of the plugin, as ``package/Class``.
-        apart: the offset of a parameter in the text that does not count.
+        apart: the offset of a parameter in the text that is ignored.
     """
     known = _KNOWN.get(name, ("", {}))[1]
     found = {parameter: HardwareParameter(parameter, meaning) for parameter, meaning in known.items()}
@@ -104,7 +104,7 @@ def _read_in(folder: Path, document: Document) -> Iterator[HardwareParameter]:
 
 
 def _given(text: str, plugin: str, apart: int) -> Iterator[str]:
-    """Yield the parameters that a text gives to a plugin."""
+    """Yield the parameters that a text sets for a plugin."""
     inside, is_plugin, tag = False, False, ""
     for token in tokens(text):
         if token.kind is Kind.START:

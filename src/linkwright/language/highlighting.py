@@ -1,4 +1,4 @@
-"""Semantic highlighting: the meaning of names in an XML text, and the expressions in attributes."""
+"""Semantic highlighting of the names and expressions in an XML text."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _KEYWORDS = frozenset({"and", "or", "not", "if", "else", "in", "is", "for", "Tru
 
 
 class HighlightKind(Enum):
-    """The kinds of highlighted ranges, with their names in the protocol of language servers."""
+    """The kinds of highlighted ranges, with their token types in the Language Server Protocol."""
 
     MACRO = "macro"
     PARAMETER = "parameter"
@@ -48,12 +48,12 @@ _KINDS = {
 
 
 class Highlight(NamedTuple):
-    """A range of a text with a meaning.
+    """A highlighted range of a text.
 
     Attributes:
         start: the character offset.
         end: the offset after the last character.
-        kind: the meaning.
+        kind: the kind of text in the range.
         is_definition: whether the range defines a name.
     """
 
@@ -64,7 +64,7 @@ class Highlight(NamedTuple):
 
 
 def highlights_in(text: str, file: Path) -> list[Highlight]:
-    """Return the highlights of a text, in its order and without overlaps."""
+    """Return the highlights of a text, in text order and without overlaps."""
     found: dict[int, Highlight] = {}
     for name in occurrences_in(text, file):
         if "$" not in name.name:

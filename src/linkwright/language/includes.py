@@ -1,4 +1,4 @@
-"""Which descriptions include a file, found by the texts of the includes, before anything is expanded."""
+"""The includes between descriptions, found in their texts without expansion."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ class IncludeIndex:
         self._package_folders = folders_by_package(map(real, packages))
 
     def entries(self, file: Path, texts: Mapping[Path, str], *, computed: bool = False) -> list[Path]:
-        """Return the descriptions that include a file, directly or through others; the file itself if none does.
+        """Return the top-level descriptions that include a file, or the file if none does.
 
         Args:
             file: the file, as `real` returns it.
@@ -64,7 +64,7 @@ class IncludeIndex:
         return list(found) or [file]
 
     def roots(self, texts: Mapping[Path, str]) -> list[Path]:
-        """Return the files that no other file includes, found by their names.
+        """Return the files that no other file includes.
 
         Args:
             texts: texts that replace those of files.
@@ -137,5 +137,5 @@ class IncludeIndex:
 
 
 def real(path: str | os.PathLike[str]) -> Path:
-    """Return the path of a file without links: one name for a file, however it is reached."""
+    """Return the path of a file with all symbolic links resolved."""
     return Path(os.path.realpath(path))

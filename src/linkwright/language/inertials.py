@@ -1,4 +1,4 @@
-"""The computed inertia of the link at a place, as edits of the file."""
+"""Edits that fill in the inertia of a link, computed from its shapes."""
 
 from __future__ import annotations
 
@@ -33,9 +33,10 @@ def link_with_shapes_at(text: str, offset: int) -> WrittenElement | None:
 def fill_in_inertia(
     project: Workspace, texts: Mapping[Path, str], file: Path, text: str, link: WrittenElement
 ) -> tuple[Edit, ...]:
-    """Return the edits that give a link the inertia of its shapes; nothing else in the expansions changes.
+    """Return the edits that set the inertia of a link to the inertia of its shapes.
 
-    The mass is that of the link, or that of water in its shapes, as `linkwright inertia` computes it.
+    Nothing else changes in the expansions. The mass is the mass of the link or, if it has none, of water with the
+    same shapes, as in `linkwright inertia`.
 
     Args:
         project: the workspace.
@@ -45,7 +46,8 @@ def fill_in_inertia(
         link: the link.
 
     Raises:
-        UnprovedError: no expansion has the link, it cannot be written, or something else would change.
+        UnprovedError: no expansion contains the link, its inertia is unknown or cannot be written, or something else
+            would change.
     """
     robot, entry, expanded = _expanded_link(project, texts, file, link)
     finder = project.finder(entry)
@@ -57,7 +59,7 @@ def fill_in_inertia(
     except NotWritableError as error:
         raise UnprovedError(error.args[0]) from None
     if source.text != text:
-        raise UnprovedError(phrase("its file has changed since it was read"))
+        raise UnprovedError(phrase("'{file}' has changed since it was read", file=file.name))
     edits = tuple(Edit(file, one.start, one.end, one.text) for one in replacements)
     if not edits:
         raise UnprovedError(phrase("the link '{name}' has this inertia already", name=expanded.name))
@@ -94,7 +96,7 @@ def _is_written_at(link: Link, file: Path, offset: int) -> bool:
 
 
 def _without_inertial(root: Element, name: str) -> list[tuple[str, tuple[tuple[str, str], ...], str]]:
-    """Return the elements of a robot without the inertia of one link."""
+    """Return the elements of a robot, except the inertia of one link."""
     elements = []
     pending = [root]
     while pending:

@@ -1,4 +1,4 @@
-"""Inlining of a property: its value in place of all uses."""
+"""Inlining of a property: its value replaces all uses."""
 
 from __future__ import annotations
 
@@ -23,7 +23,10 @@ from linkwright.xmltree.tokens import Kind, tokens
 _LITERAL = lazy_pattern(r"[^$'\"&<\\]*")
 _PROPERTY = "xacro:property"
 _ATTRIBUTES = frozenset({"name", "value", "scope", "lazy_eval"})
-"""Attributes of a definition that can be inlined; a default depends on other definitions."""
+"""The attributes that an inlinable definition may have.
+
+A ``default`` is not allowed, because its effect depends on other definitions.
+"""
 
 
 class _Piece(NamedTuple):
@@ -32,7 +35,7 @@ class _Piece(NamedTuple):
     Attributes:
         start: the character offset of the text in the file.
         text: the text as written.
-        quote: the quote around it; empty for character data.
+        quote: the quote around the text, or empty for character data.
     """
 
     start: int
@@ -47,21 +50,22 @@ def property_at(text: str, file: Path, offset: int) -> Occurrence | None:
 
 
 def inline_property(project: Workspace, texts: Mapping[Path, str], name: Occurrence) -> tuple[Edit, ...]:
-    """Return the proved edits that replace all uses of a property by its value, and remove its definition.
+    """Return the proved edits that replace all uses of a property with its value.
 
     Args:
         project: the workspace.
         texts: the texts of the open files.
-        name: the property.
+        name: a use or the definition of the property.
 
     Raises:
-        UnprovedError: it has no definition or several, a use cannot be replaced, or the expansions would differ.
+        UnprovedError: the property does not have exactly one definition, a use cannot be replaced, or the expansions
+            would differ.
     """
     uses = references(project, texts, name)
     definitions = [use for use in uses if use.is_definition]
     if len(definitions) != 1:
         raise UnprovedError(
-            phrase("'{name}' has {count} definitions, and one is needed", name=name.name, count=len(definitions))
+            phrase("'{name}' has {count} definitions instead of one", name=name.name, count=len(definitions))
         )
     definition = definitions[0]
     source = project.text(definition.file, texts) or ""
@@ -86,7 +90,7 @@ def inline_property(project: Workspace, texts: Mapping[Path, str], name: Occurre
 
 
 def _value(element: WrittenElement) -> str | None:
-    """Return the value of a property's definition as written, or None if it has other attributes or content."""
+    """Return the value in a property's definition, or None if the definition has more parts."""
     attributes = {attribute.name: attribute.value for attribute in element.tag.attributes()}
     if element.name != _PROPERTY or element.children or element.end < 0 or not {*attributes} <= _ATTRIBUTES:
         return None
@@ -103,7 +107,7 @@ def _replacements(
         texts: the texts of the open files.
         uses: the occurrences of the name.
         value: the value of the property as written.
-        is_raw: whether the value itself replaces an expression that is the name alone.
+        is_raw: whether the value as written replaces an expression that consists of the name alone.
     """
     for file in dict.fromkeys(use.file for use in uses):
         text = project.text(file, texts) or ""
@@ -115,8 +119,13 @@ def _replacements(
             around = None if piece is None else _expression_around(piece, use)
             if piece is None or around is None or text[: use.start].endswith("."):
                 line = text.count("\n", 0, use.start) + 1
-                message = phrase("its use in {file}:{line} is not an expression", file=display_path(file), line=line)
-                raise UnprovedError(message)
+                used = phrase(
+                    "'{name}' is used outside an expression in {file}:{line}",
+                    name=use.name,
+                    file=display_path(file),
+                    line=line,
+                )
+                raise UnprovedError(used)
             span = piece.start + around.start, piece.start + around.end
             if span not in done:
                 done.add(span)
@@ -143,26 +152,26 @@ def _expression_around(piece: _Piece, use: Occurrence) -> WrittenExpression | No
 def _replaced(
     around: WrittenExpression, piece: _Piece, names: Sequence[Occurrence], value: str, *, is_raw: bool
 ) -> str:
-    """Return the text that replaces an expression that contains some uses of the property."""
+    """Return the replacement of an expression that uses the property."""
     quotes = {"'": "&apos;", '"': "&quot;"}
     source, low = around.source, piece.start + around.inside[0]
     if source.strip() == names[0].name and (is_raw or _as_expression(value, piece.quote) is None):
         return value.replace(piece.quote, quotes[piece.quote]) if piece.quote else value
     new = _as_expression(value, piece.quote)
     if new is None:
-        raise UnprovedError(phrase("an expression cannot contain its value '{value}'", value=value))
+        raise UnprovedError(phrase("an expression cannot contain the value '{value}'", value=value))
     if piece.quote:
         new = new.replace(piece.quote, quotes[piece.quote])
     for use in sorted(names, key=lambda one: one.start, reverse=True):
         replaced = inserted(source, use.start - low, use.end - low, new)
         if replaced is None:
-            raise UnprovedError(phrase("an expression cannot contain its value '{value}'", value=value))
+            raise UnprovedError(phrase("an expression cannot contain the value '{value}'", value=value))
         source = replaced
     return f"${{{source}}}"
 
 
 def _as_expression(value: str, quote: str) -> str | None:
-    """Return the value of a property as an expression, or None if only a text can have it.
+    """Return the value of a property as an expression, or None if it cannot be written as one.
 
     Args:
         value: the value as written.
@@ -183,7 +192,7 @@ def _as_expression(value: str, quote: str) -> str | None:
 
 
 def _is_number(text: str) -> bool:
-    """Return whether a text is a number of Python, as ``007`` is not."""
+    """Return whether a text is a valid number in Python, unlike ``007``."""
     try:
         return isinstance(ast.literal_eval(text.strip()), (int, float))
     except (SyntaxError, ValueError):

@@ -1,4 +1,4 @@
-"""Interface files: types of fields in ``.msg``, ``.srv`` and ``.action`` files, with their definitions."""
+"""Editor functions for interface files: ``.msg``, ``.srv`` and ``.action``."""
 
 from __future__ import annotations
 
@@ -38,20 +38,20 @@ _USUAL_PACKAGES = ("std_msgs", "geometry_msgs", "sensor_msgs", "builtin_interfac
 
 
 def is_interface_file(path: Path) -> bool:
-    """Return whether a file defines an interface, by its name."""
+    """Return whether a path has the suffix of an interface file."""
     return path.suffix in (".msg", ".srv", ".action")
 
 
 @dataclass(frozen=True, slots=True)
 class _Message:
-    """A message type: its text, and the place of its definition."""
+    """The text of a message type, and the location of its definition."""
 
     text: str
     target: Target
 
 
 def _line_at(text: str, offset: int) -> re.Match[str] | None:
-    """Return the line around an offset, unless the offset is in its comment."""
+    """Return the line around an offset, or None if the offset is in a comment."""
     start = text.rfind("\n", 0, offset) + 1
     found = _FIELD.match(text, start)
     return None if found is None or "#" in text[start:offset] else found
@@ -63,7 +63,7 @@ def _own_package(document: Document) -> str:
 
 
 def _message(document: Document, written: str) -> _Message | None:
-    """Return the message type that a field names, ``Name`` or ``package/Name``; None if it is not known."""
+    """Return the message type ``Name`` or ``package/Name`` of a field, or None if it is unknown."""
     package, slash, name = written.rpartition("/")
     if not slash and name == "Header":
         package = "std_msgs"
@@ -121,11 +121,11 @@ def _offer_types(document: Document, typed: str, start: int) -> Iterator[Complet
 
 
 def _used_types(document: Document, apart: int) -> list[str]:
-    """Return the types of other packages that the interface files of the package use, the most used first.
+    """Return the types from other packages that the package uses, the most used first.
 
     Args:
         document: the text.
-        apart: the offset of a type that does not count.
+        apart: the offset of a type in the text that is not counted.
     """
     found: Counter[str] = Counter()
     files = sorted(document.file.parent.glob(f"*{document.file.suffix}"))[:_MAX_NEIGHBOURS]

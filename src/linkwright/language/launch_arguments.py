@@ -1,4 +1,4 @@
-"""The arguments that a launch file declares, in XML, YAML or Python, found in a text in any state."""
+"""The arguments declared in a launch file in XML, YAML or Python, which may be incomplete."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _LEVELS = ("info", "debug", "warn", "error", "fatal")
 _CAPITAL, _SMALL = re.compile(r"""["'](?:True|False)["']"""), re.compile(r"""["'](?:true|false)["']""")
 _MOST_TEXT = 1_000_000
 _LOOKED_BACK = 200
-"""The number of statements before a declaration among which the loop around it is searched."""
+"""The number of statements before a declaration that are searched for its loop."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,13 +28,13 @@ class LaunchArgument:
     """An argument or launch configuration that a launch file declares.
 
     Attributes:
-        name: its name.
-        file: the file.
+        name: the name of the argument.
+        file: the launch file.
         start: the offset of the name.
-        default: the default, as written; None if the argument is required.
+        default: the default as written, or None if the argument is required.
         description: the description, or empty.
-        choices: the allowed values; empty for any value.
-        is_argument: whether a caller can set it; False for ``let``.
+        choices: the allowed values, or empty if any value is allowed.
+        is_argument: whether a caller can set it, unlike ``let``.
     """
 
     name: str
@@ -47,12 +47,12 @@ class LaunchArgument:
 
     @property
     def end(self) -> int:
-        """The offset behind the name."""
+        """The offset after the name."""
         return self.start + len(self.name)
 
     @property
     def is_condition(self) -> bool:
-        """Whether its default is true or false."""
+        """Whether the default is true or false."""
         return (self.default or "").strip("'\"").lower() in ("true", "false")
 
     def described(self) -> str:
@@ -70,8 +70,8 @@ def likely_values(argument: LaunchArgument | None, name: str, text: str) -> tupl
     """Return the likely values of an argument, in the spelling of a launch file.
 
     Args:
-        argument: the argument; None if only its name is known.
-        name: its name.
+        argument: the argument, or None if only its name is known.
+        name: the name of the argument.
         text: the launch file in which the value is written.
     """
     if argument is not None and argument.choices:
@@ -87,7 +87,7 @@ def likely_values(argument: LaunchArgument | None, name: str, text: str) -> tupl
 
 
 def arguments_in(text: str, file: Path) -> list[LaunchArgument]:
-    """Return the arguments that a launch file declares, in the order of the text; each name once."""
+    """Return the arguments that a launch file declares, in text order, each name once."""
     if len(text) > _MOST_TEXT:
         return []
     if file.name.endswith(".py"):
@@ -163,9 +163,9 @@ def _in_python(text: str, file: Path) -> Iterator[LaunchArgument]:
 
 
 def _repeated(python: PythonText, call: Group, name: str) -> Iterator[tuple[Text, list[str]]]:
-    """Yield the values of a name that a loop around a call sets, each with the texts that belong to it.
+    """Yield each string that a loop around a call assigns to a name, with its other strings.
 
-    The loop goes over a list of texts, or over a dictionary with texts or pairs of texts as values.
+    The loop iterates over a list of strings, or over a dictionary whose values are strings or pairs of strings.
     """
     item = call.parent
     around = [] if item is None else item.group.items[item.group.items.index(item) :]
@@ -210,7 +210,7 @@ def _literals(item: Item | None) -> tuple[str, ...]:
 
 
 def _resolved(python: PythonText, item: Item) -> Item:
-    """Return the default behind a variable: its text, or the default of the launch configuration in it."""
+    """Resolve a variable to its string, or to the default of its ``LaunchConfiguration``."""
     for _ in range(2):
         part = item.parts[0] if len(item.parts) == 1 else None
         bound = python.bindings.get(part.value) if isinstance(part, Name) else None
@@ -224,7 +224,7 @@ def _resolved(python: PythonText, item: Item) -> Item:
 
 
 def _written(item: Item, text: str) -> str:
-    """Return the default as the text has it: the content of a single string, otherwise the expression."""
+    """Return the content of a string literal, or the source text of any other expression."""
     only = item.parts[0] if len(item.parts) == 1 else None
     if isinstance(only, Text):
         return only.value

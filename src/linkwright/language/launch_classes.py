@@ -1,4 +1,4 @@
-"""The classes of launch and launch_ros that Python launch files use, with their arguments, from their docstrings."""
+"""The classes of launch and launch_ros, with the arguments in their docstrings."""
 
 from __future__ import annotations
 
@@ -38,8 +38,14 @@ def _classes() -> Mapping[str, Any]:
     return found
 
 
+def load_classes() -> None:
+    """Import the classes. The first import is slow."""
+    for name in _classes():
+        class_arguments(name)
+
+
 def described_class(name: str) -> str | None:
-    """Return the purpose and arguments of a class, in Markdown; None if launch has no such class."""
+    """Return the purpose and arguments of a launch class in Markdown, or None."""
     cls = _classes().get(name)
     if cls is None:
         return None
@@ -65,7 +71,7 @@ def class_arguments(name: str) -> Mapping[str, str]:
 
 
 def first_argument(name: str) -> str | None:
-    """Return the argument of a class that may be given without its name; None if there is none."""
+    """Return the name of the first positional argument of a class, or None."""
     cls = _classes().get(name)
     try:
         parameters = [] if cls is None else [*inspect.signature(cls).parameters.values()]

@@ -1,4 +1,4 @@
-"""Where launch files declare, use and pass launch arguments, in XML, YAML and Python, and which files they include."""
+"""The launch arguments and includes in launch files in XML, YAML and Python."""
 
 from __future__ import annotations
 
@@ -27,13 +27,13 @@ _MAX_TEXT = 300_000
 
 @dataclass(frozen=True, slots=True, order=True)
 class LaunchName:
-    """A place with the name of a launch argument or configuration.
+    """An occurrence of the name of a launch argument or configuration.
 
     Attributes:
         file: the file.
         start: the offset of the name.
         name: the name.
-        is_declared: whether the place declares or sets it.
+        is_declared: whether the argument is declared or set here.
     """
 
     file: Path
@@ -43,7 +43,7 @@ class LaunchName:
 
     @property
     def end(self) -> int:
-        """The offset behind the name."""
+        """The offset after the name."""
         return self.start + len(self.name)
 
 
@@ -52,10 +52,10 @@ class LaunchInclude:
     """An included launch file.
 
     Attributes:
-        target: the file; None if it is not known.
+        target: the file, or None if it is unknown.
         written: the last words of the path as written.
-        passed: the names of the arguments that it gets.
-        is_known: whether these are all of them.
+        passed: the names of the arguments that are passed to it.
+        is_known: whether `passed` is complete.
     """
 
     target: Path | None
@@ -69,9 +69,9 @@ class LaunchNames:
     """The launch arguments in a launch file.
 
     Attributes:
-        names: the places that declare, set or use a launch argument of the file.
+        names: the occurrences that declare, set or use a launch argument of the file.
         includes: the included files.
-        texts: other whole strings, each with its offset, which may be the name of an argument.
+        texts: the other strings that may be the name of an argument.
     """
 
     names: list[LaunchName] = field(default_factory=list)
@@ -241,7 +241,7 @@ def _included(launch: PythonLaunchText, call: Group, file: Path) -> LaunchInclud
 
 
 def _bound(launch: PythonLaunchText, part: object) -> list[Group]:
-    """Return the brackets with launch arguments: those in a call, or those of the variable whose items are passed."""
+    """Return the brackets with the launch arguments in a call, or in a variable."""
     name = part.value if isinstance(part, Name) else part.callee if isinstance(part, Group) else ""
     bound = launch.python.bindings.get(name.partition(".")[0].strip()) if name else None
     parts = [part] if bound is None else bound.parts

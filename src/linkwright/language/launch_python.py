@@ -1,4 +1,7 @@
-"""Launch files in Python: what the strings of calls such as ``Node(package="...")`` name. Nothing is run."""
+"""Launch files in Python: the meaning of strings in calls such as ``Node(package="...")``.
+
+Nothing is run.
+"""
 
 from __future__ import annotations
 
@@ -13,8 +16,16 @@ from linkwright.language.cursor import name_at
 from linkwright.language.format import Document, Format, Symbol, SymbolKind, Target
 from linkwright.language.hover import Explanation
 from linkwright.language.launch_arguments import LaunchArgument, arguments_in, likely_values
-from linkwright.language.launch_classes import class_arguments, described_class, first_argument
+from linkwright.language.launch_classes import class_arguments, described_class, first_argument, load_classes
 from linkwright.language.links import FileReference
+from linkwright.language.node_topics import (
+    NodeProgram,
+    explain_topic,
+    node_name,
+    offer_topics,
+    plain_name,
+    targets_of_topic,
+)
 from linkwright.language.offers import (
     explain_file,
     explain_package,
@@ -29,8 +40,11 @@ from linkwright.language.offers import (
     target_of_package,
     target_of_program,
 )
+from linkwright.language.parameter_catalogue import ParameterInfo, node_parameters
+from linkwright.language.parameter_completion import described
 from linkwright.language.python_paths import JOINS, PACKAGE_FUNCTIONS, PythonPaths, Value
 from linkwright.language.python_text import Group, Item, Name, Text, python_text
+from linkwright.language.source_parameters import parameters_in_sources
 from linkwright.packages.share_layout import source_of
 
 _PACKAGE_KEYWORDS = frozenset({"package", "package_name", "node_package"})
@@ -39,12 +53,14 @@ CONFIGURATIONS = frozenset({"LaunchConfiguration", "LaunchConfigurationEquals", 
 """The classes whose first argument is the name of a launch configuration."""
 _ACTIONS = ("Node", "LifecycleNode", "ComposableNode", "ComposableNodeContainer", "IncludeLaunchDescription")
 _OUTPUTS = ("screen", "log", "both", "own_log", "full")
+_REMAPPINGS, _PARAMETERS = re.compile(r"(?i)remap"), re.compile(r"(?i)^parameters$|_params$|_parameters$")
+_PAIR, _DEEPEST_LIST = 2, 4
 _URI = "package://"
 _WORD_BEFORE = re.compile(r"[^\W\d]\w*\Z")
 
 
 def is_python_launch_file(path: Path) -> bool:
-    """Return whether a file is a launch file in Python, or a Python file below a folder of launch files."""
+    """Return whether a file is a Python launch file, or a Python file in a launch folder."""
     is_launch = path.name.endswith((".launch.py", "_launch.py")) or path.name == "launch.py"
     return is_launch or (path.suffix == ".py" and "launch" in path.parts[-4:-1])
 
@@ -54,12 +70,15 @@ class _Place:
     """The meaning of a string in a launch file.
 
     Attributes:
-        kind: "package", "program", "component", "configuration", "argument", "output", "choice" or "path".
+        kind: "package", "program", "component", "configuration", "argument", "output", "choice", "topic", "parameter"
+            or "path".
         text: the string.
         package: the package of a program or component.
-        arguments: what a configuration or argument may be.
+        arguments: the launch arguments that a configuration or argument may refer to.
         base: the path that the string continues.
         choices: the likely values.
+        programs: the programs of the nodes that have a topic or parameter.
+        given: the other names in the list of a topic or parameter.
     """
 
     kind: str
@@ -68,10 +87,12 @@ class _Place:
     arguments: tuple[LaunchArgument, ...] = ()
     base: Value | None = None
     choices: tuple[str, ...] = ()
+    programs: tuple[NodeProgram, ...] = ()
+    given: frozenset[str] = frozenset()
 
 
 class PythonLaunchText:
-    """A launch file in Python, with what it declares."""
+    """A launch file in Python, with the arguments that it declares."""
 
     def __init__(self, document: Document) -> None:
         self.document = document
@@ -85,7 +106,7 @@ class PythonLaunchText:
         return tuple(arguments_in(self.document.text, self.document.file))
 
     def place_at(self, offset: int) -> _Place | None:
-        """Return what the string at an offset names; None outside of strings."""
+        """Return the meaning of the string at an offset, or None outside strings."""
         found = self.python.string_at(offset)
         return None if found is None else self._place(*found)
 
@@ -108,6 +129,9 @@ class PythonLaunchText:
             name = self.paths.text_of(group.argument("name", 0)) or ""
             choices = self._choices(group) or likely_values(None, name, self.document.text)
             return _Place("choice", text, base=self.paths.before(text, item), choices=choices)
+        of_node = self._of_node(text, item)
+        if of_node is not None:
+            return of_node
         included = self._included_arguments(text, item)
         if included is not None:
             return included
@@ -116,8 +140,60 @@ class PythonLaunchText:
             return _Place("argument", text, arguments=own)
         return _Place("path", text, base=self.paths.before(text, item))
 
+    def _of_node(self, text: Text, item: Item) -> _Place | None:
+        """Return the meaning of a name in a remapping or in the parameters of a node, or None."""
+        group, outer = item.group, item.group.parent
+        if outer is None or group.callee or not item.parts or item.parts[0] is not text:
+            return None
+        if group.opening == "(" and _keyword_around(outer, _REMAPPINGS) and len(group.items) <= _PAIR:
+            pairs = [each.parts[0] for each in outer.group.items if each is not outer and each.parts]
+            firsts = (pair.items[0].parts[:1] for pair in pairs if isinstance(pair, Group) and pair.items)
+            given = frozenset(part.value for parts in firsts for part in parts if isinstance(part, Text))
+            programs = self._programs(outer, "remappings")
+            first = group.items[0].parts[0] if group.items[0].parts else None
+            if item is not group.items[0]:  # the new name
+                old = first.value if isinstance(first, Text) else ""
+                return _Place("topic", text, choices=_new_names(old), programs=programs)
+            return _Place("topic", text, programs=programs, given=given)
+        if group.opening == "{" and _keyword_around(outer, _PARAMETERS):
+            names = (each.parts[0] for each in group.items if each is not item and each.parts)
+            given = frozenset(part.value for part in names if isinstance(part, Text))
+            return _Place("parameter", text, programs=self._programs(outer, "parameters"), given=given)
+        return None
+
+    def _programs(self, item: Item, keyword: str) -> tuple[NodeProgram, ...]:
+        """Return the programs of the nodes that use a list of remappings or parameters."""
+        bound = item
+        around: Item | None = item
+        while around is not None:
+            if around.keyword == keyword and around.group.callee:
+                return (self._program(around.group),)
+            bound, around = around, around.group.parent
+        names = {bound.keyword, *(part.value for part in bound.parts[:1] if isinstance(part, Name))}
+        users = [call for call in self.python.calls_of(*_ACTIONS) if _names_in(call.argument(keyword)) & names]
+        programs = map(self._program, users or self.python.calls_of(*_ACTIONS))
+        return tuple(dict.fromkeys(program for program in programs if any(program)))
+
+    def _program(self, call: Group) -> NodeProgram:
+        package, executable = (
+            next((each for each in call.items if each.keyword in keywords), None)
+            for keywords in (_PACKAGE_KEYWORDS, _PROGRAM_KEYWORDS)
+        )
+        return NodeProgram(self.paths.text_of(package) or "", self.paths.text_of(executable) or "")
+
+    def parameters(self, place: _Place) -> list[ParameterInfo]:
+        """Return the possible parameters of the nodes at a place."""
+        found: dict[str, ParameterInfo] = {}
+        for program in place.programs:
+            names = (node_name(*program), program.executable)
+            known = next((each for name in names if (each := node_parameters(name))), ())
+            for parameter in known or parameters_in_sources(self.document, program):
+                found.setdefault(parameter.name, parameter)
+        found.setdefault("use_sim_time", ParameterInfo("use_sim_time", "bool", False))
+        return list(found.values())
+
     def used_names(self, apart: Text) -> list[str]:
-        """Return the names of configurations that the file uses but does not declare, as its caller declares them."""
+        """Return the names of configurations that the file uses but does not declare."""
         calls = self.python.calls_of(*CONFIGURATIONS)
         parts = (part for call in calls for item in call.items[:1] for part in item.parts[:1])
         names = dict.fromkeys(part.value for part in parts if isinstance(part, Text) and part is not apart)
@@ -131,7 +207,7 @@ class PythonLaunchText:
         return tuple(each.value for item in inner for each in item.parts[:1] if isinstance(each, Text))
 
     def _included_arguments(self, text: Text, item: Item) -> _Place | None:
-        """Return the place of a key or value in the launch arguments of an included file."""
+        """Return the meaning of a key or value in the launch arguments of an include, or None."""
         include = _include_around(item)
         if include is None:
             return None
@@ -170,11 +246,35 @@ class PythonLaunchText:
                 yield argument
 
     def path_until(self, place: _Place, end: int) -> str | None:
-        """Return the path up to the slash behind an offset in its last string, or None if it is not known."""
+        """Return the path up to the first slash after an offset in its last string."""
         base = "" if place.base is None else place.base.text
         rest = place.text.value[end - place.text.start :].partition("/")[0]
         written = place.text.value[: end - place.text.start] + rest
         return base.rstrip("/") + "/" + written.lstrip("/") if base.endswith("/") else base + written
+
+
+def _keyword_around(item: Item, wanted: re.Pattern[str]) -> bool:
+    """Return whether an item is in a list for an argument or variable with a matching name."""
+    around: Item | None = item
+    for _ in range(_DEEPEST_LIST):
+        if around is None:
+            return False
+        words = [around.keyword] + [part.value for part in around.parts[:1] if isinstance(part, Name)]
+        if any(wanted.search(word) for word in words):
+            return True
+        around = around.group.parent if not around.group.callee else None
+    return False
+
+
+def _names_in(item: Item | None) -> set[str]:
+    return {part.value for part in item.parts if isinstance(part, Name)} if item is not None else set()
+
+
+def _new_names(old: str) -> tuple[str, ...]:
+    """Return the other forms of a name: relative, absolute and without namespaces."""
+    name = plain_name(old)
+    forms = dict.fromkeys((name, f"/{name}", name.rpartition("/")[2])) if name else ()
+    return tuple(form for form in forms if form != old)
 
 
 def _include_around(item: Item) -> Group | None:
@@ -213,6 +313,13 @@ def _complete(document: Document, offset: int) -> Iterator[Completion]:
         if place.kind == "configuration":
             for name in launch.used_names(place.text):
                 yield Completion(name, ItemKind.NAME, start)
+    elif place.kind == "parameter":
+        for parameter in launch.parameters(place):
+            if parameter.name not in place.given and "*" not in parameter.name:
+                detail = f"{parameter.type} {parameter.written_default}".strip()
+                yield Completion(parameter.name, ItemKind.NAME, start, detail, parameter.description)
+    elif place.kind == "topic" and not place.choices:
+        yield from offer_topics(document, place.programs, document.text[start:offset], start, place.given)
     else:
         yield from offer_values(place.choices, start)
         yield from _offer_path(launch, place, offset)
@@ -255,6 +362,11 @@ def _explanation(launch: PythonLaunchText, place: _Place, offset: int) -> str | 
         return explain_program(launch.document, place.package, value)
     if place.kind in ("configuration", "argument"):
         return "\n\n".join(argument.described() for argument in place.arguments if argument.name == value)
+    if place.kind == "topic":
+        return explain_topic(launch.document, place.programs, value)
+    if place.kind == "parameter":
+        parameter = next((each for each in launch.parameters(place) if each.matches(value)), None)
+        return None if parameter is None else described(parameter, value)
     path = launch.path_until(place, offset)
     file = None if path is None else launch.file_of(path)
     if file is not None and (place.base is not None or "/" in value):
@@ -264,7 +376,7 @@ def _explanation(launch: PythonLaunchText, place: _Place, offset: int) -> str | 
 
 
 def _explain_argument(launch: PythonLaunchText, place: _Place) -> str | None:
-    """Explain the argument that a string is the value of: of an included file, or of a class of launch."""
+    """Explain the argument of an included file or launch class that has a string as its value."""
     if place.kind == "choice" and place.arguments:
         return place.arguments[0].described()
     found = launch.python.string_at(place.text.start)
@@ -275,7 +387,7 @@ def _explain_argument(launch: PythonLaunchText, place: _Place) -> str | None:
 
 
 def _keywords(launch: PythonLaunchText, offset: int) -> Iterator[Completion]:
-    """Yield the arguments of the call around an offset that are not given yet."""
+    """Yield the arguments that the call around an offset does not have yet."""
     text = launch.document.text
     typed = _WORD_BEFORE.search(text, text.rfind("\n", 0, offset) + 1, offset)
     call = launch.python.call_at(offset)
@@ -293,13 +405,13 @@ def _keywords(launch: PythonLaunchText, offset: int) -> Iterator[Completion]:
 
 
 def _group_around(item: Item, offset: int) -> Group | None:
-    """Return the brackets directly in an item that contain an offset, or None if there are none."""
+    """Return the brackets directly inside an item that contain an offset, or None."""
     groups = (part for part in item.parts if isinstance(part, Group))
     return next((group for group in groups if group.start < offset < group.end), None)
 
 
 def _explain_name(launch: PythonLaunchText, offset: int) -> Explanation | None:
-    """Explain the class, argument or path in a variable at an offset."""
+    """Explain the class or argument at an offset, or the variable that contains a path."""
     found = name_at(launch.document.text, offset)
     if found is None:
         return None
@@ -327,6 +439,8 @@ def _define(document: Document, offset: int) -> Iterator[Target]:
         yield from target_of_program(document, place.package, value)
     elif place.kind == "component":
         yield from target_of_component(document, place.package, value)
+    elif place.kind == "topic":
+        yield from targets_of_topic(document, place.programs, value)
     elif place.kind in ("configuration", "argument"):
         for argument in place.arguments:
             if argument.name == value:
@@ -348,7 +462,7 @@ def _links(document: Document) -> Iterator[FileReference]:
 
 
 def _continues(item: Item) -> bool:
-    """Return whether an item of a joined path is followed by another one."""
+    """Return whether an item is a part of a joined path, but not the last."""
     return item.group.function in JOINS and item is not item.group.items[-1]
 
 
@@ -376,5 +490,5 @@ def _label(launch: PythonLaunchText, call: Group) -> str:
     return f"{call.function} {next(filter(None, names), '')}".strip()
 
 
-LAUNCH_PYTHON = Format(is_python_launch_file, _complete, _explain, _define, _links, _symbols)
+LAUNCH_PYTHON = Format(is_python_launch_file, _complete, _explain, _define, _links, _symbols, prepare=load_classes)
 """Launch files in Python."""

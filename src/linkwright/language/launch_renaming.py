@@ -1,8 +1,8 @@
 """Renaming of launch arguments, in the launch files that share them through includes.
 
-A launch configuration is visible in included files, and what an included file sets is visible behind the include. So an
-argument means the same in two files if one includes the other without passing the argument. A passed argument is a name
-of the included file: its key changes with the file, and its value stays.
+A launch configuration is visible in included files, and a configuration that an included file sets is visible after the
+include. So a name means the same argument in two files if one includes the other without passing the argument. A passed
+argument belongs to the included file: its key changes with that file, and its value stays.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ class LaunchRenaming:
 
     Attributes:
         edits: the edits.
-        unchanged: strings with the name that may mean the argument; the edits leave them unchanged.
+        unchanged: strings with the name that may mean the argument, and stay unchanged.
         notes: includes that cannot be followed.
     """
 
@@ -39,7 +39,7 @@ class LaunchRenaming:
 
 
 def launch_name_at(document: Document, offset: int) -> tuple[LaunchName, Path] | None:
-    """Return the launch argument at an offset, and the file that it belongs to; None if there is none."""
+    """Return the launch argument at an offset and the file that it belongs to, or None."""
     found = launch_names(document)
     for name in found.names:
         if name.start <= offset <= name.end:
@@ -54,7 +54,7 @@ def launch_name_at(document: Document, offset: int) -> tuple[LaunchName, Path] |
 def rename_launch_argument(
     project: Workspace, texts: Mapping[Path, str], owner: Path, old: str, new: str
 ) -> LaunchRenaming:
-    """Return the edits with which a launch argument has a new name.
+    """Return the edits that rename a launch argument.
 
     Args:
         project: the workspace.
@@ -102,9 +102,7 @@ class _Search:
                     self._edit(key)
                 elif not include.is_known:
                     self._result.notes.append(
-                        phrase(
-                            "'{file}' passes arguments that are computed to '{other}'", file=other.name, other=file.name
-                        )
+                        phrase("'{file}' passes computed arguments to '{other}'", file=other.name, other=file.name)
                     )
                 elif self._mentions_above(other, includers, {file}):
                     pending.append(other)
@@ -113,7 +111,7 @@ class _Search:
             for name in names.names:
                 if name.name == self._new:
                     raise UnprovedError(
-                        phrase("{file} uses '{name}' already", file=file.name, name=self._new), self._span(name)
+                        phrase("'{file}' already uses '{name}'", file=file.name, name=self._new), self._span(name)
                     )
                 if name.name == self._old:
                     self._edit(name)
@@ -138,7 +136,7 @@ class _Search:
         return any(name.name == self._old for name in self._names(file).names)
 
     def _mentions_below(self, file: Path, seen: set[Path]) -> bool:
-        """Return whether a file or one that it includes mentions the argument without having got it."""
+        """Return whether a file, or a file that shares its arguments, mentions the argument."""
         if file in seen:
             return False
         seen.add(file)
@@ -150,7 +148,7 @@ class _Search:
     def _mentions_above(
         self, file: Path, includers: Mapping[Path, list[tuple[Path, LaunchInclude]]], seen: set[Path]
     ) -> bool:
-        """Return whether a file, one beside the present one or one that includes it shares the argument."""
+        """Return whether a file, one of its includes or one of its includers has the argument."""
         if file in seen:
             return False
         seen.add(file)

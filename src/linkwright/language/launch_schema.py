@@ -1,4 +1,4 @@
-"""The elements of launch files in XML, as the actions of launch and launch_ros (ROS 2) read them."""
+"""The elements of XML launch files, as launch and launch_ros (ROS 2) read them."""
 
 from __future__ import annotations
 
@@ -241,6 +241,7 @@ _PLAIN = (
         _action(f"log_{level}", f"writes a line to the log at level {level}", _required("message", _TEXT, "the line"))
         for level in ("info", "debug", "warning", "error")
     ),
+    _action("ready_to_test", "signals to launch_testing that tests may start"),
     _action("shutdown", "ends the launch", _one("reason", _TEXT, "the reason for the log", "no reason given")),
     _action(
         "set_ros_log_dir",
@@ -285,11 +286,11 @@ _PLAIN = (
     ),
 )
 _DEPTH = 6
-"""How deep elements with actions are nested in the table; deeper elements have no rules."""
+"""The depth to which actions are nested in the table. Deeper elements have no rules."""
 
 
 def _actions() -> tuple[ElementRule, ...]:
-    """Return the rules of all actions, where those that contain actions contain the same ones again."""
+    """Return the rules of all actions, with nested actions up to a depth of `_DEPTH`."""
     inner = _PLAIN
     for _ in range(_DEPTH):
         inner = (*_PLAIN, *_containers(inner))
@@ -349,5 +350,8 @@ _CHOICES = {
 
 
 def choices_of(rule: AttributeRule) -> tuple[str, ...]:
-    """Return the fixed values of an attribute of a launch file, the usual ones first; empty if it has any value."""
+    """Return the allowed values of a launch attribute, the usual ones first.
+
+    Returns an empty tuple if any value is allowed.
+    """
     return _TRUTHS if rule.type is _TRUTH else _CHOICES.get(rule.name, ())

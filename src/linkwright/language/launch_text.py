@@ -1,4 +1,4 @@
-"""Texts with ``$(...)`` of launch files in XML and YAML: the substitution at a cursor, and paths that they lead to."""
+"""Texts with substitutions ``$(...)`` in launch files in XML and YAML."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ class Substitution:
     """A ``$(...)`` that is not closed before the cursor.
 
     Attributes:
-        command: the word behind the parenthesis, as far as it is typed.
-        arguments: the typed arguments, the last one up to the cursor; empty while the command is typed.
+        command: the word after the parenthesis, up to the cursor.
+        arguments: the arguments, the last one up to the cursor, or empty while the command is typed.
         start: the offset of the command in the text.
     """
 
@@ -54,18 +54,18 @@ def open_substitution(typed: str) -> Substitution | None:
 
 
 def substitution_around(text: str, offset: int) -> re.Match[str] | None:
-    """Return the innermost closed ``$(...)`` around an offset: its command, and its arguments or None."""
+    """Return the innermost closed ``$(...)`` around an offset: its command and arguments."""
     return next((found for found in _WHOLE.finditer(text) if found.start() <= offset <= found.end()), None)
 
 
 def evaluated(text: str, file: Path, finder: PackageFinder, configurations: Mapping[str, str | None]) -> str | None:
-    """Return a text with its substitutions replaced; None if one of them is not known.
+    """Evaluate the substitutions in a text, or return None if one is unknown.
 
     Args:
         text: the text.
         file: the launch file.
         finder: finds packages.
-        configurations: name -> value of ``$(var NAME)``, which may contain substitutions.
+        configurations: the values of ``$(var NAME)`` by name, which may contain substitutions.
     """
 
     def value(found: re.Match[str]) -> str:
@@ -89,13 +89,13 @@ def evaluated(text: str, file: Path, finder: PackageFinder, configurations: Mapp
 
 
 def path_words(text: str) -> Iterator[tuple[int, int]]:
-    """Yield the start and end of each word of a text; a ``$(...)`` is part of a word with all its arguments."""
+    """Yield the start and end of each word of a text, in which a ``$(...)`` is not split."""
     for found in _WORD.finditer(text):
         yield found.span()
 
 
 def typed_word(typed: str) -> str:
-    """Return the word that ends at the end of a text whose substitutions are all closed."""
+    """Return the word at the end of a text without open substitutions, or an empty string."""
     for start, end in path_words(typed):
         if end == len(typed):
             return typed[start:]

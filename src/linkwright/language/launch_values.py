@@ -1,4 +1,4 @@
-"""Values in launch files in XML and YAML: packages, executables, paths, substitutions and arguments."""
+"""Completion, hover and definitions for attribute values in XML and YAML launch files."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from functools import cached_property
 from pathlib import Path
 
 from linkwright.language.completion import Completion, ItemKind
+from linkwright.language.definitions import NameKind, definitions_in
 from linkwright.language.format import Document, Target
 from linkwright.language.grammar import rule_at
 from linkwright.language.hover import Explanation
@@ -23,6 +24,14 @@ from linkwright.language.launch_text import (
     typed_word,
 )
 from linkwright.language.links import FileReference
+from linkwright.language.node_topics import (
+    NodeProgram,
+    explain_topic,
+    node_name,
+    offer_topics,
+    plain_name,
+    targets_of_topic,
+)
 from linkwright.language.offers import (
     explain_file,
     explain_package,
@@ -37,7 +46,8 @@ from linkwright.language.offers import (
     target_of_package,
     target_of_program,
 )
-from linkwright.language.parameter_catalogue import node_parameters
+from linkwright.language.parameter_catalogue import ParameterInfo, node_parameters
+from linkwright.language.source_parameters import parameters_in_sources
 from linkwright.packages.share_layout import source_of
 from linkwright.schema import describe_attribute
 
@@ -47,22 +57,23 @@ _USE = re.compile(r"\$\((?:var|arg)\s+([\w./-]+)")
 _PATHS = frozenset({"file", "from", "filename", "world_sdf_file", "config_file", "new_log_dir", "cwd"})
 _INTO_ARGUMENTS = frozenset({"arg", "let"})
 _WITH_VARIABLES = frozenset({"value", "default", "args", "cmd", "if", "unless", "namespace", "ros_args"})
+_DESCRIPTIONS = (".xacro", ".urdf", ".sdf")
 _BEGINNINGS = ("$(find-pkg-share ", "$(dirname)/")
 
 
 @dataclass(frozen=True, slots=True)
 class LaunchValue:
-    """A value in a launch file, with the element that has it.
+    """An attribute value in a launch file, with its element.
 
     Attributes:
-        tags: the names of the elements around it, the last of which has the value.
+        tags: the names of the enclosing elements, from the root to the element of the value.
         name: the name of the attribute.
         text: the whole value.
         start: the offset of the value.
-        offset: the offset of the place in it.
+        offset: the offset of the cursor.
         given: the attributes of the element.
-        parent: the attributes of the element around the element.
-        siblings: the names of the other elements with the same tag in that one.
+        parent: the attributes of the parent element.
+        siblings: the names of the other children of the parent or, for remappings, the names that they replace.
     """
 
     tags: tuple[str, ...]
@@ -76,7 +87,7 @@ class LaunchValue:
 
     @property
     def typed(self) -> str:
-        """The part of the value before the place."""
+        """The part of the value before the cursor."""
         return self.text[: max(0, self.offset - self.start)]
 
     @property
@@ -87,7 +98,7 @@ class LaunchValue:
 
 @dataclass
 class LaunchText:
-    """A launch file in XML or YAML, with what it declares."""
+    """A launch file in XML or YAML, with the arguments that it declares."""
 
     document: Document
     offered: set[str] = field(default_factory=set)
@@ -99,21 +110,21 @@ class LaunchText:
 
     @cached_property
     def configurations(self) -> Mapping[str, str | None]:
-        """The values of ``$(var NAME)`` as far as they are known."""
+        """The default of each declared argument by name, for ``$(var NAME)``, or None."""
         return {argument.name: argument.default for argument in self.arguments}
 
     def used_names(self, apart: int) -> list[str]:
-        """Return the names in ``$(var NAME)`` that the file does not declare, except the one at an offset."""
+        """Return the names in ``$(var NAME)`` that are not declared, except at an offset."""
         found = (use for use in _USE.finditer(self.document.text) if use.start(1) != apart)
         return [name for name in dict.fromkeys(use[1] for use in found) if name not in self.configurations]
 
     def path_of(self, written: str) -> Path | None:
-        """Return the path of a text, relative to the folder of the file; None if it is not known."""
+        """Resolve a path in the launch file, or return None if it is empty or unknown."""
         text = evaluated(written, self.document.file, self.document.finder, self.configurations)
         return None if not text or "\0" in text else self.document.file.parent / text
 
     def included_arguments(self, value: LaunchValue) -> list[LaunchArgument]:
-        """Return the arguments of the file that the ``include`` around a value includes."""
+        """Return the arguments of the launch file that is included around a value."""
         written = value.parent.get("file", "")
         path = self.path_of(written) if written else None
         if path is None or not path.is_file():
@@ -126,6 +137,12 @@ class LaunchText:
         """Return the package of the element that has a value."""
         written = value.given.get("pkg", "")
         return evaluated(written, self.document.file, self.document.finder, self.configurations) if written else None
+
+    def program_of(self, value: LaunchValue) -> NodeProgram:
+        """Return the program of the node around a value."""
+        package = value.parent.get("pkg", "")
+        known = evaluated(package, self.document.file, self.document.finder, self.configurations) if package else ""
+        return NodeProgram(known or "", value.parent.get("exec", ""))
 
 
 # --- completion -----------------------------------------------------------------------------------------------
@@ -149,8 +166,28 @@ def complete_value(launch: LaunchText, value: LaunchValue) -> Iterator[Completio
             yield Completion(name, ItemKind.NAME, start)
     elif substitution.command == "exec-in-pkg" and len(substitution.arguments) > 1:
         yield from offer_packages(launch.document, start)
+    elif substitution.command == "command":
+        yield from _offer_command(launch, value)
     elif substitution.command == "find-exec":
         yield from offer_values(("xacro", "python3", "ros2"), start)
+
+
+def _offer_command(launch: LaunchText, value: LaunchValue) -> Iterator[Completion]:
+    """Yield the paths in a command, and the arguments of a description in it."""
+    written = value.typed.rpartition("$(command")[2].strip()
+    words = [written[start:end] for start, end in path_words(written)]
+    word = typed_word(value.typed)
+    for name in (each for each in words if each != word and each.endswith(_DESCRIPTIONS)):
+        path = launch.path_of(name)
+        if path is not None and path.is_file() and ":=" not in word:
+            path = Path(source_of(str(path)))
+            for definition in definitions_in(launch.document.other(path), path):
+                label = f"{definition.name}:="
+                is_given = any(each.startswith(label) for each in words)
+                if definition.kind is NameKind.ARGUMENT and not is_given:
+                    yield Completion(label, ItemKind.NAME, value.offset - len(word), definition.detail, path.name)
+    if "/" in word:
+        yield from _offer_path(launch, word, value.offset, launch_files=False)
 
 
 def _offer_arguments(arguments: Iterable[LaunchArgument], start: int) -> Iterator[Completion]:
@@ -163,6 +200,9 @@ def _values(launch: LaunchText, value: LaunchValue) -> Iterator[Completion]:
     document, offset, name, start = launch.document, value.offset, value.name, value.start
     rule = rule_at(LAUNCH, value.tags)
     attribute = None if rule is None else rule.attribute_rules.get(name)
+    if value.tags[-1] == "remap":
+        yield from _new_and_old_names(launch, value)
+        return
     if name == "pkg":
         yield from offer_packages(document, start)
     elif name == "exec":
@@ -182,12 +222,12 @@ def _values(launch: LaunchText, value: LaunchValue) -> Iterator[Completion]:
             yield from _offer_variables(launch, start, _named(launch.arguments, value.given.get("name", "")))
         yield from offer_values(_choices(launch, value), start)
     elif value.tags[-1] in ("param", "set_parameter") and name == "name":
-        yield from _offer_parameters(value)
+        yield from _offer_parameters(launch, value)
     yield from _offer_texts(launch, value, offset)
 
 
 def _offer_texts(launch: LaunchText, value: LaunchValue, offset: int) -> Iterator[Completion]:
-    """Yield paths that continue the word at a place, and variables."""
+    """Yield the paths that complete the word before the cursor, and ``$(var NAME)``."""
     word, name = typed_word(value.typed), value.name
     if name in _PATHS:
         yield from offer_values((begin for begin in _BEGINNINGS if begin.startswith(word)), offset - len(word))
@@ -198,17 +238,36 @@ def _offer_texts(launch: LaunchText, value: LaunchValue, offset: int) -> Iterato
 
 
 def _offer_variables(launch: LaunchText, start: int, arguments: Iterable[LaunchArgument]) -> Iterator[Completion]:
-    """Yield arguments as substitutions, those that an earlier call has yielded left out."""
+    """Yield ``$(var NAME)`` for the arguments that were not offered before."""
     for argument in arguments:
         if argument.name not in launch.offered:
             launch.offered.add(argument.name)
             yield Completion(f"$(var {argument.name})", ItemKind.NAME, start, argument.default or "")
 
 
-def _offer_parameters(value: LaunchValue) -> Iterator[Completion]:
-    """Yield the parameters of the node around a value, as far as they are known."""
-    names = (value.parent.get("exec", ""), value.parent.get("name", ""))
+def _new_and_old_names(launch: LaunchText, value: LaunchValue) -> Iterator[Completion]:
+    """Yield the names for a remapping: topics of the node, or other forms of the old name."""
+    if value.name == "from":
+        programs = [launch.program_of(value)]
+        yield from offer_topics(launch.document, programs, value.typed, value.start, value.siblings)
+        return
+    name = plain_name(value.given.get("from", ""))
+    for label in dict.fromkeys((name, f"/{name}", name.rpartition("/")[2])) if name else ():
+        if label != value.given.get("from"):
+            yield Completion(label, ItemKind.NAME, value.start)
+
+
+def _known_parameters(launch: LaunchText, value: LaunchValue) -> tuple[ParameterInfo, ...]:
+    """Return the known parameters of the node around a value."""
+    program = launch.program_of(value)
+    names = (node_name(*program), program.executable, value.parent.get("name", ""))
     known = next((found for name in names if (found := node_parameters(name))), ())
+    return known or parameters_in_sources(launch.document, program)
+
+
+def _offer_parameters(launch: LaunchText, value: LaunchValue) -> Iterator[Completion]:
+    """Yield the parameters of the node around a value."""
+    known = _known_parameters(launch, value)
     for parameter in known:
         if parameter.name not in value.siblings and "*" not in parameter.name:
             detail = f"{parameter.type} {parameter.written_default}".strip()
@@ -244,15 +303,16 @@ def _offer_path(launch: LaunchText, word: str, offset: int, *, launch_files: boo
 
 @dataclass(frozen=True, slots=True)
 class _Place:
-    """The meaning of a place in a launch file.
+    """The object that a position in a launch file refers to.
 
     Attributes:
-        kind: "package", "program", "component", "argument", "file" or "substitution".
+        kind: "package", "program", "component", "argument", "file", "topic" or "substitution".
         name: the name or path.
         start: the offset of the name.
-        end: the offset behind it.
+        end: the offset after the name.
         package: the package of a program or component.
-        arguments: the arguments with the name.
+        arguments: the launch arguments with this name.
+        program: the program of the node that has a topic.
     """
 
     kind: str
@@ -261,6 +321,7 @@ class _Place:
     end: int
     package: str | None = None
     arguments: tuple[LaunchArgument, ...] = ()
+    program: NodeProgram | None = None
 
 
 def _place_at(launch: LaunchText, value: LaunchValue) -> _Place | None:
@@ -294,6 +355,8 @@ def _named(arguments: Iterable[LaunchArgument], name: str) -> tuple[LaunchArgume
 def _of_attribute(launch: LaunchText, value: LaunchValue) -> _Place | None:
     name, begin = value.name, value.start
     whole = begin, begin + len(value.text)
+    if value.tags[-1] == "remap" and name in ("from", "to"):
+        return _Place("topic", value.given.get("from", ""), *whole, program=launch.program_of(value))
     kinds = {"pkg": "package", "exec": "program", "plugin": "component"}
     if name in kinds:
         return _Place(kinds[name], value.text, *whole, package=launch.package_of(value))
@@ -310,15 +373,14 @@ def _of_attribute(launch: LaunchText, value: LaunchValue) -> _Place | None:
 
 
 def explain_value(launch: LaunchText, value: LaunchValue) -> Explanation | None:
-    """Explain what is at a place in a value, or else the attribute; None if there is nothing to say."""
+    """Explain the object at the cursor in a value, or else the attribute, or return None."""
     place = _place_at(launch, value)
     text = None if place is None else _explanation(launch.document, place)
     if place is not None and text:
         return Explanation(text, place.start, place.end)
     end = value.start + len(value.text)
     if value.tags[-1] in ("param", "set_parameter") and value.name in ("name", "value"):
-        names = (value.parent.get("exec", ""), value.parent.get("name", ""))
-        known = (parameter for name in names for parameter in node_parameters(name))
+        known = _known_parameters(launch, value)
         parameter = next((each for each in known if each.matches(value.given.get("name", ""))), None)
         if parameter is not None:
             default = f" = `{parameter.written_default}`" if parameter.written_default else ""
@@ -338,13 +400,15 @@ def _explanation(document: Document, place: _Place) -> str | None:
         return "\n\n".join(argument.described() for argument in place.arguments)
     if place.kind == "file":
         return explain_file(Path(place.name))
+    if place.kind == "topic" and place.program is not None:
+        return explain_topic(document, [place.program], place.name)
     if place.kind == "substitution":
         return f"**$({place.name} ...)**: {substitution_names()[place.name]}"
     return None
 
 
 def define_value(launch: LaunchText, value: LaunchValue) -> Iterator[Target]:
-    """Yield where the name at a place in a value is defined."""
+    """Yield the definitions of the object at the cursor in a value."""
     document, place = launch.document, _place_at(launch, value)
     if place is None:
         return
@@ -356,6 +420,8 @@ def define_value(launch: LaunchText, value: LaunchValue) -> Iterator[Target]:
         yield from target_of_component(document, place.package, place.name)
     elif place.kind == "file":
         yield from target_of_file(Path(place.name))
+    elif place.kind == "topic" and place.program is not None:
+        yield from targets_of_topic(document, [place.program], place.name)
     for argument in place.arguments:
         yield Target(argument.file, argument.start, argument.end)
 

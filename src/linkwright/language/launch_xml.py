@@ -1,4 +1,4 @@
-"""Launch files in XML: the elements of their table, and the values of attributes."""
+"""Editor functions for launch files in XML."""
 
 from __future__ import annotations
 
@@ -8,7 +8,8 @@ from linkwright.language.completion import Completion
 from linkwright.language.cursor import Spot, cursor_at
 from linkwright.language.format import Document, Format, Symbol, SymbolKind, Target
 from linkwright.language.grammar import is_launch_file
-from linkwright.language.hover import Explanation, explain_at
+from linkwright.language.hover import Explanation
+from linkwright.language.launch_text import substitution_names
 from linkwright.language.launch_values import (
     LaunchText,
     LaunchValue,
@@ -20,6 +21,7 @@ from linkwright.language.launch_values import (
 from linkwright.language.links import FileReference
 from linkwright.language.outline import Outline, OutlineElement
 from linkwright.language.xml_completion import complete
+from linkwright.language.xml_hover import explain_at
 from linkwright.xmltree.tokens import Kind, Token, tokens
 
 
@@ -35,7 +37,8 @@ def _value_at(text: str, offset: int) -> LaunchValue | None:
     token = cursor.token
     parent = _parent_of(text, token)
     siblings = [] if parent is None else parent.children
-    others = (_given(child.tag).get("name", "") for child in siblings if child.tag.start != token.start)
+    key = "from" if token.name == "remap" else "name"
+    others = (_given(child.tag).get(key, "") for child in siblings if child.tag.start != token.start)
     return LaunchValue(
         cursor.tags,
         cursor.attribute.name,
@@ -65,7 +68,7 @@ def _complete(document: Document, offset: int) -> Iterator[Completion]:
 def _explain(document: Document, offset: int) -> Explanation | None:
     value = _value_at(document.text, offset)
     found = None if value is None else explain_value(LaunchText(document), value)
-    return found or explain_at(document.text, offset, document.file, ())
+    return found or explain_at(document, offset)
 
 
 def _define(document: Document, offset: int) -> Iterator[Target]:
@@ -96,7 +99,7 @@ _KINDS = {
     **dict.fromkeys(("node", "lifecycle_node", "composable_node", "node_container"), SymbolKind.NODE),
 }
 _DEEPEST = 50
-"""Elements that are nested deeper are left out of the symbols."""
+"""The maximum depth of symbols."""
 _NAMING = ("name", "exec", "plugin", "file", "from", "namespace", "target", "cmd")
 
 
@@ -113,5 +116,5 @@ def _symbol(element: OutlineElement, depth: int) -> Symbol:
     return Symbol(name, kind, element.tag.start, element.end, children, given.get("pkg", ""))
 
 
-LAUNCH_XML = Format(is_launch_file, _complete, _explain, _define, _links, _symbols)
+LAUNCH_XML = Format(is_launch_file, _complete, _explain, _define, _links, _symbols, prepare=substitution_names)
 """Launch files in XML."""

@@ -1,4 +1,4 @@
-"""Launch files in YAML: the keys of the same table as in XML, and their values."""
+"""Editor functions for launch files in YAML, whose keys are the elements of the XML format."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from linkwright.language.format import Document, Format, Symbol, SymbolKind, Tar
 from linkwright.language.grammar import rule_at
 from linkwright.language.hover import Explanation
 from linkwright.language.launch_schema import LAUNCH
+from linkwright.language.launch_text import substitution_names
 from linkwright.language.launch_values import (
     LaunchText,
     LaunchValue,
@@ -43,7 +44,7 @@ def _given(entry: YamlEntry | None) -> Mapping[str, str]:
 
 
 def _element_around(entry: YamlEntry) -> YamlEntry | None:
-    """Return the entry of the element that contains the element of an entry, or None for the outermost."""
+    """Return the element around the element of an entry, or None for the outermost."""
     above = entry.parent
     while above is not None and (not above.key or above.key in (_CHILDREN, entry.key)):
         above = above.parent
@@ -51,7 +52,7 @@ def _element_around(entry: YamlEntry) -> YamlEntry | None:
 
 
 def _value_of(cursor: YamlCursor) -> LaunchValue | None:
-    """Return the value at a place, or None if the place is in no value."""
+    """Return the value at a cursor, or None outside values."""
     entry = cursor.within
     element = entry.parent
     if cursor.place is not Place.VALUE or not entry.key or element is None or _is_new_item(cursor):
@@ -62,7 +63,8 @@ def _value_of(cursor: YamlCursor) -> LaunchValue | None:
     text = entry.scalar if entry.scalar.startswith(cursor.typed) and not cursor.in_list else cursor.typed
     owner = element.parent if element.is_item and element.parent is not None else element
     others = owner.children if element.is_item else []
-    names = (name.scalar for item in others if item is not element and (name := item.child("name")) is not None)
+    key = "from" if tags[-2] == "remap" else "name"
+    names = (name.scalar for item in others if item is not element and (name := item.child(key)) is not None)
     parent = _given(_element_around(owner))
     return LaunchValue(
         tags[:-1], tags[-1], text, cursor.start, cursor.offset, _given(element), parent, frozenset(names)
@@ -79,7 +81,7 @@ def _complete(document: Document, offset: int) -> Iterator[Completion]:
 
 
 def _is_new_item(cursor: YamlCursor) -> bool:
-    """Return whether the first key of an item of a list of elements is typed."""
+    """Return whether the cursor is at the first key of a new item in a list of elements."""
     return cursor.place is Place.VALUE and cursor.in_list and rule_at(LAUNCH, _tags(cursor.within)) is not None
 
 
@@ -166,5 +168,5 @@ _KINDS = {
     "executable": SymbolKind.FUNCTION,
 }
 
-LAUNCH_YAML = Format(is_yaml_launch_file, _complete, _explain, _define, _links, _symbols)
+LAUNCH_YAML = Format(is_yaml_launch_file, _complete, _explain, _define, _links, _symbols, prepare=substitution_names)
 """Launch files in YAML."""

@@ -1,4 +1,4 @@
-"""The files to which an XML text refers: includes, meshes, textures, and paths in other attributes and elements."""
+"""The files that an XML text refers to, such as includes, meshes and textures."""
 
 from __future__ import annotations
 
@@ -36,13 +36,13 @@ class FileReference(NamedTuple):
 def file_references(
     text: str, file: Path, finder: PackageFinder, values: Iterable[ValuedText] = ()
 ) -> Iterator[FileReference]:
-    """Yield the references of a text to files that exist, in the order of the text.
+    """Yield the references to existing files and folders in a text, in text order.
 
     Args:
         text: the text, which may be incomplete.
-        file: its file, at which relative paths start.
+        file: the file of the text, in whose folder relative paths begin.
         finder: finds packages.
-        values: the values of the expressions in the text; a reference with expressions needs a single value.
+        values: the values of the expressions in the text. A reference with expressions needs a single value.
     """
     known = {(value.start, value.end): value.values() for value in values}
     tag = ""
@@ -83,7 +83,7 @@ def _found(
 
 
 def _target(address: str, file: Path, finder: PackageFinder) -> Path | None:
-    """Return the file of an address, or None if there is none."""
+    """Return the file or folder at an address, or None if it does not exist."""
     if not address or "\n" in address or "*" in address:
         return None
     if address.startswith("model://"):

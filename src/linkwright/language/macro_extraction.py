@@ -22,12 +22,15 @@ _STEP = "  "
 
 
 def selected_elements(text: str, start: int, end: int) -> list[WrittenElement]:
-    """Return the whole sibling elements that a selection covers; empty if it covers anything else, or the root.
+    """Return the sibling elements that make up a selection.
+
+    Returns an empty list if the selection contains other text, a part of an element, the root, or a definition or
+    include of xacro.
 
     Args:
         text: the text of a file.
         start: the character offset of the selection.
-        end: the offset after it.
+        end: the offset after the selection.
     """
     chosen = text[start:end]
     start, end = start + len(chosen) - len(chosen.lstrip()), end - len(chosen) + len(chosen.rstrip())
@@ -49,7 +52,7 @@ def selected_elements(text: str, start: int, end: int) -> list[WrittenElement]:
 
 
 def _is_blank(text: str) -> bool:
-    """Return whether a text has comments and blanks alone."""
+    """Return whether a text contains only comments and white space."""
     return all(
         token.kind is Kind.COMMENT or (token.kind is Kind.TEXT and not token.text.strip()) for token in tokens(text)
     )
@@ -62,7 +65,7 @@ def _is_movable(element: WrittenElement) -> bool:
 def extract_macro(
     project: Workspace, texts: Mapping[Path, str], file: Path, text: str, siblings: Sequence[WrittenElement]
 ) -> tuple[Edit, ...]:
-    """Return the proved edits that move elements to a macro with parameters for the names that they use.
+    """Return the proved edits that move elements to a macro with parameters.
 
     Args:
         project: the workspace.
@@ -80,7 +83,7 @@ def extract_macro(
     newline, blanks = line_ending(text), indentation(text, top.start) or ""
     proof = ExpansionProof(project, texts, file)
     error: UnprovedError | None = None
-    starts = dict.fromkeys((start, start_with_comments(text, start)))  # a comment above a call is lost, so it may move
+    starts = dict.fromkeys((start, start_with_comments(text, start)))  # xacro drops comments above calls
     places = dict.fromkeys((start_with_comments(text, top.start), top.start))
     lists = _parameter_lists(project, texts, file, text, (start, end))
     for parameters, begin, place in product(lists, starts, places):
@@ -98,18 +101,18 @@ def extract_macro(
             error = error or reason
         else:
             return edits
-    raise error or UnprovedError(phrase("there is no place for its definition"))
+    raise error or UnprovedError(phrase("there is no position for the definition of '{name}'", name=name))
 
 
 def _joined(first: Edit, second: Edit) -> tuple[Edit, ...]:
-    """Return two edits as one if the second begins where the first inserts."""
+    """Return two edits, merged into one if they are adjacent."""
     if first.end == second.start:
         return (Edit(first.file, first.start, second.end, first.text + second.text),)
     return first, second
 
 
 def _macro_name(element: WrittenElement) -> str:
-    """Return a name from the literal part of the element's name, or of the names around it, and its tag."""
+    """Return a macro name made of the element's tag and the nearest name around it."""
     tag = element.name.removeprefix(PREFIX)
     for one in element.around():
         literal = re.sub(r"\$\{[^}]*\}|\$\([^)]*\)", "", one.value("name")).strip("_- ")
@@ -121,7 +124,7 @@ def _macro_name(element: WrittenElement) -> str:
 def _parameter_lists(
     project: Workspace, texts: Mapping[Path, str], file: Path, text: str, selected: tuple[int, int]
 ) -> Iterator[list[str]]:
-    """Yield lists of parameters to try: all names that the elements use, those of the macro around them, none."""
+    """Yield the lists of parameters to try: all used names, only macro parameters, none."""
     properties: set[str] = set()
     for other in project.index.related(file, texts):
         all_names = occurrences_in(project.text(other, texts) or "", other)
@@ -149,12 +152,12 @@ def _is_block_use(text: str, name: Occurrence) -> bool:
 
 
 def _is_value(text: str, name: Occurrence) -> bool:
-    """Return whether a parameter is used in an expression, and not given in a call."""
+    """Return whether a name is used in an expression, and is not an argument of a call."""
     return re.match(r"\s*=\s*[\"']", text[name.end :]) is None
 
 
 def _indented(text: str, start: int, end: int, blanks: str) -> str:
-    """Return a range of a text with another indentation of the lines that begin outside of values and comments."""
+    """Return a range of a text with new indentation, except inside values and comments."""
     old = indentation(text, start)
     body = text[start:end]
     if old is None or old == blanks:

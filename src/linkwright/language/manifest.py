@@ -1,4 +1,4 @@
-"""``package.xml``: names of packages in dependencies, build types and licences."""
+"""Editor functions for ``package.xml``: dependencies, build types and licences."""
 
 from __future__ import annotations
 
@@ -10,13 +10,14 @@ from linkwright.language.completion import Completion, ItemKind
 from linkwright.language.cursor import Cursor, Spot, cursor_at
 from linkwright.language.format import Document, Format, Symbol, SymbolKind, Target
 from linkwright.language.grammar import rule_at
-from linkwright.language.hover import Explanation, explain_at
+from linkwright.language.hover import Explanation
 from linkwright.language.links import FileReference
 from linkwright.language.manifest_schema import DEPENDING, PACKAGE
 from linkwright.language.offers import explain_package, offer_packages, offer_values, target_of_package
 from linkwright.language.outline import Outline
 from linkwright.language.programs import used_packages
 from linkwright.language.xml_completion import complete
+from linkwright.language.xml_hover import explain_at
 from linkwright.packages.creation.licenses import known_licenses
 from linkwright.packages.manifest import MANIFEST
 
@@ -41,7 +42,7 @@ _USUAL = {
         *("ros2launch", "rosidl_default_runtime", "ros_gz_sim", "ros_gz_bridge", "controller_manager"),
     ),
 }
-"""Dependencies that a tag usually has, whether or not the packages are found."""
+"""The usual dependencies of each tag, which are offered even if the packages are not found."""
 _DECLARED = re.compile(r"<(\w+)\b[^<>]*>\s*([\w.-]+)\s*</\1\s*>")
 
 
@@ -68,7 +69,7 @@ def _complete(document: Document, offset: int) -> Iterator[Completion]:
 
 
 def _single_children(text: str, offset: int) -> set[str]:
-    """Return the elements in the element around an offset that it cannot have twice."""
+    """Return the existing elements around an offset that may occur only once."""
     around = []
     for element in Outline.of(text).around(offset):
         end = element.end if element.closing is None else element.closing.start
@@ -93,7 +94,7 @@ def _texts(document: Document, tag: str, start: int) -> Iterator[Completion]:
 
 
 def _dependencies(document: Document, tag: str, start: int) -> Iterator[Completion]:
-    """Yield packages: those that launch files and descriptions use, the usual ones of the tag, and the found ones.
+    """Yield packages: first the used ones, then the usual ones of the tag, then the others.
 
     Declared packages are left out.
     """
@@ -111,7 +112,7 @@ def _dependencies(document: Document, tag: str, start: int) -> Iterator[Completi
 
 
 def _dependency_at(document: Document, offset: int) -> tuple[str, int] | None:
-    """Return the package that a dependency at an offset names, and its offset."""
+    """Return the package name in the element at an offset and its start, or None."""
     cursor: Cursor = cursor_at(document.text, offset)
     if cursor.spot is not Spot.TEXT or not cursor.tags or cursor.tags[-1] not in {*DEPENDING, "name"}:
         return None
@@ -124,7 +125,7 @@ def _dependency_at(document: Document, offset: int) -> tuple[str, int] | None:
 def _explain(document: Document, offset: int) -> Explanation | None:
     found = _dependency_at(document, offset)
     if found is None:
-        return explain_at(document.text, offset, document.file, ())
+        return explain_at(document, offset)
     text = explain_package(document, found[0])
     return Explanation(text, found[1], found[1] + len(found[0])) if text else None
 

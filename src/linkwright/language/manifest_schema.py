@@ -12,9 +12,9 @@ _VERSIONS = tuple(
     AttributeRule(f"version_{name}", ValueType("version"), meaning)
     for name, meaning in (
         ("gte", "the lowest version"),
-        ("lt", "the version above the highest"),
+        ("lt", "the exclusive upper bound of the version"),
         ("lte", "the highest version"),
-        ("gt", "the version below the lowest"),
+        ("gt", "the exclusive lower bound of the version"),
         ("eq", "the only version"),
     )
 )
@@ -45,7 +45,7 @@ _EXPORT = ElementRule(
     (
         _value("build_type", "the build system", _CONDITION, kind=ValueType("build type")),
         _value("member_of_group", "a group that the package belongs to", many=True),
-        ElementRule("architecture_independent", "marks a package that is equal on all architectures"),
+        ElementRule("architecture_independent", "marks a package that does not depend on the architecture"),
         _value("deprecated", "marks a package that should not be used, with the reason"),
         ElementRule("metapackage", "marks a package that only depends on others"),
         ElementRule(

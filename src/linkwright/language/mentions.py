@@ -1,7 +1,7 @@
-"""Where the other files of a package name links and joints: YAML, RViz configurations and launch files.
+"""Mentions of links and joints in YAML files, RViz configurations and launch files.
 
-The formats do not tell what a text means. A mention is certain only where a key, an option or the format tells that a
-link or a joint is meant.
+These formats do not define the meaning of a text. A mention is certain only where a key, an option or the format shows
+that it means a link or a joint.
 """
 
 from __future__ import annotations
@@ -20,14 +20,14 @@ from linkwright.loading.deferred import lazy_pattern
 from linkwright.xmltree.tokens import Kind, tokens
 
 FILES = (".yaml", ".yml", ".rviz", ".launch.py", ".launch.xml", ".launch", ".py")
-"""The endings of the files that may mention names."""
+"""The suffixes of the files that may mention names."""
 
 _MOST_TEXT = 1_000_000
-"""Characters; longer files are data and not configuration."""
+"""The maximum length in characters. Longer files are data, not configuration."""
 _FRAMES = lazy_pattern(r"(?i)(^|[ _/])(frame|frame_id|link|base|tip|root|ee_link|footprint|body)s?(_name)?s?$")
 _JOINTS = lazy_pattern(r"(?i)((^|[ _])(joint|wheel)(_?names?)?s?$)|(^|_)joint_names?$|^dof_names$")
 _INTERFACES = frozenset(("position", "velocity", "effort", "acceleration"))
-"""The interfaces of a joint, which stand behind its name and a slash."""
+"""The interfaces of a joint: they follow the joint's name and a slash."""
 _OF_JOINTS = frozenset(
     (
         "joint_limits",
@@ -43,7 +43,7 @@ _OF_JOINTS = frozenset(
 )
 """Keys whose content is a mapping from joints."""
 _OF_LINKS = frozenset(("Links", "Frames", "Tree"))
-"""Keys of displays of RViz whose content is a mapping from links or frames."""
+"""Keys of RViz displays whose content is a mapping from links or frames."""
 _TRANSFORM = "static_transform_publisher"
 _POSE = 6
 """The numbers of a pose, in front of the frames in the arguments of a static transform."""
@@ -52,13 +52,13 @@ _FRAME_OPTIONS = ("--frame-id", "--child-frame-id")
 
 @dataclass(frozen=True, slots=True)
 class Mention:
-    """A text that is the name of a link or joint, or that may be.
+    """A text that is, or may be, the name of a link or joint.
 
     Attributes:
         name: the text.
         file: the file.
         start: the offset of the first character.
-        kinds: what the place names, as far as it tells; empty if it does not tell.
+        kinds: the kinds of names that the context allows, or empty if they are unknown.
     """
 
     name: str
@@ -68,16 +68,16 @@ class Mention:
 
     @property
     def end(self) -> int:
-        """The offset behind the last character."""
+        """The offset after the last character."""
         return self.start + len(self.name)
 
 
 def mentions_in(text: str, file: Path, names: frozenset[str]) -> Iterator[Mention]:
-    """Yield the places in a file where one of some names is a whole value, key, string or word.
+    """Yield the mentions of some names as a whole value, key, string or word.
 
     Args:
-        text: the text of the file; a text that cannot be parsed has no mentions.
-        file: the file, whose name tells its format.
+        text: the text of the file. A text that cannot be parsed has no mentions.
+        file: the file, whose name determines its format.
         names: the names.
     """
     if len(text) > _MOST_TEXT or not any(name in text for name in names):
@@ -137,7 +137,7 @@ def _kinds_of_keys(keys: Sequence[str], *, is_key: bool) -> tuple[NameKind, ...]
 
 
 def kinds_of_key(key: str) -> tuple[NameKind, ...]:
-    """Return the kinds of names that a parameter holds, by its name; empty if the name does not tell."""
+    """Return the kinds of names that a parameter may hold, derived from its own name."""
     if _JOINTS.search(key):
         return (NameKind.JOINT,)
     return (NameKind.LINK,) if _FRAMES.search(key) else ()
@@ -163,7 +163,7 @@ def _in_python(text: str, file: Path, names: frozenset[str]) -> Iterator[Mention
 
 
 def _kinds_in_python(tree: ast.AST) -> Iterator[tuple[int, tuple[NameKind, ...]]]:
-    """Yield the identity of strings whose place tells what they name: values of parameters, frames of an option."""
+    """Yield the `id` of each string that is a parameter value or a frame option, with the kinds."""
     for node in ast.walk(tree):
         if isinstance(node, ast.Dict):
             for key, value in zip(node.keys, node.values, strict=True):
@@ -185,7 +185,10 @@ def _kinds_in_python(tree: ast.AST) -> Iterator[tuple[int, tuple[NameKind, ...]]
 
 
 def _in_sdf(text: str, file: Path, names: frozenset[str]) -> Iterator[Mention]:
-    """Yield values and texts of a model: its names are its own, but frames of sensors are often those of a robot."""
+    """Yield the mentions in a model, which are never certain.
+
+    A model has its own names, but the frames of its sensors are often frames of a robot.
+    """
     words = "|".join(map(re.escape, sorted(names, key=len, reverse=True)))
     for found in re.finditer(rf"(?<=[>\"'])({words})(?=[<\"'])", text):
         yield Mention(found[1], file, found.start(1))

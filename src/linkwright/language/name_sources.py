@@ -1,9 +1,9 @@
-"""Where the parts of a computed name are written, such as those of ``${prefix}wheel``, and edits that change it.
+"""The source locations of the parts of a computed name, and edits that change the name.
 
-A name consists of literal parts and of expressions. A new name is sought in this order: the literal parts change and
-the expressions keep their values; then the value of an expression changes where it is written: in the macro call, as
-the default of a parameter, as a property, or as the default of an argument. The edits are proposals, which are proved
-by expansions.
+A name such as ``${prefix}wheel`` consists of literal parts and expressions. The first proposals change the literal
+parts, and the expressions keep their values. The next ones change the value of an expression at its source: the macro
+call, the default of a parameter, a property, or the default of an argument. The proposals must still be proved by
+expansions.
 """
 
 from __future__ import annotations
@@ -53,11 +53,11 @@ class WrittenText:
 
 
 def written_text(element: Element, key: str) -> WrittenText | None:
-    """Return what is written for an attribute of an element of an expansion; None if it is not written in a file.
+    """Return the source of an attribute or text of an expanded element, or None.
 
     Args:
         element: the element.
-        key: the name of the attribute, or an empty text for the text in the element.
+        key: the name of the attribute, or an empty string for the text of the element.
     """
     source = element.source
     if source is None:
@@ -83,7 +83,7 @@ def _text_range(element: Element) -> tuple[int, int] | None:
 
 
 def renamed_template(old: str, new: str, value: str) -> str | None:
-    """Return the new value of a name whose written text changes; None if the expressions differ.
+    """Return the value of a name after a change of its text, or None if the expressions differ.
 
     Args:
         old: the text, such as ``${prefix}wheel``.
@@ -116,7 +116,7 @@ class NameSources:
         self._tags = {file: [*_start_tags(project.text(file, texts) or "")] for file in files}
 
     def edits(self, written: WrittenText, value: str, new: str) -> Iterator[tuple[Edit, ...]]:
-        """Yield proposals of edits with which a text has a new value, the likeliest first.
+        """Yield proposals of edits that give a text a new value, the likeliest first.
 
         Args:
             written: the text.
@@ -142,7 +142,7 @@ class NameSources:
     def _of_literals(
         self, written: WrittenText, parts: Sequence[Token], value: str, new: str
     ) -> Iterator[tuple[Edit, ...]]:
-        """Yield the edits of the literal parts with which the value changes and the expressions keep their values."""
+        """Yield the edits of the literal parts that give the new value, with equal expressions."""
         values = self._values(written, parts, value)
         if values is None:
             return
@@ -166,7 +166,7 @@ class NameSources:
     def _of_expressions(
         self, written: WrittenText, parts: Sequence[Token], value: str, new: str, depth: int
     ) -> Iterator[tuple[Edit, ...]]:
-        """Yield the edits with which one expression, or the same name several times, has another value."""
+        """Yield the edits that change the value of one expression, which may occur repeatedly."""
         values = self._values(written, parts, value)
         if values is None:
             return
@@ -189,7 +189,7 @@ class NameSources:
                     yield from self._edits(source, text, matched["new"], depth + 1)
 
     def _values(self, written: WrittenText, parts: Sequence[Token], value: str) -> list[str] | None:
-        """Return the values of the parts of a text; None if they do not give the value of the whole."""
+        """Return the values of the parts of a text, or None if they do not fit its value."""
         known = [part.text if part.kind is TokenKind.TEXT else self._value(part, written.frame, 0) for part in parts]
         pattern = "".join("(.*?)" if text is None else f"({re.escape(text)})" for text in known)
         found = re.fullmatch(pattern, value, re.DOTALL)
@@ -199,7 +199,7 @@ class NameSources:
         return None if found is None else [*found.groups()]
 
     def _value(self, part: Token, frame: Frame | None, depth: int) -> str | None:
-        """Return the value of an expression that is a name, as far as literal texts give it; otherwise None."""
+        """Return the value of a name in an expression if literal texts define it, or None."""
         source = next(self._sources(part, frame), None) if depth <= _DEEPEST else None
         if source is None:
             return None
@@ -210,7 +210,7 @@ class NameSources:
         return "".join(text for text in values if text is not None) if None not in values else None
 
     def _sources(self, part: Token, frame: Frame | None) -> Iterator[WrittenText]:
-        """Yield the texts that may give an expression its value."""
+        """Yield the texts from which an expression may get its value."""
         if part.kind is TokenKind.EXPRESSION:
             name = _NAME.fullmatch(part.text)
             if name is not None:
@@ -268,14 +268,14 @@ class NameSources:
 
 
 def _start_tags(text: str) -> Iterator[tuple[str, dict[str, tuple[str, int]]]]:
-    """Yield the start tags of macros, properties and arguments, with the values and offsets of their attributes."""
+    """Yield the start tags of macros, properties and arguments, with their attributes."""
     for token in tokens(text):
         if token.kind is Kind.START and token.name in ("xacro:macro", "xacro:property", "xacro:arg"):
             yield token.name, {one.name: (one.value or "", one.value_start) for one in token.attributes()}
 
 
 def _parts(text: str) -> Sequence[Token]:
-    """Return the literal parts and the expressions of a text; none if it is not well-formed."""
+    """Return the literal parts and expressions of a text, or an empty list if it is malformed."""
     try:
         return tokenize(text)
     except Fault:

@@ -1,7 +1,7 @@
-"""Where an XML text defines and uses names: macros with their parameters, properties, arguments, links and joints.
+"""The definitions and uses of names in an XML text, such as macros, properties and links.
 
-Nothing is expanded, so the branches of conditions and uncalled macros count, too. A property is known by
-its name alone, because scopes of xacro are dynamic; a name that is a parameter of the macro around it is that
+Nothing is expanded, so the branches of conditions and uncalled macros count, too. A property is identified by its
+name alone, because xacro's scopes are dynamic. A name that equals a parameter of an enclosing macro denotes this
 parameter.
 """
 
@@ -44,7 +44,7 @@ _REFERENCES: dict[tuple[str, str], tuple[NameKind, ...]] = {
     ("material", "name"): (NameKind.MATERIAL,),
     ("xacro:call", "macro"): (NameKind.MACRO,),
 }
-"""Element and attribute -> the kinds of names that the value may have; those of SRDF are among them."""
+"""The kinds of names that a value may refer to, by element and attribute."""
 _USERS_OF_JOINTS = frozenset({"transmission", "ros2_control", "group", "group_state"})
 """Elements in which ``<joint>`` and ``<link>`` use a name instead of defining it."""
 _OF_LINKS = lazy_pattern(r"(?i)(frame|link|body|bumper)(_?(id|name))?s?$")
@@ -57,11 +57,11 @@ class Occurrence:
 
     Attributes:
         kind: the kind of the name.
-        name: the name as written. That of a link, joint or material may contain expressions.
+        name: the name as written. The name of a link, joint or material may contain expressions.
         file: the file.
         start: the offset of the first character.
         is_definition: whether it defines the name.
-        owner: for a parameter, its macro; otherwise the macro that contains the place, or an empty string.
+        owner: for a parameter, its macro, and otherwise the enclosing macro, or an empty string.
     """
 
     kind: NameKind
@@ -73,19 +73,19 @@ class Occurrence:
 
     @property
     def end(self) -> int:
-        """The offset behind the last character."""
+        """The offset after the last character."""
         return self.start + len(self.name)
 
 
 def kinds_of_reference(tag: str, attribute: str) -> tuple[NameKind, ...]:
-    """Return the kinds of names that an attribute may refer to; empty for none."""
+    """Return the kinds of names that an attribute may refer to, or an empty tuple."""
     return _REFERENCES.get((tag, attribute), ())
 
 
 def kinds_of_text(tag: str) -> tuple[NameKind, ...]:
-    """Return the kinds of names that the text of an element may have, by the element's name; empty for none.
+    """Return the kinds of names that an element's text may contain, or an empty tuple.
 
-    It is meant for the parameters of plugins, such as ``<left_joint>`` or ``<robot_base_frame>``.
+    The kinds follow from the tag, as in the parameters ``<left_joint>`` and ``<robot_base_frame>`` of plugins.
     """
     if _OF_JOINTS.search(tag):
         return _JOINT
@@ -98,7 +98,7 @@ def occurrences_in(text: str, file: Path) -> Iterator[Occurrence]:
 
 
 class _Scan:
-    """One pass over a text, with the macros and elements around the current place."""
+    """One pass over a text, with the macros and elements around the current position."""
 
     def __init__(self, text: str, file: Path) -> None:
         self._text = text
@@ -109,7 +109,7 @@ class _Scan:
         self._namespaces = frozenset(re.findall(r"<xacro:include\b[^<>]*?\bns=[\"'](\w+)", text))
 
     def all(self) -> Iterator[Occurrence]:
-        """Yield the names of all tokens."""
+        """Yield the names in the whole text."""
         for token in tokens(self._text):
             if token.kind is Kind.START and token.name:
                 yield from self._start_tag(token)

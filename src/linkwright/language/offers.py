@@ -1,4 +1,4 @@
-"""Completions and explanations of packages, executables, components and files, for launch files of each language."""
+"""Completion and hover for packages, executables, components and files in launch files."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _LAUNCH_FILES = (".launch.py", ".launch.xml", ".launch.yaml", ".launch", "_launc
 
 
 def offer_packages(document: Document, start: int) -> Iterator[Completion]:
-    """Yield all packages: the package of the file first, then those that it depends on.
+    """Yield all packages: the file's own first, then its dependencies, then the others.
 
     Args:
         document: the text.
@@ -33,13 +33,13 @@ def offer_packages(document: Document, start: int) -> Iterator[Completion]:
 
 
 def offer_programs(document: Document, package: str | None, start: int) -> Iterator[Completion]:
-    """Yield the executables of a package; none if the package is not known."""
+    """Yield the executables of a package, or nothing if the package is None."""
     for program in programs_of(document.finder, package).values() if package else ():
         yield Completion(program.name, ItemKind.FUNCTION, start, program.origin)
 
 
 def offer_components(document: Document, package: str | None, start: int) -> Iterator[Completion]:
-    """Yield the components of a package; none if the package is not known."""
+    """Yield the components of a package, or nothing if the package is None."""
     for name in components_of(document.finder, package) if package else ():
         yield Completion(name, ItemKind.FUNCTION, start, package or "")
 
@@ -51,13 +51,13 @@ def offer_values(values: Iterable[str], start: int) -> Iterator[Completion]:
 
 
 def offer_files(base: Path, typed: str, offset: int, *, launch_files: bool = False) -> Iterator[Completion]:
-    """Yield the files and folders that a typed path can continue with: folders first, hidden ones left out.
+    """Yield the visible files and folders that continue a typed path, folders first.
 
     Args:
         base: the folder that the path starts at.
         typed: the typed part of the path.
         offset: the offset of the cursor, which is the end of the typed part.
-        launch_files: whether launch files come before other files.
+        launch_files: whether launch files come before everything else.
     """
     below, _, name = typed.rpartition("/")
     try:
@@ -71,7 +71,7 @@ def offer_files(base: Path, typed: str, offset: int, *, launch_files: bool = Fal
 
 
 def explain_package(document: Document, name: str) -> str | None:
-    """Return the description and folder of a package, or that it is not found, in Markdown; None for other texts."""
+    """Return facts about a package in Markdown, or None if the text is not a package name."""
     folder = document.finder.find(name)
     if folder is None:
         return localized(phrase("package '{name}' not found", name=name)) if is_package_name(name) else None
@@ -81,13 +81,13 @@ def explain_package(document: Document, name: str) -> str | None:
 
 
 def explain_program(document: Document, package: str | None, name: str) -> str | None:
-    """Return where an executable comes from, in Markdown; None if it is not known."""
+    """Return the origin of an executable in Markdown, or None if it is unknown."""
     program = programs_of(document.finder, package).get(name) if package else None
     return None if program is None else f"**{package} {name}**: `{program.origin}`"
 
 
 def explain_file(path: Path) -> str:
-    """Return whether a file exists, and what is known about a mesh, in Markdown."""
+    """Return the path of a file, or the facts about a mesh, in Markdown."""
     if not path.exists():
         return localized(phrase("`{path}` does not exist", path=path))
     return mesh_facts(path) or f"`{path}`"
@@ -108,7 +108,7 @@ def target_of_program(document: Document, package: str | None, name: str) -> Ite
 
 
 def target_of_component(document: Document, package: str | None, name: str) -> Iterator[Target]:
-    """Yield where the package registers a component."""
+    """Yield the location where a package registers a component."""
     target = components_of(document.finder, package).get(name) if package else None
     if target is not None:
         yield target

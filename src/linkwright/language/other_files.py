@@ -1,7 +1,7 @@
-"""The files beside the descriptions that name links and joints: SRDF, YAML, RViz configurations and launch files.
+"""Renaming of links and joints in SRDF, YAML, RViz configurations and launch files.
 
-A file means the robots of its package or, if it has none, of the packages that this one depends on. A name is followed
-there if every such robot that has it gets the new name.
+A file refers to the robots of its package or, if it has none, of the package's dependencies. A name is renamed there if
+it is renamed in all these robots that contain it.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ class OtherFiles:
         self._own = {*project.index.related(file, texts, computed=True)}
 
     def edits(self, names: Names) -> tuple[set[Edit], tuple[Mention, ...]]:
-        """Return the edits of the files that certainly mean some names, and the mentions that are not certain.
+        """Return the edits of certain uses and mentions of names, and the uncertain mentions.
 
         Args:
             names: the names that change, each with its new name.
@@ -84,7 +84,7 @@ class OtherFiles:
         return found, tuple(unchanged)
 
     def add_srdfs(self) -> None:
-        """Compare the SRDF files in xacro of the packages that mean these robots alone, too."""
+        """Add the SRDF xacro files of packages that refer only to these robots to the proof."""
         if self._srdfs_added:
             return
         self._srdfs_added = True
@@ -96,7 +96,7 @@ class OtherFiles:
                     self._proof.add(file)
 
     def _literal_uses(self, names: Names) -> Iterator[Occurrence]:
-        """Yield the literal uses in the descriptions, also those that no expansion reaches."""
+        """Yield the literal uses in the descriptions, including uses outside all expansions."""
         for use in self._uses:
             if (use.kind, use.name) in names:
                 yield use
@@ -108,7 +108,7 @@ class OtherFiles:
 
     @cached_property
     def _files(self) -> dict[Path, list[Path]]:
-        """The files of each package that may mention names, those of the own package first."""
+        """The files of each package that may mention names, the file's own package first."""
         files: dict[Path, list[Path]] = {}
         seen: set[Path] = set()
         own = enclosing_package(self._file.parent)
@@ -142,10 +142,11 @@ def _mentions(text: str, file: Path, names: Names, olds: frozenset[str]) -> Iter
 
 
 def robots_of_file(project: Workspace, texts: Mapping[Path, str], file: Path) -> list[Path]:
-    """Return the descriptions that a configuration or launch file may mean, the likeliest first.
+    """Return the descriptions to which a configuration or launch file may refer.
 
-    These are the robots of its package, else those with parts in it, else those of the packages that it depends on,
-    else all. Of several, those count that a file names together with this one, or else those whose folders are nearest.
+    These are the robots of its package, or else the robots with parts in the package, or else the robots of the
+    package's dependencies, or else all. Several robots are reduced to those that some file mentions together with this
+    file, or else to the robots in the nearest folders.
 
     Args:
         project: the workspace.
@@ -161,7 +162,7 @@ def robots_of_file(project: Workspace, texts: Mapping[Path, str], file: Path) ->
 
 
 def _robots_of_package(project: Workspace, texts: Mapping[Path, str], folder: Path) -> dict[Path, list[Path]]:
-    """Return the descriptions that a package may mean, each with its own files in the package."""
+    """Return the descriptions to which a package may refer, with their files in the package."""
     entries = [entry for entry in project.index.roots(texts) if entry.name.endswith(_ENDINGS)]
     entries = [entry for entry in entries if ".srdf" not in entry.name and not entry.name.startswith(".")]
     own = {entry: [entry] for entry in entries if entry.is_relative_to(folder)}
@@ -179,7 +180,7 @@ def _robots_of_package(project: Workspace, texts: Mapping[Path, str], folder: Pa
 
 
 def _named_together(project: Workspace, texts: Mapping[Path, str], file: Path, robots: Sequence[Path]) -> list[Path]:
-    """Return the robots that name a file, or that a launch file names together with it."""
+    """Return the robots that mention a file, or that a launch file mentions together with it."""
     name = re.compile(rf"(?<![\w.-]){re.escape(file.name)}(?![\w-])")
     text = project.text(file, texts) or ""
     if ".srdf" in file.name:
@@ -215,7 +216,7 @@ def _nearest(file: Path, folder: Path, robots: Mapping[Path, Sequence[Path]]) ->
 
 
 def names_of_robot(project: Workspace, texts: Mapping[Path, str], robot: Path) -> frozenset[tuple[NameKind, str]]:
-    """Return the links and joints of a description with all of its argument sets, as far as it can be expanded.
+    """Return the links and joints of a description for all argument sets that can be expanded.
 
     Args:
         project: the workspace.
@@ -239,7 +240,7 @@ def names_of_robot(project: Workspace, texts: Mapping[Path, str], robot: Path) -
 
 
 def _dependencies(project: Workspace, texts: Mapping[Path, str], folder: Path) -> list[Path]:
-    """Return the folders of the packages of the workspace that a package depends on, directly or not."""
+    """Return the folders of a package's direct and indirect dependencies in the workspace."""
     manifests = {each: _manifest(project, texts, each) for each in map(real, project.index.packages)}
     by_name = {manifest.name: each for each, manifest in manifests.items() if manifest is not None}
     found: dict[Path, None] = {}

@@ -1,4 +1,4 @@
-"""The elements of an XML text in any state, with their ranges: symbols, folds and pairs of tags for an editor."""
+"""The elements and comments of an XML text, which may be incomplete, with their ranges."""
 
 from __future__ import annotations
 
@@ -8,18 +8,18 @@ from dataclasses import dataclass, field
 from linkwright.xmltree.tokens import Kind, Token, tokens
 
 _NAMING = ("name", "filename", "reference", "link", "value")
-"""Attributes that identify an element, the first that it has."""
+"""The attributes that identify an element, in order of precedence."""
 
 
 @dataclass(slots=True)
 class OutlineElement:
-    """An element, or the part of it that is typed.
+    """An element, which may be incomplete.
 
     Attributes:
         tag: its start tag.
-        closing: its end tag; None if it has none, as ``<a/>``.
-        children: the elements in it.
-        end: the offset behind it.
+        closing: its end tag, or None if it has none, as in ``<a/>``.
+        children: its child elements.
+        end: the offset after it.
     """
 
     tag: Token
@@ -29,7 +29,7 @@ class OutlineElement:
 
     @property
     def label(self) -> str:
-        """The tag with the value that identifies the element, such as ``link base``."""
+        """The tag and the value that identifies the element, such as ``link base``."""
         given = {attribute.name: attribute.value for attribute in self.tag.attributes()}
         value = next((given[name] for name in _NAMING if given.get(name)), None)
         return f"{self.tag.name} {value}" if value else self.tag.name
@@ -40,7 +40,7 @@ class OutlineElement:
         return any(attribute.name in _NAMING[:3] and attribute.value for attribute in self.tag.attributes())
 
     def all(self) -> Iterator[OutlineElement]:
-        """Yield the element and all elements in it, in the order of the text."""
+        """Yield the element and all its descendants, in text order."""
         yield self
         for child in self.children:
             yield from child.all()
@@ -51,7 +51,7 @@ class Outline:
     """The elements and comments of a text.
 
     Attributes:
-        elements: the elements that are in no other one.
+        elements: the top-level elements.
         comments: the comments.
     """
 
@@ -62,7 +62,7 @@ class Outline:
     def of(cls, text: str) -> Outline:
         """Return the outline of a text.
 
-        An end tag closes the nearest open element of its name; elements inside that lack their end tags end there.
+        An end tag closes the nearest open element with its name. Unclosed elements inside that element end there.
         """
         outline = cls()
         open_elements: list[OutlineElement] = []
@@ -86,7 +86,7 @@ class Outline:
         return outline
 
     def all(self) -> Iterator[OutlineElement]:
-        """Yield all elements, in the order of the text."""
+        """Yield all elements, in text order."""
         for element in self.elements:
             yield from element.all()
 

@@ -1,7 +1,7 @@
-"""The parameters of nodes, of their plugins and of controllers, with types, defaults and descriptions.
+"""The parameters of nodes, plugins of nodes, and controllers, with types and defaults.
 
-Those of nodes and plugins come from ``node_parameters.json``, which ``tools/node_parameters.py`` records. Those of
-controllers come from the tables that the controllers declare, also of other packages.
+The parameters of nodes and plugins come from ``node_parameters.json``, which ``tools/node_parameters.py`` records. The
+parameters of controllers come from the tables that the controllers declare, including controllers of other packages.
 """
 
 from __future__ import annotations
@@ -28,10 +28,10 @@ class ParameterInfo:
 
     Attributes:
         name: the name with dots; ``*`` is any name, as in ``gains.*.p``.
-        type: the type, as ROS 2 names it: ``double``, ``string_array``; empty if it is not known.
-        default: the default value; None if there is none.
-        description: the purpose, with its unit; may be empty.
-        choices: the allowed values; empty if any value of the type is allowed.
+        type: the ROS 2 type, such as ``double`` or ``string_array``, or empty if it is unknown.
+        default: the default value, or None.
+        description: the purpose with its unit, or empty.
+        choices: the allowed values, or empty if any value of the type is allowed.
         keys: the parameters that contain the names for ``*``.
         owner: the node, plugin or controller that has the parameter.
     """
@@ -50,14 +50,14 @@ class ParameterInfo:
         return replace(self, name=f"{prefix}.{self.name}", owner=owner, keys=keys)
 
     def matches(self, name: str) -> bool:
-        """Return whether a name with dots is that of the parameter."""
+        """Return whether a full name matches the name of the parameter."""
         own_parts, parts = self.name.split("."), name.split(".")
         return len(own_parts) == len(parts) and all(
             mark in ("*", part) for mark, part in zip(own_parts, parts, strict=True)
         )
 
     def rest_below(self, name: str) -> str:
-        """Return the rest of the parameter's name below a group; empty if the group does not contain it."""
+        """Return the rest of the parameter's name inside a group, or empty if it is outside."""
         own_parts, group = self.name.split("."), name.split(".")
         is_inside = len(own_parts) > len(group) and all(
             mark in ("*", part) for mark, part in zip(own_parts, group, strict=False)
@@ -66,13 +66,13 @@ class ParameterInfo:
 
     @property
     def written_default(self) -> str:
-        """The default as YAML has it; empty if there is none."""
+        """The default in YAML, or empty if there is none."""
         return "" if self.default is None else yaml_text(self.default)
 
 
 @dataclass(frozen=True, slots=True)
 class Plugin:
-    """A type of plugins that a node loads.
+    """A plugin type that a node loads.
 
     Attributes:
         type: the type, such as ``nav2_costmap_2d::InflationLayer``.
@@ -88,7 +88,7 @@ class Plugin:
 
 
 def yaml_text(value: Any) -> str:
-    """Return a value of a parameter as YAML has it."""
+    """Return the value of a parameter in YAML."""
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, float):
@@ -130,7 +130,7 @@ def node_names() -> tuple[str, ...]:
 
 @lru_cache(maxsize=64)
 def node_parameters(node: str) -> tuple[ParameterInfo, ...]:
-    """Return the parameters of a node by its name; none if the node is not known."""
+    """Return the parameters of a node by its name, or an empty tuple if it is unknown."""
     return _infos(_table()["nodes"].get(node, {}), node)
 
 
@@ -144,11 +144,11 @@ def plugins() -> Mapping[str, Plugin]:
 
 
 def plugin_types(node: str, listed: str = "") -> list[str]:
-    """Return the types of plugins that a node loads.
+    """Return the plugin types that a node loads.
 
     Args:
-        node: the name of the node; a costmap has the same layers under any name.
-        listed: the parameter that names the plugins; empty for all.
+        node: the name of the node. A costmap has the same layers under any name.
+        listed: the parameter that lists the plugins, or empty for all parameters.
     """
     owner = "local_costmap" if node.endswith("costmap") else node
     return [plugin.type for plugin in plugins().values() if plugin.node == owner and listed in ("", plugin.listed)]
@@ -159,12 +159,19 @@ def controller_types() -> list[str]:
     return [*extensions(_CONTROLLERS)]
 
 
+def load_tables() -> None:
+    """Read the tables of nodes and plugins, and import the controllers. The first call is slow."""
+    plugins()
+    for kind in controller_types():
+        controller_parameters(kind)
+
+
 def controller_parameters(kind: str, names: Collection[str] = ()) -> tuple[ParameterInfo, ...]:
-    """Return the parameters of a controller type; none if the type is not known or cannot be imported.
+    """Return the parameters of a controller type, or an empty tuple if it is unavailable.
 
     Args:
         kind: the type name.
-        names: the names of the parameters that are set, which tell two controllers with the same type name apart.
+        names: the names of the parameters that are set, which distinguish controllers with the same type name.
     """
     controller = _controller(kind)
     if controller is None:
@@ -191,7 +198,7 @@ def _controller_table(controller: Any, kind: str) -> tuple[ParameterInfo, ...]:
 
 
 def controller_purpose(kind: str) -> str | None:
-    """Return the first paragraph about a controller type; None if the type is not known."""
+    """Return the first paragraph about a controller type, or None if it is unavailable."""
     controller = _controller(kind)
     return None if controller is None else cleandoc(controller.__doc__ or "").partition("\n\n")[0]
 
@@ -208,7 +215,7 @@ def _controller(kind: str) -> Any:
 
 
 def owners_of(keys: Iterable[str]) -> list[str]:
-    """Return the nodes that have the most of some parameters, the best first; none if no node has any."""
+    """Return the nodes that have any of some parameters, the best match first."""
     names = set(keys)
     counts = {node: sum(parameter.name in names for parameter in node_parameters(node)) for node in node_names()}
     return sorted((node for node, count in counts.items() if count), key=lambda node: -counts[node])

@@ -1,4 +1,4 @@
-"""Completions in ROS 2 parameter files, also those of ros2_control: nodes, controllers and their parameters."""
+"""Completion of nodes, controllers and parameters in ROS 2 parameter files."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def complete_parameters(document: Document, offset: int) -> list[Completion]:
 
 
 def _node_keys(outline: YamlOutline, cursor: YamlCursor, colon: str) -> Iterator[Completion]:
-    """Yield the keys outside of ``ros__parameters``: nodes and that key itself."""
+    """Yield the keys outside ``ros__parameters``: nodes, and ``ros__parameters`` itself."""
     others = [child for child in cursor.within.children if child is not cursor.entry]
     present = {child.key for child in others}
     is_top = cursor.within.parent is None
@@ -95,7 +95,7 @@ def _names_of(parameters: Iterable[ParameterInfo]) -> str:
 
 
 def _keys(document: Document, section: Section, cursor: YamlCursor, colon: str) -> Iterator[Completion]:
-    """Yield the parameters and groups at a place in ``ros__parameters``."""
+    """Yield the parameters and groups at a position in ``ros__parameters``."""
     present = {child.key for child in cursor.within.children if child is not cursor.entry}
     if section.is_manager:
         yield from _manager_keys(section, cursor, colon)
@@ -146,7 +146,7 @@ def _keys_in_sources(
 def _keys_elsewhere(
     document: Document, section: Section, cursor: YamlCursor, colon: str, present: set[str]
 ) -> Iterator[Completion]:
-    """Yield the keys that other parameter files of the package have at this place, for a node that is not known."""
+    """Yield the keys at this position in other parameter files, for an unknown node."""
     if not section.may_be_controller or section.node in section.controllers:
         return
     for file in [*document.project.configuration_files(document.file)][:_MAX_FILES]:
@@ -163,7 +163,7 @@ def _keys_elsewhere(
 
 
 def _plugin_keys(section: Section, cursor: YamlCursor, colon: str, present: set[str]) -> Iterator[Completion]:
-    """Yield the plugins that a list names and that have no parameters yet, or the key ``plugin`` of such a plugin."""
+    """Yield the listed plugins without a section, or the key ``plugin`` in such a section."""
     entries = section.entries()
     for listed in dict.fromkeys(plugin.listed for plugin in plugins().values()):
         entry = entries.get(listed)
@@ -190,7 +190,7 @@ def described(parameter: ParameterInfo, name: str = "") -> str:
 
     Args:
         parameter: the parameter.
-        name: the name to show instead of that with ``*``.
+        name: the name to show instead of a name with ``*``.
     """
     default = parameter.written_default
     head = f"**{name or parameter.name}**" + (f" `{parameter.type}`" if parameter.type else "")
@@ -206,7 +206,7 @@ def described(parameter: ParameterInfo, name: str = "") -> str:
 
 
 def _names_for(document: Document, section: Section, parameter: ParameterInfo) -> list[str]:
-    """Return the names for ``*``: those in the parameters that list them, or all joints."""
+    """Return the names for ``*``: the names in its list parameters, or all movable joints."""
     entries = section.entries()
     names = [
         name
@@ -217,7 +217,7 @@ def _names_for(document: Document, section: Section, parameter: ParameterInfo) -
     ]
     if names or not parameter.keys or not any(kinds_of_parameter(key) for key in parameter.keys):
         return names
-    parts = robot_names(document.project, document.texts, document.file)
+    parts = robot_names(document)
     return [name.name for name in parts if name.kind is NameKind.JOINT and name.detail != "fixed"]
 
 

@@ -1,4 +1,4 @@
-"""ROS 2 parameter files and other YAML files: explanations, definitions, and the format as a whole."""
+"""The format of ROS 2 parameter files and other YAML files, with hover and definitions."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from linkwright.language.definitions import NameDefinition, NameKind
 from linkwright.language.facts import part_facts, robots_of
 from linkwright.language.format import Document, Format, Target
 from linkwright.language.hover import Explanation
-from linkwright.language.parameter_catalogue import controller_purpose, node_parameters, plugins
+from linkwright.language.parameter_catalogue import controller_purpose, load_tables, node_parameters, plugins
 from linkwright.language.parameter_completion import complete_parameters, described
 from linkwright.language.parameter_sections import (
     PARAMETERS,
@@ -31,7 +31,7 @@ _LAUNCH = (".launch.yaml", ".launch.yml", "_launch.yaml", "_launch.yml")
 
 
 def is_parameter_file(file: Path) -> bool:
-    """Return whether a file may have parameters, by its name: YAML that is not a launch file."""
+    """Return whether a file may contain parameters: YAML, except launch files."""
     return file.name.endswith(_ENDINGS) and not file.name.endswith(_LAUNCH)
 
 
@@ -39,7 +39,7 @@ def is_parameter_file(file: Path) -> bool:
 
 
 def explain_parameter(document: Document, offset: int) -> Explanation | None:
-    """Explain the key or value at an offset of a parameter file; None if there is nothing to say."""
+    """Explain the key or value at an offset of a parameter file, or return None."""
     outline = YamlOutline(document.text)
     cursor = outline.cursor(offset)
     start, end, word = word_at(document.text, cursor)
@@ -53,7 +53,7 @@ def explain_parameter(document: Document, offset: int) -> Explanation | None:
 
 
 def word_at(text: str, cursor: YamlCursor) -> tuple[int, int, str]:
-    """Return the range of the key or value at a place, and its text without quotes."""
+    """Return the range of the key or value at a cursor, and its text without quotes."""
     if cursor.place is Place.NOTHING:
         return cursor.offset, cursor.offset, ""
     if cursor.place is Place.KEY:
@@ -150,8 +150,8 @@ def _explained_value(document: Document, outline: YamlOutline, cursor: YamlCurso
 
 
 def part_explanation(document: Document, name: str, kinds: tuple[NameKind, ...]) -> str:
-    """Return the facts about a link or joint in the robots that a file is likely to be about."""
-    for part in robot_names(document.project, document.texts, document.file):
+    """Return the facts about a link or joint in the robots that a file probably means."""
+    for part in robot_names(document):
         if part.name == name and part.kind in kinds:
             robots = robots_of(document.project, document.texts, part.file)
             facts = next((facts for robot in robots if (facts := part_facts(robot, part.kind, name))), "")
@@ -163,7 +163,7 @@ def part_explanation(document: Document, name: str, kinds: tuple[NameKind, ...])
 
 
 def define_in_parameters(document: Document, offset: int) -> Iterator[Target]:
-    """Yield the places that define what is at an offset: of a controller, a plugin, a joint, a link or a frame."""
+    """Yield the definition of the controller, plugin, parameter, joint or link at an offset."""
     outline = YamlOutline(document.text)
     cursor = outline.cursor(offset)
     _, _, word = word_at(document.text, cursor)
@@ -184,14 +184,14 @@ def define_in_parameters(document: Document, offset: int) -> Iterator[Target]:
             if source.name == name_in_section:
                 yield Target(source.file, source.start, source.start + len(source.name))
                 return
-    for name in robot_names(document.project, document.texts, document.file):
+    for name in robot_names(document):
         if name.name == word and (name.kind in kinds or (not kinds and cursor.in_list)):
             yield target_of(document, name)
             return
 
 
 def _declaration(outline: YamlOutline, section: Section | None, cursor: YamlCursor, word: str) -> YamlEntry | None:
-    """Return the entry that declares a controller or a plugin: from its parameters, or from a list of names."""
+    """Return the entry that declares the controller or plugin at a cursor, or None."""
     if cursor.place is Place.VALUE and section is not None:
         entry = section.entry.child(word)
         if entry is not None and entry.children:
@@ -208,7 +208,7 @@ def _declaration(outline: YamlOutline, section: Section | None, cursor: YamlCurs
 
 
 def target_of(document: Document, name: NameDefinition) -> Target:
-    """Return the place of a link's or joint's name."""
+    """Return the location of the name of a link or joint."""
     return Target(name.file, name.start, name.start + written_length(document.other(name.file), name))
 
 
@@ -218,4 +218,5 @@ PARAMETER_FILES = Format(
     explain=explain_parameter,
     define=define_in_parameters,
     symbols=yaml_symbols,
+    prepare=load_tables,
 )

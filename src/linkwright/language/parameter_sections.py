@@ -1,4 +1,4 @@
-"""The sections of ROS 2 parameter files: which node each belongs to, and which parameters it may have."""
+"""The sections of ROS 2 parameter files, with their nodes and possible parameters."""
 
 from __future__ import annotations
 
@@ -20,19 +20,19 @@ from linkwright.language.yaml_outline import YamlEntry, YamlOutline
 
 PARAMETERS = "ros__parameters"
 _EVERY_NODE = ParameterInfo(
-    "use_sim_time", "bool", False, "whether the node takes the time from the topic `/clock` of a simulator"
+    "use_sim_time", "bool", False, "whether the node uses the simulated time of the topic `/clock`"
 )
 _TYPE = ParameterInfo("type", "string", None, "the type of the controller, if the node is one")
 
 
 @dataclass(frozen=True, slots=True)
 class Section:
-    """The content of a key ``ros__parameters``, or a place in it.
+    """The content of a key ``ros__parameters``, or a position inside it.
 
     Attributes:
         entry: the entry of ``ros__parameters``.
-        node: the name of the node; empty for a pattern such as ``/**``.
-        prefix: the names between the key and the place, with dots.
+        node: the name of the node, or empty for a pattern such as ``/**``.
+        prefix: the keys between ``ros__parameters`` and the position, joined by dots.
         controllers: the types of the controllers that the file declares, by name.
     """
 
@@ -48,19 +48,19 @@ class Section:
 
     @property
     def may_be_controller(self) -> bool:
-        """Whether the node is a controller, or a node that is not known."""
+        """Whether the node may be a controller: neither a manager nor a known node."""
         return bool(self.node) and not self.is_manager and not node_parameters(self.node)
 
     def name(self, key: str) -> str:
-        """Return the name of a parameter with a key at the place."""
+        """Return the full name of the parameter with a key at the position."""
         return f"{self.prefix}.{key}" if self.prefix else key
 
     def entries(self) -> dict[str, YamlEntry]:
-        """Return the parameters that the section has, by name with dots."""
+        """Return the entries of the section, by full parameter name."""
         return {".".join(_below(self.entry, entry)): entry for entry in self.entry.all() if entry.key}
 
     def parameters(self) -> list[ParameterInfo]:
-        """Return the parameters that the node of the section may have, with those of its plugins."""
+        """Return the possible parameters of the section's node and its plugins."""
         entries = self.entries()
         if self.node in self.controllers:
             parameters = list(controller_parameters(self.controllers[self.node], entries.keys()))
@@ -74,7 +74,7 @@ class Section:
         return [*parameters, *self._of_plugins(entries), _EVERY_NODE]
 
     def find(self, name: str) -> ParameterInfo | None:
-        """Return the parameter with a name with dots, or None if it is not known."""
+        """Return the parameter with a full name, or None if it is unknown."""
         return next((parameter for parameter in self.parameters() if parameter.matches(name)), None)
 
     def _of_plugins(self, entries: Mapping[str, YamlEntry]) -> Iterator[ParameterInfo]:
@@ -88,11 +88,11 @@ class Section:
 
 
 def section_at(outline: YamlOutline, entry: YamlEntry) -> Section | None:
-    """Return the section that an entry of a file is in, or None if it is not in a section.
+    """Return the section that contains an entry, or None if the entry is outside sections.
 
     Args:
         outline: the file.
-        entry: an entry; for ``ros__parameters`` itself the section begins there.
+        entry: an entry of the file, which may be ``ros__parameters`` itself.
     """
     keys: list[str] = []
     current: YamlEntry | None = entry
@@ -105,25 +105,25 @@ def section_at(outline: YamlOutline, entry: YamlEntry) -> Section | None:
 
 
 def node_of(entry: YamlEntry) -> str:
-    """Return the name of the node that an entry of ``ros__parameters`` is for; empty for a pattern."""
+    """Return the node name for a ``ros__parameters`` entry, or empty for a pattern."""
     parts = [part for key in entry.path[:-1] for part in key.split("/") if part]
     return parts[-1] if parts and "*" not in parts[-1] else ""
 
 
 def sections(outline: YamlOutline) -> Iterator[YamlEntry]:
-    """Yield the entries of ``ros__parameters`` of a file."""
+    """Yield the ``ros__parameters`` entries of a file."""
     return (entry for entry in outline.root.all() if entry.key == PARAMETERS)
 
 
 def declared_controllers(outline: YamlOutline) -> dict[str, str]:
-    """Return the types of the controllers that a file declares, by name: ``NAME: type: PACKAGE/CLASS``."""
+    """Return the types of the controllers that a file declares, by controller name."""
     return {name: entry.scalar for name, entry in controller_declarations(outline).items()}
 
 
 def controller_declarations(outline: YamlOutline) -> dict[str, YamlEntry]:
-    """Return the entries with the types of controllers, by the controller's name.
+    """Return the entries that declare the types of controllers, by controller name.
 
-    A controller is declared by its manager, or by a parameter ``type`` of its own.
+    A declaration is ``NAME: type: PACKAGE/CLASS`` in the manager's section, or a parameter ``type`` of the controller.
     """
     declarations: dict[str, YamlEntry] = {}
     for section in sections(outline):
@@ -145,7 +145,7 @@ def _declares_controllers(entry: YamlEntry) -> bool:
 
 @cache
 def _common_parameters() -> tuple[ParameterInfo, ...]:
-    """Return the parameters of all nodes, those first that most nodes have."""
+    """Return the parameters of all nodes, the most common first."""
     parameters = [parameter for node in node_names() for parameter in node_parameters(node)]
     counts = Counter(parameter.name for parameter in parameters)
     return tuple(sorted(parameters, key=lambda parameter: -counts[parameter.name]))

@@ -1,4 +1,4 @@
-"""Values in ROS 2 parameter files: types of controllers and plugins, booleans, choices, joints, links and frames."""
+"""Completion of values in ROS 2 parameter files, such as types, joints and frames."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ from collections.abc import Iterable, Iterator
 from linkwright.diagnostics import phrase
 from linkwright.diagnostics.translation import localized
 from linkwright.language.completion import Completion, ItemKind
-from linkwright.language.declared_parameters import DeclaredParameter, declared_parameters
 from linkwright.language.definitions import NameKind
 from linkwright.language.format import Document
 from linkwright.language.mentions import kinds_of_key
@@ -21,6 +20,7 @@ from linkwright.language.parameter_catalogue import (
 )
 from linkwright.language.parameter_sections import Section
 from linkwright.language.robot_names import robot_names
+from linkwright.language.source_declarations import DeclaredParameter, declared_parameters
 from linkwright.language.yaml_outline import YamlCursor
 from linkwright.language.yaml_symbols import snippet_text
 
@@ -35,14 +35,14 @@ _SENSOR_TOPICS = ("/scan", "/points")
 
 
 def sources_of(document: Document, section: Section) -> list[DeclaredParameter]:
-    """Return the parameters that sources of the workspace declare, if the node of a section is not known."""
+    """Return the parameters that the sources of a section's node declare, if it is unknown."""
     if not section.may_be_controller or section.node in section.controllers:
         return []
-    return declared_parameters(document.project, document.texts, section.node)
+    return declared_parameters(document, section.node)
 
 
 def kinds_of_parameter(key: str) -> tuple[NameKind, ...]:
-    """Return the kinds of names that the values of a parameter are; empty if its name does not tell."""
+    """Return the kinds of names that a parameter may hold, derived from its own name."""
     last = key.rpartition(".")[2]
     return kinds_of_key(last)
 
@@ -109,14 +109,14 @@ def _default_mark(parameter: ParameterInfo, word: str) -> str:
 
 
 def _robot_values(document: Document, key: str, default: str) -> Iterator[tuple[str, str]]:
-    """Yield the names of joints or frames for a parameter, each with a few words: the default frame first."""
+    """Yield the joints or frames for a parameter with a detail, the default frame first."""
     kinds = kinds_of_parameter(key)
     if not kinds:
         return
     if default in _USUAL_FRAMES:
         yield default, localized(phrase("default"))
-    parts = robot_names(document.project, document.texts, document.file)
-    if NameKind.JOINT in kinds:  # joints that move first
+    parts = robot_names(document)
+    if NameKind.JOINT in kinds:  # movable joints first
         parts.sort(key=lambda name: name.detail == "fixed")
     for name in parts:
         if name.kind in kinds:
@@ -127,7 +127,7 @@ def _robot_values(document: Document, key: str, default: str) -> Iterator[tuple[
 
 
 def _resembling(types: Iterable[str], name: str) -> list[str]:
-    """Return types, those first that resemble the name of a controller or plugin."""
+    """Sort types by their resemblance to the name of a controller or plugin."""
     words = [word for word in re.split(r"\W|_|(?<=[a-z])(?=[A-Z])", name) if word]
 
     def rank(kind: str) -> int:
@@ -137,7 +137,7 @@ def _resembling(types: Iterable[str], name: str) -> list[str]:
 
 
 def _plugin_types(section: Section, plugin: str, key: str) -> list[str]:
-    """Return the types that a plugin may have: those of the parameter that names it, if there is one."""
+    """Return the possible types of a plugin, restricted by the parameter that lists it."""
     if key == "primary_controller":
         return plugin_types(section.node, "controller_plugins")
     entries = section.entries()

@@ -1,4 +1,4 @@
-"""The parameters of macro calls: which element of a call is which block."""
+"""The parameters of macros, and the blocks in macro calls."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from linkwright.xacro.macros import Parameter, parse_parameters
 
 
 def macro_parameters(macro: NameDefinition) -> tuple[Parameter, ...]:
-    """Return the parameters of a macro; none while they are being typed and cannot be parsed."""
+    """Return the parameters of a macro, or an empty tuple if they cannot be parsed."""
     try:
         return tuple(parse_parameters(macro.detail))
     except Fault:
@@ -28,9 +28,9 @@ def called_macro(tag: str, names: Sequence[NameDefinition]) -> NameDefinition | 
 
 
 def block_parameters(element: OutlineElement, names: Sequence[NameDefinition]) -> Iterator[tuple[OutlineElement, str]]:
-    """Yield the elements in a macro call that are its blocks, each with the name of its parameter.
+    """Yield the blocks in a macro call, each with the name of its parameter.
 
-    Elements of xacro may expand to any number of blocks, so the blocks after one are left out.
+    A xacro element may expand to any number of blocks, so the iteration ends at the first one.
     """
     macro = called_macro(element.tag.name, names)
     blocks = [] if macro is None else [each.name for each in macro_parameters(macro) if each.is_block]

@@ -1,22 +1,24 @@
-"""The classes that packages export through pluginlib: hardware, controllers, and plugins of nodes."""
+"""The classes that packages export through pluginlib, such as hardware and controllers."""
 
 from __future__ import annotations
 
 import re
 import time
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from weakref import WeakKeyDictionary
 
+from linkwright.language.format import Document, NotYetKnownError
 from linkwright.language.workspace import Workspace
-from linkwright.packages import PackageFinder, enclosing_package, install_prefix, is_installed
+from linkwright.packages import enclosing_package, install_prefix, is_installed
 from linkwright.packages.readers.entry_points import text_of
 from linkwright.xmltree.tokens import Kind, Token, tokens
 
 _EXPORT = re.compile(r"(?i)\bpluginlib_export_plugin_description_file\s{0,9}\(\s{0,99}([\w-]+)\s{1,99}\"?([^\s\")]+)")
 _SECONDS = 10.0
-"""How long the exported classes are used before the packages are read again."""
+"""The maximum age of the exported classes, in seconds."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,7 +29,7 @@ class PluginClass:
         name: the name by which it is loaded, such as ``diff_drive_controller/DiffDriveController``.
         type: the class in C++.
         base: the package of the base class, such as ``hardware_interface``.
-        description: its description; may be empty.
+        description: its description, or empty.
         package: the folder of the package.
         file: the file that exports it.
         start: the offset of the name in the file.
@@ -45,20 +47,32 @@ class PluginClass:
 _classes: WeakKeyDictionary[Workspace, tuple[float, list[PluginClass]]] = WeakKeyDictionary()
 
 
-def plugin_classes(project: Workspace, finder: PackageFinder, base: str) -> list[PluginClass]:
-    """Return the classes for a package of base classes that the packages of a workspace export.
+def plugin_classes(document: Document, base: str) -> list[PluginClass]:
+    """Return the exported classes whose base class belongs to a package.
 
     Args:
-        project: the workspace.
-        finder: finds the packages outside of it.
+        document: the file of the request.
         base: the package of the base classes.
+
+    Raises:
+        NotYetKnownError: the packages were never read, and the document does not wait.
     """
-    known = _classes.get(project)
-    if known is None or time.monotonic() - known[0] > _SECONDS:
-        folders = dict.fromkeys((*project.index.packages, *finder.packages().values()))
+    return [plugin for plugin in _known(document) if plugin.base == base]
+
+
+def _known(document: Document) -> list[PluginClass]:
+    known = _classes.get(document.project)
+    if known is not None and time.monotonic() - known[0] <= _SECONDS:
+        return known[1]
+    if document.waits:
+        folders = dict.fromkeys((*document.project.index.packages, *document.finder.packages().values()))
         found = {plugin.name: plugin for folder in folders for plugin in _exported(folder)}
-        known = _classes[project] = time.monotonic(), list(found.values())
-    return [plugin for plugin in known[1] if plugin.base == base]
+        known = _classes[document.project] = time.monotonic(), list(found.values())
+    elif known is None:
+        raise NotYetKnownError
+    else:
+        document.refreshes.append(partial(_known, replace(document, waits=True)))
+    return known[1]
 
 
 def _exported(folder: Path) -> Iterator[PluginClass]:
@@ -68,7 +82,7 @@ def _exported(folder: Path) -> Iterator[PluginClass]:
 
 
 def _files(folder: Path) -> Iterator[tuple[str, Path]]:
-    """Yield the files in which a package describes its classes, each with the package of their base classes."""
+    """Yield the base class package and path of each plugin description of a package."""
     if is_installed(folder):
         prefix, end = install_prefix(folder), "__pluginlib__plugin"
         for index in (prefix / "share/ament_index/resource_index").glob(f"*{end}/{folder.name}"):

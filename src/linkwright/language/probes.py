@@ -1,4 +1,4 @@
-"""Calls of macros that no description calls, made to see what an edit in such a macro changes."""
+"""Generated calls of uncalled macros, to check edits in these macros."""
 
 from __future__ import annotations
 
@@ -16,11 +16,13 @@ from linkwright.xacro.macros import Parameter, parse_parameters
 
 _XACRO = "http://www.ros.org/wiki/xacro"
 _VALUES = ("probe", "1", "0")
-"""The values that the calls give to the parameters: a name, a number that is true, and one that is false."""
+"""The values of the parameters in the calls: a name, a true number and a false number."""
 
 
 def is_reached(proof: ExpansionProof, text: str, name: Occurrence) -> bool:
-    """Return whether an expansion contains the element of a name or, for what defines nothing, its macro.
+    """Return whether an expansion contains the element of a name.
+
+    If the element belongs to xacro, any element of its macro counts. Outside macros, the result is then True.
 
     Args:
         proof: the expansions.
@@ -44,7 +46,9 @@ def is_reached(proof: ExpansionProof, text: str, name: Occurrence) -> bool:
 
 
 def probes_of(project: Workspace, texts: Mapping[Path, str], name: Occurrence) -> dict[Path, str]:
-    """Return texts that call the macro around a name, by the path that they would have; empty outside of macros.
+    """Return generated texts that call the macro around a name, by their path.
+
+    Returns an empty dictionary outside macros.
 
     Args:
         project: the workspace.

@@ -1,4 +1,7 @@
-"""The packages, executables and components that a launch file can name, found without running anything."""
+"""The packages, executables and components that a launch file can use.
+
+They are found without running any code.
+"""
 
 from __future__ import annotations
 
@@ -28,7 +31,10 @@ _MAX_FILES = 200
 _MAX_BYTES = 300_000
 _REGISTERED = re.compile(r"(?i)\brclcpp_components_register_nodes?\s*\(([^)]*)\)")
 _CLASS = re.compile(r"\b[A-Za-z_]\w*(?:::\w+)+")
-_DEPENDENCY = re.compile(r"<(?:exec_|run_)?depend\b[^<>]*>\s*([a-z]\w*)\s*<")
+DEPENDENCY = re.compile(r"<(?:exec_|run_)?depend\b[^<>]*>\s*([a-z]\w*)\s*<")
+"""The packages in ``package.xml`` on which a package depends when it runs."""
+BUILD_DEPENDENCY = re.compile(r"<(?:build_|buildtool_)?depend\b[^<>]*>\s*([a-z]\w*)\s*<")
+"""The packages in ``package.xml`` on which a package depends when it is built."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,8 +43,8 @@ class Program:
 
     Attributes:
         name: its name.
-        origin: where it comes from, for the detail of a completion.
-        target: the place of its source or script; None if it has none.
+        origin: the entry point or file that it comes from, or ``Linkwright``.
+        target: the location of its source or script, or None if there is none.
     """
 
     name: str
@@ -47,7 +53,7 @@ class Program:
 
 
 def used_packages(folder: Path) -> list[str]:
-    """Return the packages that the launch files and descriptions of a package use, the most used first."""
+    """Return the packages that the files of a package use, the most used first."""
     files, _ = walk(folder, _USING)
     found: Counter[str] = Counter()
     for file in files[:_MAX_FILES]:
@@ -60,20 +66,20 @@ def used_packages(folder: Path) -> list[str]:
 
 
 def package_names(finder: PackageFinder, file: Path) -> list[str]:
-    """Return the names of all packages: the package of a file first, then those that it depends on, found or not."""
+    """Return all package names: the file's own first, then its dependencies, then the others."""
     own = enclosing_package(file.parent)
-    first = [] if own is None else [own[0], *_DEPENDENCY.findall(text_of(own[1] / "package.xml"))]
+    first = [] if own is None else [own[0], *DEPENDENCY.findall(text_of(own[1] / "package.xml"))]
     known = {*finder.packages(), *replaced_packages()}
     return [*dict.fromkeys(first), *sorted(known - {*first})]
 
 
 def replaced_packages() -> set[str]:
-    """Return the packages that nodes or modules of Linkwright replace, with or without files."""
+    """Return the packages that nodes or modules of Linkwright replace, installed or not."""
     return {*builtin_packages(), *substituted_executables()}
 
 
 def programs_of(finder: PackageFinder, package: str) -> dict[str, Program]:
-    """Return the executables of a package by name; empty if there is no such package."""
+    """Return the executables of a package by name, or an empty dictionary if there are none."""
     found: dict[str, Program] = {}
     share = finder.find(package)
     if share is not None and share.is_dir():
@@ -112,7 +118,7 @@ def _of_entry(root: Path, entry: EntryPoint) -> Target | None:
 
 
 def components_of(finder: PackageFinder, package: str) -> dict[str, Target | None]:
-    """Return the classes of a package that a container can load, each with its place in the sources if known."""
+    """Return the components of a package by class, with the location of the registration."""
     found: dict[str, Target | None] = {}
     share = finder.find(package)
     if share is not None:

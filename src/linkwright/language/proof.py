@@ -67,14 +67,14 @@ class ExpansionPair(NamedTuple):
 
 
 def edited(text: str, edits: Collection[Edit]) -> str:
-    """Return the text of a file with edits of this file, which must not overlap."""
+    """Apply edits, which must not overlap, to the text of their file."""
     for edit in sorted(edits, key=lambda edit: (edit.start, edit.end), reverse=True):
         text = text[: edit.start] + edit.text + text[edit.end :]
     return text
 
 
 def edited_texts(project: Workspace, texts: Mapping[Path, str], edits: Collection[Edit]) -> dict[Path, str]:
-    """Return the texts of the open and the edited files, with edits.
+    """Return the texts of the open and edited files, with the edits applied.
 
     Args:
         project: the workspace.
@@ -89,13 +89,13 @@ def edited_texts(project: Workspace, texts: Mapping[Path, str], edits: Collectio
 
 
 class ExpansionProof:
-    """The expansions of the descriptions that include a file, to compare with those after edits.
+    """The expansions of the descriptions that include a file, for comparison after edits.
 
     Args:
         project: the workspace.
         texts: the texts of the open files.
         file: the file.
-        is_partial: whether descriptions are also compared that can be expanded only without some elements, and with
+        is_partial: whether the comparison includes descriptions that can be expanded only without some elements, and
             arguments that no caller passes.
 
     Attributes:
@@ -116,15 +116,15 @@ class ExpansionProof:
 
     @property
     def gap_reason(self) -> Phrase | None:
-        """Why elements of a description were left out, or None if the descriptions are complete."""
+        """The reason for omitted elements, or None if all descriptions are complete."""
         return next((trial.reason for trial in self.trials if trial.reason is not None), None)
 
     def add(self, entry: Path) -> None:
-        """Compare one more description."""
+        """Add a description to the comparison."""
         self._add_entry(entry)
 
     def names_of(self, file: Path) -> set[str]:
-        """Return the names under which the expansions know a file."""
+        """Return the paths that the expansions use for a file."""
         return {str(file), *self._names.get(file, ())}
 
     def pairs(self, edits: Collection[Edit], renamed: Mapping[str, str] | None = None) -> Iterator[ExpansionPair]:
@@ -143,7 +143,7 @@ class ExpansionProof:
             if file.name.endswith(DESCRIPTIONS):
                 self._add_entries(file)
         if not self.trials:
-            reason = self._error.diagnostics[0].message if self._error else phrase("no description includes its file")
+            reason = self._error.diagnostics[0].message if self._error else phrase("no description includes the file")
             raise UnprovedError(phrase("no expansion can be compared: {reason}", reason=reason))
         names = renamed or {}
         for former in self.trials:
@@ -166,7 +166,7 @@ class ExpansionProof:
             renamed: the new names of arguments of the descriptions, by old name.
 
         Raises:
-            UnprovedError: they differ, or cannot be compared.
+            UnprovedError: the expansions differ, or cannot be compared.
         """
         for pair in self.pairs(edits, renamed):
             before, after, name = pair.text_before, pair.text_after, pair.entry.name
@@ -192,7 +192,7 @@ class ExpansionProof:
             self._names.setdefault(real(path), set()).add(str(path))
 
     def _edited(self, former: Trial, arguments: Mapping[str, str], edits: Collection[Edit]) -> Expansion:
-        """Return the expansion of a trial with edits; those of elements that it leaves out are left out, too."""
+        """Return the expansion of a trial with edits, except edits in its omitted elements."""
         texts = dict(self._texts)
         for file in {edit.file for edit in edits} | {*former.gaps}:
             gaps = former.gaps.get(file, ())

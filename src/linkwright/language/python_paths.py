@@ -1,4 +1,4 @@
-"""The values of expressions for texts and paths in a Python text in any state, which is not run."""
+"""The values of string and path expressions in a Python text, which is not run."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _WRAPPERS = frozenset(
         *("realpath", "abspath", "normpath", "as_posix", "open"),
     }
 )
-"""Functions whose value is that of their first argument."""
+"""The functions whose value is the value of their first argument."""
 _DEEPEST = 30
 
 
@@ -32,8 +32,8 @@ class Value:
     """A text or path.
 
     Attributes:
-        text: the text; a path below a share folder starts with the folder.
-        is_path: whether it starts with a folder that is known.
+        text: the text. A path below a share folder begins with that folder.
+        is_path: whether it begins with a known folder.
     """
 
     text: str
@@ -41,13 +41,13 @@ class Value:
 
 
 class PythonPaths:
-    """The values in a Python text.
+    """Evaluates string and path expressions in a Python text.
 
     Args:
         python: the text.
         file: its file.
         finder: finds packages.
-        defaults: name -> value of launch configurations.
+        defaults: the values of launch configurations, by name.
     """
 
     def __init__(
@@ -59,16 +59,18 @@ class PythonPaths:
         self._finder = finder
 
     def value_of(self, item: Item | None) -> Value | None:
-        """Return the value of an item; None if it is not known."""
+        """Return the value of an item, or None if it is unknown."""
         return None if item is None else self._value(item.parts, 0)
 
     def text_of(self, item: Item | None) -> str | None:
-        """Return the text of an item that is not a path; None if it is not known."""
+        """Return the text of an item, or None if it is a path or unknown."""
         value = self.value_of(item)
         return None if value is None or value.is_path else value.text
 
     def before(self, text: Text, item: Item) -> Value | None:
-        """Return the path that the string at a place continues, ending in ``/`` if the string begins after it.
+        """Return the path that a string continues, or None if it is unknown.
+
+        The path ends with ``/`` if the string is a new component of it.
 
         Args:
             text: the string.
@@ -97,7 +99,7 @@ class PythonPaths:
         return None
 
     def _value(self, parts: Sequence[Part], depth: int) -> Value | None:
-        """Return the value of terms with ``+``, ``/`` or nothing between them."""
+        """Return the value of terms that are joined by ``+``, ``/`` or nothing."""
         if depth > _DEEPEST or not parts:
             return None
         value: Value | None = None

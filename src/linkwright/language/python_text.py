@@ -1,4 +1,7 @@
-"""The calls and strings of a Python text in any state, which is not run; a statement ends unfinished brackets."""
+"""The calls and strings of a Python text, which may be incomplete and is not run.
+
+Unclosed brackets end at the next statement.
+"""
 
 from __future__ import annotations
 
@@ -27,15 +30,15 @@ _TOKEN = lazy_pattern(
     re.VERBOSE | re.DOTALL,
 )
 _STATEMENT = frozenset({"def", "class", "return", "import", "from", "with", "try", "while", "raise", "del"})
-"""Words that begin a statement, and so cannot begin a line inside brackets."""
+"""The words that begin a statement. A line that begins with one ends all open brackets."""
 _CLOSING = {"(": ")", "[": "]", "{": "}", "": ""}
 _MOST_TEXT = 300_000
-"""Characters; longer files have no launch description."""
+"""The maximum length in characters. Longer files are not launch files."""
 
 
 @dataclass(frozen=True, slots=True)
 class Text:
-    """A string literal, or the part of it that is typed.
+    """A string literal, which may be incomplete.
 
     Attributes:
         value: the characters between the quotes, as written.
@@ -49,7 +52,7 @@ class Text:
 
     @property
     def end(self) -> int:
-        """The offset behind the last character between the quotes."""
+        """The offset after the last character between the quotes."""
         return self.start + len(self.value)
 
 
@@ -62,26 +65,26 @@ class Name:
 
     @property
     def end(self) -> int:
-        """The offset behind it."""
+        """The offset after the name."""
         return self.start + len(self.value)
 
 
 @dataclass(frozen=True, slots=True)
 class Operator:
-    """An operator, a number or another mark."""
+    """An operator, a number or a punctuation mark."""
 
     value: str
 
 
 @dataclass(slots=True, eq=False)
 class Item:
-    """A part between two commas, or a statement.
+    """A comma-separated part of a group, or a statement.
 
     Attributes:
         group: the brackets that contain it.
-        start: the offset behind the bracket, comma or line before it.
+        start: the offset after the bracket, comma or line before it.
         keyword: the name before ``=``, or empty.
-        parts: what it consists of.
+        parts: its strings, names, operators and groups.
     """
 
     group: Group
@@ -91,7 +94,7 @@ class Item:
 
     @property
     def after_colon(self) -> list[Part]:
-        """The parts behind the first colon, such as the value in a dictionary; all parts if there is none."""
+        """The parts after the first colon, such as a dictionary value, or all without a colon."""
         for number, part in enumerate(self.parts):
             if isinstance(part, Operator) and part.value == ":":
                 return self.parts[number + 1 :]
@@ -100,16 +103,16 @@ class Item:
 
 @dataclass(slots=True, eq=False)
 class Group:
-    """Brackets with what they contain, or the whole text.
+    """A pair of brackets with its content, or the whole text.
 
     Attributes:
-        opening: the opening bracket; empty for the whole text.
+        opening: the opening bracket, or empty for the whole text.
         callee: the name before the bracket of a call, or empty.
         start: the offset of the opening bracket.
-        end: the offset behind the closing bracket, or where the brackets end without one.
+        end: the offset after the closing bracket, or where unclosed brackets end.
         is_closed: whether there is a closing bracket.
         items: the parts between commas.
-        parent: the item that contains the brackets; None for the whole text.
+        parent: the item that contains the brackets, or None for the whole text.
     """
 
     opening: str
@@ -122,11 +125,11 @@ class Group:
 
     @property
     def function(self) -> str:
-        """The last part of the name of the function that is called."""
+        """The last part of the name of the called function."""
         return self.callee.rpartition(".")[2].strip()
 
     def argument(self, name: str, index: int | None = None) -> Item | None:
-        """Return the argument of a call by its keyword, or else by its position; None if it is not given."""
+        """Return the argument of a call by keyword, or else by position, or None."""
         for item in self.items:
             if item.keyword == name:
                 return item
@@ -146,9 +149,9 @@ class PythonText:
 
     Attributes:
         root: the whole text, whose items are the statements.
-        calls: all calls in the order of the text.
+        calls: all calls in text order.
         strings: all strings with the items that contain them.
-        bindings: name -> the statement or keyword that assigns it; None if several do.
+        bindings: the statement that assigns each name, or None if several do.
     """
 
     def __init__(self, text: str) -> None:
@@ -162,7 +165,7 @@ class PythonText:
             self._read(text)
 
     def calls_of(self, *functions: str) -> Iterator[Group]:
-        """Yield the calls of some functions, by the last part of their names."""
+        """Yield the calls of functions that have one of some names after the last dot."""
         return (call for call in self.calls if call.function in functions)
 
     def string_at(self, offset: int) -> tuple[Text, Item] | None:
@@ -264,5 +267,5 @@ class PythonText:
 
 @lru_cache(maxsize=16)
 def python_text(text: str) -> PythonText:
-    """Return the calls and strings of a text, which several requests share; they must not be changed."""
+    """Return the cached tree of a text, which callers must not change."""
     return PythonText(text)

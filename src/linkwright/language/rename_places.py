@@ -41,8 +41,8 @@ class RenamePlace:
         file: the file.
         start: the offset of the name.
         name: the name as written.
-        meaning: what it is: a name of a description or an SRDF, a mention of a link or joint in another file, a launch
-            argument with the file that it belongs to, or a name of an SDF model.
+        meaning: a name in a description or SRDF, a mention of a link or joint in another file, a launch argument with
+            the file that it belongs to, or a name in an SDF model.
     """
 
     file: Path
@@ -52,12 +52,12 @@ class RenamePlace:
 
     @property
     def end(self) -> int:
-        """The offset behind the name."""
+        """The offset after the name."""
         return self.start + len(self.name)
 
 
 def place_at(project: Workspace, texts: Mapping[Path, str], file: Path, offset: int) -> RenamePlace | None:
-    """Return the name at an offset of a file that can be renamed; None if there is none.
+    """Return the name at an offset of a file, or None if there is no renamable name.
 
     Args:
         project: the workspace.
@@ -88,7 +88,7 @@ def place_at(project: Workspace, texts: Mapping[Path, str], file: Path, offset: 
 
 
 def _mention_at(text: str, file: Path, offset: int) -> Mention | None:
-    """Return the mention of a link or joint at an offset of YAML, an RViz configuration or a launch file."""
+    """Return the mention of a link or joint at an offset of a file that is not a description."""
     begin = text.rfind("\n", 0, offset) + 1
     end = text.find("\n", offset)
     line = text[begin : end if end >= 0 else len(text)]
@@ -103,7 +103,7 @@ def _mention_at(text: str, file: Path, offset: int) -> Mention | None:
 
 
 def _robots_with(project: Workspace, texts: Mapping[Path, str], mention: Mention) -> Iterator[tuple[Path, NameKind]]:
-    """Yield the descriptions that a file may mean and that have a link or joint of its name, each with the kind."""
+    """Yield the descriptions that may contain the mentioned link or joint, each with the kind."""
     for robot in robots_of_file(project, texts, mention.file):
         known = names_of_robot(project, texts, robot)
         for kind in mention.kinds:
@@ -117,7 +117,7 @@ def _fits(written: str, name: str) -> bool:
 
 
 def rename_place(project: Workspace, texts: Mapping[Path, str], place: RenamePlace, new: str) -> Renaming:
-    """Return the edits that rename what a place names.
+    """Return the edits that rename the name at a place.
 
     Args:
         project: the workspace.
@@ -146,7 +146,7 @@ def rename_place(project: Workspace, texts: Mapping[Path, str], place: RenamePla
 
 
 def _rename_occurrence(project: Workspace, texts: Mapping[Path, str], name: Occurrence, new: str) -> Renaming:
-    """Rename a name of a description or an SRDF; a use in an SRDF, or in a part of one, is that of another file."""
+    """Rename a name in a description, or a use in an SRDF of a name in another file."""
     is_use = name.kind in OF_ROBOT[:2] and not name.is_definition
     if is_use and is_srdf(name.file):
         return _rename_in_srdf(project, texts, name, new)
@@ -162,7 +162,7 @@ def _rename_occurrence(project: Workspace, texts: Mapping[Path, str], name: Occu
 
 
 def _rename_mention(project: Workspace, texts: Mapping[Path, str], mention: Mention, new: str) -> Renaming:
-    """Rename the link or joint of the first description with which the place of the mention gets the new name."""
+    """Rename the link or joint in the first description whose renaming changes the mention."""
     error: LinkwrightError | None = None
     for robot, kind in islice(_robots_with(project, texts, mention), _MAX_ROBOTS):
         try:
@@ -172,7 +172,7 @@ def _rename_mention(project: Workspace, texts: Mapping[Path, str], mention: Ment
             continue
         if any((edit.file, edit.start) == (mention.file, mention.start) for edit in renaming.edits):
             return renaming
-        error = error or _refused(mention.name, phrase("several robots have this name, and the file may mean each"))
+        error = error or _refused(mention.name, phrase("several robots have this name, and the file may refer to any"))
     raise error or _refused(mention.name, phrase("no description of the workspace has it"))
 
 
@@ -220,6 +220,6 @@ def _refused(name: str, reason: Phrase, span: Span | None = None) -> LinkwrightE
 
 
 def _invalid(new: str, kind: Phrase) -> LinkwrightError:
-    message = phrase("'{new}' is not a valid name of a {kind}", new=new, kind=kind)
+    message = phrase("'{new}' is not a valid {kind} name", new=new, kind=kind)
     hint = phrase("use letters, digits and underscores, and begin with a letter")
     return LinkwrightError(Diagnostic("LANG102", message, hint=hint))

@@ -1,8 +1,8 @@
-"""Renaming of macros, parameters, properties, arguments, links, joints and materials, proved by expansions.
+"""Renaming of macros, properties, links and other names in descriptions.
 
 The edits are tried on the descriptions that include the file, with each set of arguments that their callers pass. A
 macro, parameter, property or argument may be renamed if all expansions stay equal. A link, joint or material may be
-renamed if the expansions differ in names alone, and every name that changes has one new name wherever it occurs.
+renamed if the expansions differ only in names, and every name that changes has a single new name.
 """
 
 from __future__ import annotations
@@ -37,8 +37,8 @@ class Renaming:
     Attributes:
         edits: the edits, in the order of files and offsets.
         names: the names of links, joints and materials that change, old name -> new name.
-        unchanged: mentions of these names that are not certain to mean them; the edits leave them unchanged.
-        notes: what the user should know: further names that change, and parts that could not be compared.
+        unchanged: uncertain mentions of these names, which the edits do not change.
+        notes: notes for the user about further names that change, and parts that could not be compared.
     """
 
     edits: tuple[Edit, ...]
@@ -48,8 +48,8 @@ class Renaming:
 
 
 def occurrence_at(text: str, file: Path, offset: int) -> Occurrence | None:
-    """Return the name at an offset that can be renamed; None if there is none."""
-    if root_of(file) is SDF:  # the names of a model have scopes of their own
+    """Return the name at an offset, or None if there is no renamable name."""
+    if root_of(file) is SDF:  # the names of SDF models have their own scopes
         return None
     return _innermost(occurrences_in(text, file), offset)
 
@@ -65,7 +65,7 @@ def _innermost(names: Iterable[Occurrence], offset: int) -> Occurrence | None:
 
 
 def references(project: Workspace, texts: Mapping[Path, str], name: Occurrence) -> list[Occurrence]:
-    """Return the places in a description that mean the same name, in all of its files.
+    """Return the definitions and uses of a name in all files of its descriptions.
 
     Args:
         project: the workspace.
@@ -86,13 +86,13 @@ def references(project: Workspace, texts: Mapping[Path, str], name: Occurrence) 
 
 
 def rename(project: Workspace, texts: Mapping[Path, str], name: Occurrence, new: str) -> Renaming:
-    """Return the edits that rename something.
+    """Return the proved edits that give a name another spelling.
 
     Args:
         project: the workspace.
         texts: the texts of the open files.
         name: the name, as `occurrence_at` returns it.
-        new: the new name, as it is to be written at the place of the old one.
+        new: the new name, as it replaces the text of the old one.
 
     Raises:
         LinkwrightError: LANG102, the new name is not valid; LANG103, it exists; LANG104, the edits cannot be proved.
@@ -112,14 +112,14 @@ def rename(project: Workspace, texts: Mapping[Path, str], name: Occurrence, new:
 
 
 def _proved(project: Workspace, texts: Mapping[Path, str], name: Occurrence, new: str) -> Renaming:
-    """Return the renaming with edits at the occurrences of the name, and those that follow from them."""
+    """Return the edits of the occurrences of a name, and the edits that follow from them."""
     proof = ExpansionProof(project, texts, name.file, is_partial=True)
     notes: list[Phrase] = []
     probes = {} if is_reached(proof, project.text(name.file, texts) or "", name) else probes_of(project, texts, name)
-    if probes:  # no expansion contains the place: a call of the macro shows what changes
+    if probes:  # no expansion contains the name, so generated calls of its macro are compared
         texts = {**texts, **probes}
         proof = ExpansionProof(project, texts, name.file, is_partial=True)
-        notes.append(phrase("no description uses this part; it was checked with a call that was made for it"))
+        notes.append(phrase("no description calls this macro, so the edits were checked with generated calls"))
     seeds = references(project, texts, name)
     if name.kind in OF_ROBOT:
         renaming = RobotRenaming(project, texts, name, new, proof)
@@ -153,7 +153,7 @@ def _equal(
     edits: set[Edit],
     renamed: Mapping[str, str],
 ) -> set[Edit]:
-    """Return edits with which all expansions stay equal; a parameter may reach other macros by its name.
+    """Return edits that keep all expansions equal, with uses of a parameter in other macros.
 
     xacro's scopes are dynamic: a macro that is called in another one sees its parameters, and ``name:=^`` forwards
     them.
@@ -178,7 +178,7 @@ def _equal(
 
 
 def _visible_elsewhere(project: Workspace, texts: Mapping[Path, str], name: Occurrence, new: str) -> set[Edit]:
-    """Return the edits of the properties with the name of a parameter, and of the parameters that forward it."""
+    """Return the edits of properties with the name of a parameter, and of forwarding parameters."""
     if name.kind not in (NameKind.PARAMETER, NameKind.PROPERTY):
         return set()
     found: set[Edit] = set()
@@ -239,7 +239,7 @@ def _check_new_name(name: Occurrence, new: str) -> None:
     if name.kind is NameKind.MACRO or (name.kind in OF_ROBOT and "$" not in new):
         is_valid = _NAME.fullmatch(new) is not None
     if not is_valid:
-        message = phrase("'{new}' is not a valid name of a {kind}", new=new, kind=term(name.kind.value))
+        message = phrase("'{new}' is not a valid {kind} name", new=new, kind=term(name.kind.value))
         hint = phrase("use letters, digits and underscores, and begin with a letter")
         raise LinkwrightError(Diagnostic("LANG102", message, hint=hint))
 
@@ -255,7 +255,10 @@ def _span(project: Workspace, texts: Mapping[Path, str], name: Occurrence) -> Sp
 
 
 def _call_range(text: str, span: Span) -> tuple[int, int]:
-    """Return the offsets of a call in the text of its file; in Python, those of the lines of the whole expression."""
+    """Return the start and end of a call in its file.
+
+    In Python, the end is the end of the last line of the expression.
+    """
     source = SourceText(span.file, text)
     first, last = source.offset(span.line, 1), source.offset(span.end_line, span.end_column)
     if span.file.endswith(".py"):

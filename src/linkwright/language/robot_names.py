@@ -1,17 +1,19 @@
-"""The names of links and joints after the expansion of descriptions, with the places that write them."""
+"""The links and joints of expanded descriptions, with the locations of their names."""
 
 from __future__ import annotations
 
 import os
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from weakref import WeakKeyDictionary
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.language.definitions import NameDefinition, NameKind, definitions_in
+from linkwright.language.format import Document, NotYetKnownError
 from linkwright.language.includes import real
 from linkwright.language.valid_parts import valid_parts
 from linkwright.language.workspace import Workspace
@@ -36,97 +38,106 @@ class _Robot:
     state: _State
     names: tuple[NameDefinition, ...]
     texts: frozenset[str] = frozenset()
-    """The names of files in its elements, such as that of the parameters of controllers."""
+    """The names of YAML files in its elements, such as parameters of controllers."""
     is_expanded: bool = True
 
 
 _robots: WeakKeyDictionary[Workspace, dict[Path, _Robot]] = WeakKeyDictionary()
 
 
-def robot_names(project: Workspace, texts: Mapping[Path, str], file: Path) -> list[NameDefinition]:
-    """Return the links and joints of the robots that a file is likely to be about, the likeliest robot first.
+def robot_names(document: Document) -> list[NameDefinition]:
+    """Return the links and joints of the robots that a file probably means, the likeliest first.
 
-    A name that contains expressions is that of the expansion, and its place is the attribute that writes it. A
-    description that cannot be expanded has the names that are written without expressions.
+    Names with expressions are expanded, and located at the attribute with the expressions. A description that cannot
+    be expanded provides its earlier names, the names in its valid parts, or the names without expressions.
 
     Args:
-        project: the workspace.
-        texts: the texts of the open files.
-        file: a file of parameters, a configuration or a description.
+        document: a file of parameters, a configuration or a description.
+
+    Raises:
+        NotYetKnownError: no description was read, and the document does not wait.
     """
-    cache = _robots.setdefault(project, {})
     robots: list[_Robot] = []
     begin = time.monotonic()
-    for entry in _likely_robots(project, texts, file):
-        robot = cache.get(entry)
-        if robot is None or robot.state != _state((path for path, _ in robot.state), texts):
-            if time.monotonic() - begin > _MAX_SECONDS:
-                break  # the next request continues
-            robot = _read_again(cache, project, texts, entry)
+    for entry in _likely_robots(document):
+        if time.monotonic() - begin > _MAX_SECONDS:
+            break  # the next request continues
+        robot = _robot(document, entry)
+        if robot is not None:
+            robots.append(robot)
+        elif not robots:
+            raise NotYetKnownError
+    return _names(sorted(robots, key=lambda robot: document.file.name not in robot.texts))
+
+
+def part_names(document: Document) -> list[NameDefinition]:
+    """Return the links and joints of the expanded descriptions that include a file.
+
+    Args:
+        document: a description, or a file that descriptions include.
+
+    Raises:
+        NotYetKnownError: a description was not read, and the document does not wait.
+    """
+    robots: list[_Robot] = []
+    entries = document.project.index.entries(document.file, document.texts)[:_MAX_ENTRIES]
+    for entry in dict.fromkeys((*entries, document.file)):
+        if entry == document.file and entry not in entries and any(robot.is_expanded for robot in robots):
+            continue  # the file alone counts only if no description that includes it can be expanded
+        robot = _robot(document, entry)
+        if robot is None:
+            raise NotYetKnownError
         robots.append(robot)
+    return _names(robots)
+
+
+def mentioned_robots(document: Document, words: Collection[str]) -> list[Path]:
+    """Return the likely descriptions with links or joints in some words, the best match first.
+
+    Args:
+        document: the file with the words.
+        words: the words.
+
+    Raises:
+        NotYetKnownError: no description was read, and the document does not wait.
+    """
+    robot_names(document)  # reads them
+    cache = _robots.get(document.project, {})
+    counts = {
+        entry: len({name.name for name in cache[entry].names} & {*words})
+        for entry in _likely_robots(document)
+        if entry in cache
+    }
+    return sorted((entry for entry, count in counts.items() if count), key=lambda entry: -counts[entry])
+
+
+def _names(robots: Iterable[_Robot]) -> list[NameDefinition]:
+    """Return the names of some robots, the first of each kind and name."""
     names: dict[tuple[NameKind, str], NameDefinition] = {}
-    for robot in sorted(robots, key=lambda robot: file.name not in robot.texts):
-        for name in robot.names:
-            names.setdefault((name.kind, name.name), name)
+    for name in (name for robot in robots for name in robot.names):
+        names.setdefault((name.kind, name.name), name)
     return list(names.values())
 
 
-class PartNames:
-    """The links and joints of the descriptions that include a file, after their expansion.
-
-    An editor asks for them at each key. So those of an earlier text are used until `read` has found the present ones.
-
-    Args:
-        project: the workspace.
-        texts: the texts of the open files.
-        file: a description, or a file that descriptions include.
-    """
-
-    def __init__(self, project: Workspace, texts: Mapping[Path, str], file: Path) -> None:
-        self._project = project
-        self._texts = texts
-        self._file = file
-        self._is_asked = False
-
-    def __call__(self) -> list[NameDefinition]:
-        """Return the known names, the first of each, without expanding anything."""
-        self._is_asked = True
-        names: dict[tuple[NameKind, str], NameDefinition] = {}
-        for name in (name for robot in self._known() for name in robot.names):
-            names.setdefault((name.kind, name.name), name)
-        return list(names.values())
-
-    @property
-    def is_missing(self) -> bool:
-        """Whether the names were asked for, and a description was never read."""
-        return self._is_asked and any(entry not in _robots.get(self._project, {}) for entry in self._entries())
-
-    @property
-    def is_stale(self) -> bool:
-        """Whether the names were asked for, and a text has changed since they were found."""
-        robots = self._known() if self._is_asked else []
-        return any(robot.state != _state((path for path, _ in robot.state), self._texts) for robot in robots)
-
-    def read(self) -> None:
-        """Expand the descriptions that have changed, or were never read."""
-        cache = _robots.setdefault(self._project, {})
-        for entry in (*self._entries(), self._file):
-            if entry == self._file and any(robot.is_expanded for robot in self._known()):
-                continue  # the file alone counts where what includes it cannot be expanded
-            robot = cache.get(entry)
-            if robot is None or robot.state != _state((path for path, _ in robot.state), self._texts):
-                _read_again(cache, self._project, self._texts, entry)
-
-    def _known(self) -> list[_Robot]:
-        cache = _robots.get(self._project, {})
-        return [cache[entry] for entry in dict.fromkeys((*self._entries(), self._file)) if entry in cache]
-
-    def _entries(self) -> list[Path]:
-        return self._project.index.entries(self._file, self._texts)[:_MAX_ENTRIES]
+def _robot(document: Document, entry: Path) -> _Robot | None:
+    """Return the names of a description, or None if they are unknown and it may not wait."""
+    cache = _robots.setdefault(document.project, {})
+    robot = cache.get(entry)
+    if robot is not None and robot.state == _state((path for path, _ in robot.state), document.texts):
+        return robot
+    if document.waits:
+        robot = _read(document.project, document.texts, entry, cache.pop(entry, None))
+        cache[entry] = robot
+        if len(cache) > _MAX_STORED:
+            del cache[next(iter(cache))]
+    elif robot is not None:
+        document.refreshes.append(partial(_robot, replace(document, waits=True), entry))
+    return robot
 
 
-def _likely_robots(project: Workspace, texts: Mapping[Path, str], file: Path) -> list[Path]:
-    """Return the descriptions that no other one includes, those of the file's package first, then by its name."""
+def _likely_robots(document: Document) -> list[Path]:
+    """Return the top-level descriptions, sorted by their relation to the file's package."""
+    file = document.file
     package = enclosing_package(file.parent)
     name, folder = ("", file.parent) if package is None else (package[1].name, real(package[1]))
 
@@ -134,7 +145,7 @@ def _likely_robots(project: Workspace, texts: Mapping[Path, str], file: Path) ->
         shared = max(_common_beginning(name, part) for part in entry.parts)
         return not entry.is_relative_to(folder), -shared
 
-    entries = [entry for entry in project.index.roots(texts) if entry.name.endswith(_ENDINGS)]
+    entries = [entry for entry in document.project.index.roots(document.texts) if entry.name.endswith(_ENDINGS)]
     return sorted(entries, key=distance)[:_MAX_ROBOTS]
 
 
@@ -144,26 +155,17 @@ def _common_beginning(name: str, other: str) -> int:
     return next((number for number, (a, b) in enumerate(pairs) if a != b), min(len(name), len(other)))
 
 
-def _read_again(cache: dict[Path, _Robot], project: Workspace, texts: Mapping[Path, str], entry: Path) -> _Robot:
-    """Return the present names of a description, and store them in place of those that were read first."""
-    robot = _read(project, texts, entry, cache.pop(entry, None))
-    cache[entry] = robot
-    if len(cache) > _MAX_STORED:
-        del cache[next(iter(cache))]
-    return robot
-
-
 def _read(project: Workspace, texts: Mapping[Path, str], entry: Path, before: _Robot | None) -> _Robot:
     """Return the names of a description.
 
-    While it cannot be expanded, because its text is being typed, these are the names from before, or those of the
-    saved files.
+    If its text cannot be expanded, these are its earlier names, the names in the saved files, in the valid parts, or in
+    the text.
 
     Args:
         project: the workspace.
         texts: the texts of the open files.
         entry: the description.
-        before: its names from before; None if there are none.
+        before: its earlier names, or None.
     """
     robot = _expanded(project, texts, entry)
     if robot is not None:
@@ -184,7 +186,7 @@ def _read(project: Workspace, texts: Mapping[Path, str], entry: Path, before: _R
 
 
 def _expanded(project: Workspace, texts: Mapping[Path, str], entry: Path) -> _Robot | None:
-    """Return the names after the expansion, for the first argument set that has one; None if there is none."""
+    """Return the names in the first expansion without errors, or None if there is none."""
     overlay = Overlay({str(path): text for path, text in texts.items()})
     for arguments, _ in project.calls(entry)[:_MAX_ARGUMENT_SETS]:
         with suppress(LinkwrightError, OSError, RecursionError):
@@ -222,7 +224,7 @@ def _state(files: Iterator[str] | list[str] | map[str], texts: Mapping[Path, str
 
 
 def written_length(text: str, name: NameDefinition) -> int:
-    """Return the length of a name as its file has it, where it may contain expressions."""
+    """Return the length of a name as written in its file, possibly with expressions."""
     quote = text[name.start - 1 : name.start]
     end = text.find(quote, name.start) if quote in ("'", '"') and quote else -1
     return end - name.start if end >= 0 else len(name.name)

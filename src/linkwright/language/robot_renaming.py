@@ -1,7 +1,7 @@
-"""Renaming of links, joints and materials: the edits that follow from a new name, proved by expansions.
+"""Renaming of links, joints and materials, with the edits that follow from it.
 
-The edits are extended until all definitions and references have their new names; then the expansions may differ in
-these names alone.
+The edits are extended until all definitions and references have their new names. Then the expansions may differ only in
+these names.
 """
 
 from __future__ import annotations
@@ -27,9 +27,9 @@ OF_ROBOT = (NameKind.LINK, NameKind.JOINT, NameKind.MATERIAL)
 Names = Mapping[tuple[NameKind, str], str]
 
 _MAX_ROUNDS = 8
-"""How often references that still have an old name are searched."""
+"""The maximum number of searches for references with an old name."""
 _MAX_PROPOSALS = 6
-"""How many edits of a computed name are tried."""
+"""The maximum number of edits that are tried for a computed name."""
 
 
 class RobotRenaming:
@@ -45,7 +45,7 @@ class RobotRenaming:
     Attributes:
         edits: the edits.
         names: the names that change.
-        unchanged: mentions of changed names that are not certain.
+        unchanged: uncertain mentions of changed names.
     """
 
     def __init__(
@@ -61,10 +61,10 @@ class RobotRenaming:
         self._others = OtherFiles(project, texts, name.file, proof)
 
     def run(self, seeds: Iterable[Occurrence]) -> None:
-        """Find the edits, from those at the places that are certain.
+        """Find all edits that follow from the edits of certain occurrences.
 
         Args:
-            seeds: the places.
+            seeds: the certain occurrences.
 
         Raises:
             UnprovedError: the expansions differ in more than names, or a reference cannot be edited.
@@ -86,7 +86,7 @@ class RobotRenaming:
         raise error or UnprovedError(self._nothing())
 
     def _rename_unused(self, seeds: Iterable[Occurrence], required: Names) -> None:
-        """Rename a name that no expansion has, such as a material that nothing uses: all expansions stay equal."""
+        """Rename a name that no expansion contains, such as an unused material."""
         name = self._name
         edits = {Edit(seed.file, seed.start, seed.end, self._new) for seed in seeds}
         if "$" in name.name or not any(seed.is_definition for seed in seeds):
@@ -105,7 +105,7 @@ class RobotRenaming:
         )
 
     def _required(self) -> Names:
-        """Return the names that must change, each with its new name: those that the place has in the expansions."""
+        """Return the values of the name in the expansions, each with its new value."""
         name = self._name
         if "$" not in name.name:
             return {(self._kind(), name.name): self._new}
@@ -117,7 +117,7 @@ class RobotRenaming:
         return required
 
     def _kind(self) -> NameKind:
-        """Return the kind of a literal name; a place that may name a link or a joint names what is defined."""
+        """Return the kind of a literal name: of its definition, or else of its occurrence."""
         name = self._name
         for kind in (name.kind, *OF_ROBOT[:2]):
             if self._defines(kind, name.name):
@@ -132,7 +132,7 @@ class RobotRenaming:
         )
 
     def _values_at_place(self) -> Iterator[str]:
-        """Yield the values that the name at the place has in the expansions."""
+        """Yield the values of the name in the expansions."""
         files = self._proof.names_of(self._name.file)
         for trial in self._proof.trials:
             for element in trial.expansion.document.root.walk():
@@ -147,7 +147,7 @@ class RobotRenaming:
                         yield value
 
     def _proposals(self, required: Names, literal: set[Edit]) -> Iterator[set[Edit]]:
-        """Yield the edits to begin with: those at the places, and those of the computed definitions."""
+        """Yield the initial edits: of certain occurrences, and of computed definitions."""
         computed: list[tuple[WrittenText, str, str]] = []
         for kind, value in required:
             for trial in self._proof.trials:
@@ -189,10 +189,10 @@ class RobotRenaming:
                 return
             edits = edits | more
             _check_overlap(edits)
-        raise UnprovedError(phrase("some references keep the old name"))
+        raise UnprovedError(phrase("some references would keep the old name"))
 
     def _leftovers(self, edits: Collection[Edit], names: Names) -> Iterator[Mention]:
-        """Yield values in the descriptions that are old names and that no expansion uses, such as an unused default."""
+        """Yield unused values with an old name in the descriptions, such as unused defaults."""
         edited = {(edit.file, edit.start) for edit in edits}
         words = "|".join(re.escape(old) for old in dict.fromkeys(old for _, old in names))
         pattern = re.compile(rf"(?<![^\s\"'=])({words})(?=[\"'\s])" if words else r"(?!)")
@@ -224,12 +224,12 @@ class RobotRenaming:
                 proposal = next(self._sources.edits(written, before, wanted), None)
                 if proposal is None:
                     raise _computed(written, before, old.attribute_span(key) if key else old.span())
-                if {*proposal} <= {*edits}:  # it is edited already, and yet the value is the same
+                if {*proposal} <= {*edits}:  # the edits did not change the value
                     raise _computed(written, before, old.attribute_span(key) if key else old.span())
                 yield from proposal
 
     def _check(self, pairs: Sequence[ExpansionPair], names: Names, required: Names) -> None:
-        """Check that the expansions differ in the names alone."""
+        """Check that the expansions differ only in the names."""
         missing = next((old for (kind, old), new in required.items() if names.get((kind, old)) != new), None)
         if missing is not None:
             raise UnprovedError(phrase("'{name}' is not defined in the expansion of a description", name=missing))
@@ -248,7 +248,7 @@ class RobotRenaming:
                     raise UnprovedError(phrase("two {kind}s would have the same name", kind=term(kind.value)))
 
     def _check_sharing(self, pairs: Sequence[ExpansionPair], required: Names) -> None:
-        """Check that no description without the name changes, which would be another robot with the same macros."""
+        """Check that no description without the name changes, as another robot may share macros."""
         owners = {
             pair.entry
             for pair in pairs
@@ -279,12 +279,12 @@ def _check_overlap(edits: Iterable[Edit]) -> None:
     for first, second in pairwise(ordered):
         if first.file == second.file and first.end > second.start:
             raise UnprovedError(
-                phrase("one text would have to be {names}", names=quoted_names((first.text, second.text), " and "))
+                phrase("one text would have to become {names}", names=quoted_names((first.text, second.text), " and "))
             )
 
 
 def _definitions(root: Element, kind: NameKind) -> Iterator[Element]:
-    """Yield the elements that define names of a kind: links and joints of the robot, materials anywhere."""
+    """Yield the elements that define names: links and joints of the robot, or all materials."""
     if kind is NameKind.MATERIAL:
         yield from (element for element in root.walk() if element.tag == "material")
     elif root.tag == "robot":
@@ -300,13 +300,13 @@ def _values(root: Element, kind: NameKind) -> Iterator[str]:
 
 
 def _changed_names(pairs: Iterable[ExpansionPair]) -> Iterator[tuple[tuple[NameKind, str], str]]:
-    """Yield the names that differ, each once; a name must have the same new name everywhere."""
+    """Yield the changed names, each once with its single new name."""
     names: dict[tuple[NameKind, str], str] = {}
     for pair in pairs:
         for kind in OF_ROBOT:
             olds, news = [*_values(pair.before, kind)], [*_values(pair.after, kind)]
             if len(olds) != len(news):
-                raise UnprovedError(phrase("the robot would have another number of {kind}s", kind=term(kind.value)))
+                raise UnprovedError(phrase("the number of {kind}s would change", kind=term(kind.value)))
             for old, new in zip(olds, news, strict=True):
                 if old == new:
                     continue
@@ -320,7 +320,7 @@ def _changed_names(pairs: Iterable[ExpansionPair]) -> Iterator[tuple[tuple[NameK
 
 
 def _names_in(element: Element, *, is_top: bool) -> Iterator[tuple[tuple[NameKind, ...], str]]:
-    """Yield the attributes of an element (an empty name for its text) that name something, with the kinds."""
+    """Yield the kinds of each name in an element, and its attribute, or empty for the text."""
     for key in element.attributes:
         if key == "name" and element.tag in ("link", "joint"):
             yield (NameKind.LINK if element.tag == "link" else NameKind.JOINT,), key
@@ -339,12 +339,15 @@ def _defined(root: Element) -> set[str]:
 
 
 def _is_derived(old: str, new: str, allowed: Collection[tuple[str, str]]) -> bool:
-    """Return whether a name, such as that of a transmission, changed because it contains that of a joint or link."""
+    """Return whether a name changed only because it contains the name of a joint or link.
+
+    An example is the name of a transmission.
+    """
     return any(name in old and old.replace(name, changed) == new for name, changed in allowed)
 
 
 def _differences(before: Element, after: Element) -> Iterator[tuple[str, str, str]]:
-    """Yield the attribute values and texts that differ: the attribute or an empty text, the value before and after."""
+    """Yield the attribute (empty for a text) and both values of each difference."""
     olds, news = [*before.walk()], [*after.walk()]
     if [old.tag for old in olds] != [new.tag for new in news]:
         raise UnprovedError(phrase("the robot would have other elements"))

@@ -22,6 +22,7 @@ from linkwright.language.rviz_owners import (
     ConfigOwner,
     display_class,
     display_schema,
+    load_displays,
     owner_of,
 )
 from linkwright.language.yaml_outline import Place, YamlCursor, YamlOutline
@@ -73,7 +74,7 @@ def _keys(document: Document, cursor: YamlCursor) -> Iterator[Completion]:
         if spec.name not in present and not spec.read_only:
             yield _property(spec, cursor.start, has_value=has_value)
     if owner.keys[-1:] in (("Links",), ("Frames",)):
-        for name in robot_names(document.project, document.texts, document.file):
+        for name in robot_names(document):
             if name.kind is NameKind.LINK and name.name not in present:
                 snippet = "" if has_value else f"{snippet_text(name.name)}:\n  $0"
                 yield Completion(name.name, ItemKind.NAME, cursor.start, name.file.name, "", snippet)
@@ -168,7 +169,7 @@ def _classes(owner: ConfigOwner) -> Iterator[tuple[str, str]]:
 
 
 def _purpose(name: str) -> str:
-    """Return the first paragraph about a class of displays, tools or views; empty if there is none."""
+    """Return the purpose of a class of displays or tools, or empty if it is unknown."""
     if name in TOOL_KINDS:
         return TOOL_KINDS[name].name
     display = display_class(name)
@@ -178,7 +179,7 @@ def _purpose(name: str) -> str:
 def _frames(document: Document, start: int, *, with_fixed: bool) -> Iterator[Completion]:
     if with_fixed:
         yield Completion(FIXED_FRAME, ItemKind.VALUE, start)
-    for name in robot_names(document.project, document.texts, document.file):
+    for name in robot_names(document):
         if name.kind is NameKind.LINK:
             yield Completion(name.name, ItemKind.NAME, start, name.file.name)
     for frame in _FRAMES:
@@ -186,7 +187,7 @@ def _frames(document: Document, start: int, *, with_fixed: bool) -> Iterator[Com
 
 
 def _topics(document: Document) -> Iterator[str]:
-    """Yield the topics that the configuration itself names."""
+    """Yield the topics in the configuration."""
     yield from dict.fromkeys(match[1] for match in _TOPIC.finditer(document.text))
 
 
@@ -194,7 +195,7 @@ def _topics(document: Document) -> Iterator[str]:
 
 
 def explain_rviz(document: Document, offset: int) -> Explanation | None:
-    """Explain the key or value at an offset of a configuration; None if there is nothing to say."""
+    """Explain the key or value at an offset of a configuration, or return None."""
     cursor = YamlOutline(document.text).cursor(offset)
     start, end, word = word_at(document.text, cursor)
     if not word:
@@ -233,7 +234,7 @@ def _explained_class(name: str) -> str:
 
 
 def define_in_rviz(document: Document, offset: int) -> Iterator[Target]:
-    """Yield the link that a frame or a key of a robot's links names."""
+    """Yield the definition of the link at an offset, in a frame or a list of links."""
     cursor = YamlOutline(document.text).cursor(offset)
     _, _, word = word_at(document.text, cursor)
     if not word:
@@ -243,7 +244,7 @@ def define_in_rviz(document: Document, offset: int) -> Iterator[Target]:
     if cursor.place is Place.VALUE and cursor.within.parent is not None:
         spec = owner_of(cursor.within.parent).spec(cursor.within.key)
         names_link = spec is not None and spec.kind == "frame"
-    for name in robot_names(document.project, document.texts, document.file) if names_link else ():
+    for name in robot_names(document) if names_link else ():
         if name.kind is NameKind.LINK and name.name == word:
             yield target_of(document, name)
             return
@@ -255,4 +256,5 @@ RVIZ_FILES = Format(
     explain=explain_rviz,
     define=define_in_rviz,
     symbols=yaml_symbols,
+    prepare=load_displays,
 )

@@ -74,12 +74,12 @@ _MANAGER: Schema = (
 
 @dataclass(frozen=True, slots=True)
 class ConfigOwner:
-    """The display, tool, view or group of options that a place of a configuration belongs to.
+    """The display, tool, view or options that a position in a configuration belongs to.
 
     Attributes:
-        role: ``Displays``, ``Tools``, ``Views``, ``Panels`` or ``Global Options``; empty for the frame of the file.
+        role: ``Displays``, ``Tools``, ``Views``, ``Panels`` or ``Global Options``, or empty outside of these.
         entry: the entry of the display, tool or view.
-        keys: the keys from the entry to the place.
+        keys: the keys from the entry to the position.
     """
 
     role: str
@@ -88,13 +88,13 @@ class ConfigOwner:
 
     @property
     def class_name(self) -> str:
-        """RViz 2's name of the class; empty if it is not written yet."""
+        """The class name in RViz 2, or empty if it is missing."""
         written = self.entry.child("Class")
         return "" if written is None else modern_class(written.scalar)
 
     @property
     def schema(self) -> Schema:
-        """The properties at the place."""
+        """The properties at the position."""
         if self.role == "Displays" and self.keys[-2:-1] in (("Links",), ("Frames",)):
             return _LINK if self.keys[-2] == "Links" else _LINK[-1:]
         if self.role == "Displays" and self.keys[-1:] == ("Frames",):
@@ -127,7 +127,10 @@ class ConfigOwner:
         return (PropertySpec("Current", "group"), PropertySpec("Saved", "group")) if self.entry.key == "Views" else ()
 
     def spec(self, key: str) -> PropertySpec | None:
-        """Return the property with a key at the place; the value of a property with children has the key ``Value``."""
+        """Return the property that a key at the position sets, or None.
+
+        The value of a property with children has the key ``Value``.
+        """
         if key == "Value" and self.keys and self.keys[-2:-1] not in (("Links",), ("Frames",)):
             return ConfigOwner(self.role, self.entry, self.keys[:-1]).spec(self.keys[-1])
         return next((spec for spec in self.schema if spec.name == key), None)
@@ -161,11 +164,17 @@ def display_class(name: str) -> Any:
 def _loaded(entry: EntryPoint) -> Any:
     try:
         return entry.load()
-    except Exception:  # noqa: BLE001  # of a package that is not ours anything may be wrong
+    except Exception:  # noqa: BLE001  # a display of another package may fail in any way
         return None
 
 
+def load_displays() -> None:
+    """Import the classes of displays. The first import is slow."""
+    for name in extensions(DISPLAYS):
+        display_class(name)
+
+
 def display_schema(name: str) -> Schema:
-    """Return the properties of a class of displays; none if the class is not known."""
+    """Return the properties of a display class, or an empty tuple if it is unknown."""
     schema: Schema = getattr(display_class(name), "SCHEMA", ())
     return (*schema, *_OF_FRAMES) if name == "rviz_default_plugins/TF" else schema

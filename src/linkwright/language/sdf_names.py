@@ -1,7 +1,7 @@
-"""Names of links, joints, frames and models in SDF, which have the scope of the model or world around them.
+"""The names of links, joints, frames and models in SDF, with their scopes.
 
-A value such as ``arm::hand::palm`` leads from the scope of its place through nested models. Each part of it is a use of
-the name of one element.
+The scope of a name is the model or world around its element. A value such as ``arm::hand::palm`` refers from its own
+scope through nested models. Each part of it is a use of the name of one element.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ class SdfName:
     Attributes:
         name: the name.
         file: the file.
-        start: the offset of the place.
+        start: the offset of this occurrence.
         definition: the offset of the start tag of the element that has the name.
     """
 
@@ -50,12 +50,12 @@ class SdfName:
 
     @property
     def end(self) -> int:
-        """The offset behind the name."""
+        """The offset after the name."""
         return self.start + len(self.name)
 
 
 def sdf_names(text: str, file: Path) -> Iterator[SdfName]:
-    """Yield the names of links, joints, frames and models in a text, and their uses that lead to an element of it."""
+    """Yield the names of links, joints, frames and models in a text, and their uses."""
     for element in written_elements(text):
         if element.name in _DEFINING and element.parent is not None:
             for attribute in element.tag.attributes():
@@ -97,7 +97,7 @@ def rename_in_sdf(
     definition = innermost(written_elements(text), name.definition)
     scope = None if definition is None else _scope(definition.parent)
     if definition is None or scope is None:
-        raise UnprovedError(phrase("it is not defined in this file"), span)
+        raise UnprovedError(phrase("the name is not defined in this file"), span)
     if any(other.value("name") == new for other in _named(scope)):
         raise UnprovedError(phrase("'{name}' exists already", name=new), span)
     edits = {
@@ -137,7 +137,7 @@ def _check(project: Workspace, texts: Mapping[Path, str], file: Path, edits: set
 
 
 def _defines(element: WrittenElement) -> bool:
-    """Return whether a link or joint is one of a model, and not a parameter of a plugin or the state of a world."""
+    """Return whether an element belongs to a model or world, and not to a plugin or state."""
     parent = element.parent
     if any(outer.name == "state" for outer in element.around()):
         return False
@@ -145,7 +145,7 @@ def _defines(element: WrittenElement) -> bool:
 
 
 def _scope(element: WrittenElement | None) -> WrittenElement | None:
-    """Return the model or world that contains an element, or is it."""
+    """Return the innermost model or world that is or contains an element, or None."""
     while element is not None and element.name not in _SCOPES:
         element = element.parent
     return element
@@ -156,7 +156,7 @@ def _named(scope: WrittenElement) -> Iterator[WrittenElement]:
 
 
 def _references(element: WrittenElement, text: str) -> Iterator[tuple[str, int, WrittenElement]]:
-    """Yield the values of an element that may lead to names: the value, its offset and the scope that it begins in."""
+    """Yield the values of an element that may contain names, with offset and scope."""
     for attribute in element.tag.attributes():
         is_reference = attribute.name in _ATTRIBUTES or (element.name, attribute.name) == _MIMIC
         if is_reference and attribute.value:
@@ -177,7 +177,7 @@ def _references(element: WrittenElement, text: str) -> Iterator[tuple[str, int, 
 
 
 def _of_state(element: WrittenElement) -> Iterator[tuple[str, int, WrittenElement]]:
-    """Yield the name of a model or link in the state of a world, which is that of one in the world."""
+    """Yield the name of a model or link in the state of a world, as a use of that name."""
     around = [*element.around()]
     state = next((number for number, outer in enumerate(around) if outer.name == "state"), None)
     scope = None if state is None else _scope(around[state].parent)
@@ -193,7 +193,7 @@ def _of_state(element: WrittenElement) -> Iterator[tuple[str, int, WrittenElemen
 
 
 def _scope_of_place(element: WrittenElement) -> WrittenElement | None:
-    """Return the scope of an attribute; the pose of a model itself is in the scope around the model."""
+    """Return the scope of an element's attributes, which is outside the model for its pose."""
     parent = element.parent
     if element.name == "pose" and parent is not None and parent.name == "model":
         return _scope(parent.parent)
@@ -201,7 +201,7 @@ def _scope_of_place(element: WrittenElement) -> WrittenElement | None:
 
 
 def _path(scope: WrittenElement, value: str) -> Iterator[tuple[str, int, WrittenElement]]:
-    """Yield the parts of a value that lead to elements, each with its offset in the value."""
+    """Yield the parts of a value that refer to elements, with the offset and the element."""
     offset = 0
     current: WrittenElement | None = scope
     for part in value.split(_SEPARATOR):

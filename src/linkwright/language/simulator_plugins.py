@@ -25,7 +25,7 @@ _ROS = ElementRule(
         for tag, meaning, attributes in (
             ("namespace", "the namespace of the node", ()),
             ("remapping", "another name for a topic, as in old:=new", ()),
-            ("argument", "an argument of the node, as behind --ros-args", ()),
+            ("argument", "an argument of the node, as after --ros-args", ()),
             (
                 "parameter",
                 "a parameter of the node",
@@ -46,8 +46,8 @@ class SimulatorPlugin:
 
     Attributes:
         library: the name of the library without ``lib`` and ``.so``.
-        class_name: the class, which gz needs as the name of the plugin; empty for Gazebo classic.
-        about: what it does.
+        class_name: the class, which gz needs as the name of the plugin, or empty for Gazebo classic.
+        about: a description of the plugin.
         rule: its element, with the parameters as children.
     """
 
@@ -58,12 +58,12 @@ class SimulatorPlugin:
 
     @property
     def is_classic(self) -> bool:
-        """Whether Gazebo classic loads it."""
+        """Whether it is a plugin of Gazebo classic."""
         return not self.class_name
 
     @property
     def filename(self) -> str:
-        """The file name as descriptions have it."""
+        """The file name as written in descriptions."""
         return f"lib{self.library}.so" if self.is_classic else self.library
 
 
@@ -97,11 +97,11 @@ def _parameter(entry: Mapping[str, str]) -> ElementRule:
 
 
 def plugin_of(filename: str, name: str = "") -> SimulatorPlugin | None:
-    """Return the plugin that an element ``<plugin>`` loads, or None if it is not known.
+    """Return the plugin that an element ``<plugin>`` loads, or None if it is unknown.
 
     Args:
         filename: the file name, in any spelling.
-        name: the name, which is the class in gz.
+        name: the name in the element, which must be the class in gz.
     """
     found = simulator_plugins().get(library_name(filename)) if filename else None
     return found or (_by_class().get(_modern(name)) if "::" in name else None)

@@ -1,4 +1,4 @@
-"""SRDF: groups, and the links and joints of the description that the file belongs to."""
+"""Editor functions for SRDF: groups, and the links and joints of the description."""
 
 from __future__ import annotations
 
@@ -14,13 +14,15 @@ from linkwright.language.definitions import NameDefinition, NameKind
 from linkwright.language.facts import facts_at, part_facts
 from linkwright.language.format import Document, Format, Target
 from linkwright.language.grammar import rule_at
-from linkwright.language.hover import Explanation, definitions_at, explain_at
+from linkwright.language.hover import Explanation, definitions_at
 from linkwright.language.includes import real
 from linkwright.language.links import FileReference, file_references
 from linkwright.language.outline import Outline
+from linkwright.language.robot_names import mentioned_robots
 from linkwright.language.srdf_schema import CHOICES, GROUP, JOINT, LINK, SRDF
 from linkwright.language.values import values_in
 from linkwright.language.xml_completion import complete
+from linkwright.language.xml_hover import explain_at
 from linkwright.packages import enclosing_package
 from linkwright.packages.readers.entry_points import text_of
 from linkwright.packages.share_layout import source_of
@@ -32,8 +34,9 @@ _ROBOT = re.compile(r"<robot\b[^>]*?\bname\s*=\s*[\"']([^\"']+)[\"']")
 _ASSISTANT = re.compile(r"URDF:\s*\n\s+package:\s*(\S+)\s*\n\s+relative_path:\s*(\S+)")
 _EXPRESSION = re.compile(r"\$\{[^{}]*\}|\$\([^()]*\)")
 _MAX_ROBOTS = 3
+_SHOWN_PARTS = 12
 _LONGEST_HEAD = 20_000
-"""Characters at the beginning of a description in which the name of the robot is searched."""
+"""The number of characters of a description that are searched for the name of the robot."""
 
 
 def is_srdf(path: Path) -> bool:
@@ -53,7 +56,7 @@ class _Semantics:
 
     @cached_property
     def descriptions(self) -> list[Path]:
-        """The descriptions of the robot: the one of MoveIt's assistant, then those with the robot's name."""
+        """The descriptions of the robot, found by MoveIt's Setup Assistant or the robot's name."""
         project, file = self.document.project, self.document.file
         package = enclosing_package(file.parent)
         found = [*self._of_assistant(package[1])] if package is not None else []
@@ -65,7 +68,8 @@ class _Semantics:
             if head is not None and head[1] == name and not is_srdf(other):
                 found.append(other)
         whole = [other for other in beside if ".urdf" in other.name and not is_srdf(other)]
-        return [*islice(dict.fromkeys(found or whole), _MAX_ROBOTS)]
+        words = {attribute.value or "" for token in tokens(self.document.text) for attribute in token.attributes()}
+        return [*islice(dict.fromkeys(found or mentioned_robots(self.document, words) or whole), _MAX_ROBOTS)]
 
     def _of_assistant(self, folder: Path) -> Iterator[Path]:
         for found in _ASSISTANT.finditer(text_of(folder / ".setup_assistant")):
@@ -103,7 +107,7 @@ def _rule_of(cursor: Cursor) -> AttributeRule | None:
 
 
 def _is_group(cursor: Cursor, rule: AttributeRule) -> bool:
-    """Return whether a value is the name of a group that is defined elsewhere, also of a group in a group."""
+    """Return whether a value refers to a group, as in a group inside a group."""
     return rule.type is GROUP or (rule.name == "name" and cursor.tags[-2:] == ("group", "group"))
 
 
@@ -129,7 +133,7 @@ def _complete(document: Document, offset: int) -> Iterator[Completion]:
 
 
 def _names_beside(text: str, offset: int) -> set[str | None]:
-    """Return the names of the elements with the same tag in the element around an offset."""
+    """Return the names of the siblings with the same tag as the element at an offset."""
     around = Outline.of(text).around(offset)
     inside = around[-2].children if len(around) > 1 else []
     others = (other for other in inside if other is not around[-1] and other.tag.name == around[-1].tag.name)
@@ -146,12 +150,29 @@ def _explain(document: Document, offset: int) -> Explanation | None:
         if facts is not None:
             text = f"**{kind.value} {name}**\n\n{facts}"
             return Explanation(text, cursor.attribute.value_start, cursor.attribute.value_end)
-    found = explain_at(document.text, offset, document.file, semantics.names)
+    if rule is not None and cursor.attribute is not None and _is_group(cursor, rule):
+        described = _described_group(document.text, cursor.attribute.value or "")
+        if described:
+            return Explanation(described, cursor.attribute.value_start, cursor.attribute.value_end)
+    found = explain_at(document, offset, semantics.names)
     if found is not None or not document.file.name.endswith(".xacro"):
         return found
     values = values_in(document.project, document.texts, document.file)
     more = facts_at(document.project, document.texts, document.file, document.text, offset, values)
     return Explanation("\n\n".join(more), offset, offset) if more else None
+
+
+def _described_group(text: str, name: str) -> str:
+    """Return the content of a group in Markdown, or empty if the text does not define it."""
+    for element in (each for root in Outline.of(text).elements for each in root.children if each.tag.name == "group"):
+        if any((each.name, each.value) == ("name", name) for each in element.tag.attributes()) and element.children:
+            lines = [
+                f"- {child.tag.name} " + ", ".join(f"`{each.value}`" for each in child.tag.attributes())
+                for child in element.children[:_SHOWN_PARTS]
+            ]
+            more = ["- ..."] if len(element.children) > _SHOWN_PARTS else []
+            return "\n".join([f"**group {name}**", "", *lines, *more])
+    return ""
 
 
 def _define(document: Document, offset: int) -> Iterator[Target]:
@@ -172,13 +193,13 @@ def _define(document: Document, offset: int) -> Iterator[Target]:
 
 
 def _parts(semantics: _Semantics, kind: NameKind, value: str) -> Iterator[Target]:
-    """Yield where the descriptions define a link or joint: by its name or, in macros, by a pattern with expressions."""
+    """Yield the definitions of a link or joint, by its name or a name with expressions."""
     document = semantics.document
     for file in semantics.descriptions:
         names = document.project.names(file, document.texts)
         found = [name for name in names if name.kind is kind and _matches(name.name, value)]
         if kind is NameKind.JOINT:
-            found = [name for name in found if name.detail]  # a joint with a type is a definition
+            found = [name for name in found if name.detail]  # only the definition of a joint has a type
         exact = [name for name in found if name.name == value]
         for name in dict.fromkeys(exact or found):
             yield Target(name.file, name.start, name.start + len(name.name))
@@ -187,7 +208,7 @@ def _parts(semantics: _Semantics, kind: NameKind, value: str) -> Iterator[Target
 
 
 def _matches(written: str, value: str) -> bool:
-    """Return whether a name with or without expressions may have a value; one that is only an expression may not."""
+    """Return whether a value matches a written name that is not only an expression."""
     parts = _EXPRESSION.split(written)
     if not any(parts):
         return False

@@ -55,7 +55,7 @@ SRDF = ElementRule(
         ),
         _element(
             "group_state",
-            "a position of a group with a name",
+            "a named position of a group",
             _required("name", _NAME, "the name of the position"),
             _required("group", GROUP, "the group"),
             children=(
@@ -119,4 +119,4 @@ CHOICES = {
     ("virtual_joint", "type"): ("fixed", "floating", "planar"),
     ("disable_collisions", "reason"): ("Adjacent", "Never", "Always", "Default", "User"),
 }
-"""Element and attribute -> the values."""
+"""The allowed values, by element and attribute."""

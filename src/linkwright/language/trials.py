@@ -1,8 +1,8 @@
-"""The expansions of a description with which edits are compared: argument sets, switched branches, known gaps.
+"""The expansions of a description for the proof of edits, with arguments and gaps.
 
-The callers of a description rarely reach all of its branches. So arguments that a condition asks for are switched, too,
-each alone. A description that cannot be expanded, because a package is missing or a caller decides a value, is
-expanded without the elements that fail. They are replaced by blanks, so all offsets stay the same.
+The callers of a description rarely reach all of its branches. So the arguments in conditions are switched, too, one at
+a time. A description that cannot be expanded, because a package is missing or a caller decides a value, is expanded
+without the failing elements. Spaces replace these elements, so all offsets stay the same.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ Gaps = Mapping[Path, tuple[Range, ...]]
 
 _UNDECLARED = "XAC211"
 _PLACEHOLDERS = ("value", "1")
-"""Values for an argument that only a caller knows."""
+"""The values of an argument that only a caller sets."""
 _MAX_GAPS = 60
 _MAX_WITH_GAPS = 3
 _MAX_SWITCHED = 10
@@ -46,7 +46,7 @@ class Trial:
         arguments: the values of its arguments.
         expansion: the expansion.
         gaps: the ranges of elements that were left out because they cannot be expanded, by file.
-        reason: why the first of them was left out, or None.
+        reason: the error of the first omitted element, or None.
     """
 
     entry: Path
@@ -78,7 +78,7 @@ def expanded(
 
 
 def without(text: str, ranges: tuple[Range, ...]) -> str:
-    """Return a text of the same length with blanks in some ranges."""
+    """Replace some ranges of a text with spaces, and keep its length and lines."""
     for start, end in ranges:
         blank = "".join(letter if letter == "\n" else " " for letter in text[start:end])
         text = text[:start] + blank + text[end:]
@@ -88,14 +88,14 @@ def without(text: str, ranges: tuple[Range, ...]) -> str:
 def trials(
     project: Workspace, texts: Mapping[Path, str], entry: Path, *, is_partial: bool, is_switched: bool = True
 ) -> tuple[list[Trial], LinkwrightError | None]:
-    """Return the expansions of a description, and an error of one that fails.
+    """Return the expansions of a description, and the last error, or None.
 
     Args:
         project: the workspace.
         texts: the texts of the open files.
         entry: the description.
         is_partial: whether elements that fail are left out if nothing can be expanded.
-        is_switched: whether arguments are switched, too, if `is_partial`.
+        is_switched: whether arguments are also switched, if `is_partial` is set.
     """
     distinct: dict[tuple[str, frozenset[str]], Trial] = {}
     error: LinkwrightError | None = None
@@ -115,7 +115,7 @@ def trials(
 
 
 def _with_gaps(project: Workspace, texts: Mapping[Path, str], entry: Path) -> Iterator[Trial]:
-    """Yield expansions without the elements that fail, at most a few."""
+    """Yield at most `_MAX_WITH_GAPS` expansions without the failing elements."""
     count = 0
     for arguments in project.possible_arguments(entry):
         trial = _repaired(project, texts, entry, arguments)
@@ -127,7 +127,7 @@ def _with_gaps(project: Workspace, texts: Mapping[Path, str], entry: Path) -> It
 
 
 def _repaired(project: Workspace, texts: Mapping[Path, str], entry: Path, arguments: Mapping[str, str]) -> Trial | None:
-    """Return an expansion without the elements that fail; None if the root fails or there are too many."""
+    """Return an expansion without the failing elements, or None if the description has none."""
     gaps: dict[Path, tuple[Range, ...]] = {}
     reason: Phrase | None = None
     given = dict(arguments)
@@ -158,7 +158,7 @@ def _repaired(project: Workspace, texts: Mapping[Path, str], entry: Path, argume
 
 
 def _element_around(project: Workspace, texts: Mapping[Path, str], span: Span, gaps: Gaps) -> tuple[Path, Range] | None:
-    """Return the file and the range of the element that contains a location; None for a root or outside of files."""
+    """Return the file and range of the element at a location, or None for the root."""
     file = real(span.file)
     text = project.text(file, texts)
     if text is None:
@@ -172,7 +172,7 @@ def _element_around(project: Workspace, texts: Mapping[Path, str], span: Span, g
 
 
 def _switched(project: Workspace, texts: Mapping[Path, str], base: Trial, known: set[str]) -> Iterator[Trial]:
-    """Yield the expansions that differ if one argument has another value that a condition asks for."""
+    """Yield the other expansions that result from another value of a single argument."""
     begin = time.monotonic()
     for name, value in _values(project, texts, base.entry):
         if base.arguments.get(name) == value:
@@ -191,7 +191,7 @@ def _switched(project: Workspace, texts: Mapping[Path, str], base: Trial, known:
 
 
 def _values(project: Workspace, texts: Mapping[Path, str], entry: Path) -> list[tuple[str, str]]:
-    """Return other values of arguments: the opposites of their defaults, and those that conditions compare."""
+    """Return other values of arguments: opposites of defaults, and values in conditions."""
     values: dict[tuple[str, str], None] = {}
     documents = []
     for file in project.index.related(entry, texts, computed=True):

@@ -1,4 +1,7 @@
-"""The uses of a name in formats with functions of their own: the places whose definition is that of the name."""
+"""The uses of a name in file formats with their own editor functions.
+
+A use is an occurrence of the name with the same definition.
+"""
 
 from __future__ import annotations
 
@@ -15,19 +18,19 @@ from linkwright.packages.share_layout import source_of
 
 _MAX_FILES = 200
 _MAX_PLACES = 300
-"""Places in a file that may use a name; the others are left out."""
+"""The maximum number of occurrences of a name that are checked in a file."""
 
 
 def uses_at(document: Document, known: Format, offset: int, *, in_file: bool = False) -> list[Target]:
-    """Return the places that define or use the name at an offset, the definition first; empty if it is not known.
+    """Return the definition and the uses of the name at an offset, or an empty list.
 
-    The uses of an argument of a launch file are also in the launch files of the package that name the file.
+    The uses of a launch argument are also searched in the launch files of the package that mention its file.
 
     Args:
         document: the text.
         known: its format.
         offset: the character offset.
-        in_file: whether only the places in the text are returned.
+        in_file: whether only locations in the text are returned.
     """
     found: dict[Target, None] = {}
     for target in known.define(document, offset):
@@ -44,7 +47,7 @@ def uses_at(document: Document, known: Format, offset: int, *, in_file: bool = F
 
 
 def _documents(document: Document, file: Path) -> Iterator[Document]:
-    """Yield a document, a file, and the launch files in their packages that name the file."""
+    """Yield a document, a file, and the launch files of their packages that mention the file."""
     others: list[Path] = []
     if is_launch_file_name(file.name) or file.name.endswith(".launch"):
         packages = (enclosing_package(path.parent) for path in (document.file, file))

@@ -1,4 +1,4 @@
-"""The expansion of a description for an editor: the whole, or the valid parts of one with errors."""
+"""The expansion of a description that may contain errors."""
 
 from __future__ import annotations
 
@@ -15,12 +15,14 @@ from linkwright.xmltree import Overlay
 
 
 def valid_parts(project: Workspace, texts: Mapping[Path, str], entry: Path) -> Expansion | None:
-    """Return the parts of a description that can be expanded with its default arguments; None if there are none.
+    """Expand a description with default arguments, or only its valid parts if it has errors.
+
+    Returns None if nothing can be expanded.
 
     Args:
         project: the workspace.
         texts: the texts of the open files.
-        entry: the description, whose whole expansion has failed.
+        entry: the description.
     """
     overlay = Overlay({str(path): text for path, text in texts.items()})
     inputs = Inputs(str(entry), {}, project.finder(entry), overlay=overlay)

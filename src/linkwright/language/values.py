@@ -1,4 +1,4 @@
-"""The values of the expressions in a file, in all descriptions that include it and for all their argument sets."""
+"""The values of the expressions in a file, in all its descriptions and argument sets."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ from linkwright.xacro.tracing.values import Evaluation, evaluated_expressions
 from linkwright.xmltree import Overlay
 
 _MAX_EXPANSIONS = 12
-"""How many pairs of descriptions and argument sets are expanded for the values of one file."""
+"""The maximum number of expansions for the values of one file."""
 _SHOWN_VALUES = 8
 _SHOWN_BESIDE = 3
 _SHOWN_CALLS = 2
 _SHOWN_NAMES = 6
 _MAX_LABEL = 60
-"""Characters of a macro call, or of a value beside the text."""
+"""The maximum number of characters of a macro call, or of a value beside the text."""
 
 
 @dataclass(slots=True)
 class ValuedText:
-    """A text with expressions, or an expression in it, and its values.
+    """A text with expressions, or one of its expressions, with the values.
 
     Attributes:
         start: the character offset of the text.
@@ -38,7 +38,7 @@ class ValuedText:
     evaluations: list[tuple[Evaluation, Mapping[str, str]]] = field(default_factory=list)
 
     def values(self) -> list[str]:
-        """Return the different values in Python notation, in the order of their first evaluations."""
+        """Return the distinct values in Python notation, in the order of their first evaluations."""
         return list(dict.fromkeys(evaluation.value for evaluation, _ in self.evaluations))
 
 
@@ -70,7 +70,7 @@ def value_at(texts: Sequence[ValuedText], offset: int) -> ValuedText | None:
 
 
 def whole_texts(texts: Sequence[ValuedText]) -> Iterator[ValuedText]:
-    """Yield the texts that are not part of another text, in the order of the file.
+    """Yield the texts that are not part of another text, in text order.
 
     Args:
         texts: the texts of a file, as `values_in` returns them.
@@ -83,14 +83,14 @@ def whole_texts(texts: Sequence[ValuedText]) -> Iterator[ValuedText]:
 
 
 def short_values(text: ValuedText) -> str:
-    """Return the values of a text for the end of a line; an empty string if they say no more than the text itself."""
+    """Return the first values of a text on one short line, for the end of its line."""
     values = [value[1:-1] if value[:1] in ("'", '"') else value for value in text.values() if value]
     shown = " | ".join(values[:_SHOWN_BESIDE]) + (" | ..." if len(values) > _SHOWN_BESIDE else "")
     return _shortened(shown)
 
 
 def described_values(text: ValuedText, written: str) -> str:
-    """Return the values of a text, in Markdown, each with the macro calls or arguments that lead to it.
+    """Return the values of a text in Markdown, each with its macro calls or arguments.
 
     Args:
         text: the text.
@@ -113,7 +113,7 @@ def described_values(text: ValuedText, written: str) -> str:
 
 
 def _origin(evaluations: Sequence[tuple[Evaluation, Mapping[str, str]]]) -> str:
-    """Return the macro calls of evaluations with the same value, and their arguments unless the defaults lead to it."""
+    """Return the macro calls that lead to a value, and the arguments unless the defaults do."""
     calls = [call for call in dict.fromkeys(_call(evaluation.frame) for evaluation, _ in evaluations) if call]
     origin = f" {', '.join(calls[:_SHOWN_CALLS])}" + (", ..." if len(calls) > _SHOWN_CALLS else "")
     arguments = evaluations[0][1]
@@ -123,7 +123,7 @@ def _origin(evaluations: Sequence[tuple[Evaluation, Mapping[str, str]]]) -> str:
 
 
 def _call(frame: Frame | None) -> str:
-    """Return the innermost macro call, such as ``wheel prefix="left"`` with its line; empty in the main file."""
+    """Return the innermost macro call with its file and line, or empty outside macros."""
     call = next((frame for frame in frames(frame) if frame.macro is not None), None)
     if call is None:
         return ""

@@ -1,4 +1,4 @@
-"""The files that an editor works on: its folders, the texts that are not saved yet, and the findings about them."""
+"""The workspace of an editor: its folders, the unsaved texts and the findings about them."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ _CALLERS = (
     "linkwright.toml",
     "pyproject.toml",
 )
-"""Files that decide how descriptions are checked: what calls them, where packages are, and settings."""
+"""The suffixes of files that affect all checks: callers, manifests and settings."""
 
 
 _MAX_ROBOTS = 16
@@ -42,7 +42,7 @@ _MAX_ROBOTS = 16
 
 
 class _Result(NamedTuple):
-    """The findings about a subject, and the versions of the open texts with which it was checked."""
+    """The findings about a subject, and the versions of the open texts that were checked."""
 
     findings: tuple[Diagnostic, ...]
     versions: Mapping[Path, int]
@@ -52,15 +52,15 @@ _NOTHING = _Result((), {})
 
 
 def versions_of(texts: Mapping[Path, str]) -> dict[Path, int]:
-    """Return a number for each text that differs if the text differs, instead of a copy of all texts."""
+    """Return the hash of each text, as a replacement for a copy of the texts."""
     return {file: hash(text) for file, text in texts.items()}
 
 
 class Workspace:
     """The files below some folders, with the open texts of an editor.
 
-    Paths are those that `linkwright.language.includes.real` returns. Methods that read files or check may be called
-    from another thread, one at a time.
+    All paths are results of `linkwright.language.includes.real`. Methods that read files or check may be called from
+    another thread, one at a time.
 
     Args:
         folders: the folders of the workspace.
@@ -80,14 +80,14 @@ class Workspace:
         self.kept: dict[tuple[str, Path], tuple[Mapping[Path, int], object]] = {}
 
     def file_saved(self, file: Path) -> None:
-        """Note that a file on the disk was changed, made or removed."""
+        """Update the stored results after a file on the disk was changed, created or removed."""
         self._robots.clear()
         self.kept.clear()
         if file.name.endswith(_CALLERS):
             self._checker = Checker(folders=self._folders)
 
     def finder(self, file: Path) -> PackageFinder:
-        """Return what finds packages for a file."""
+        """Return the package finder for a file."""
         return self._checker.finder(file)
 
     def contains(self, file: Path) -> bool:
@@ -95,7 +95,7 @@ class Workspace:
         return any(file.is_relative_to(folder) for folder in self._folders)
 
     def text(self, file: Path, texts: Mapping[Path, str]) -> str | None:
-        """Return the text of a file, which may be open; None if the file cannot be read."""
+        """Return the text of a file, open or not, or None if it cannot be read."""
         if file in texts:
             return texts[file]
         try:
@@ -104,15 +104,15 @@ class Workspace:
             return None
 
     def calls(self, entry: Path) -> list[tuple[Mapping[str, str], Span | None]]:
-        """Return the argument sets of a description, each with the call that gives it, if its file has one."""
+        """Return the argument sets of a description, each with its call, or None for defaults."""
         return [({}, None), *self._checker.calls(entry, self.index.packages)]
 
     def possible_arguments(self, entry: Path) -> list[Mapping[str, str]]:
-        """Return the argument sets of a description, also those of calls whose values are not all known."""
+        """Return the argument sets of a description, including calls with unknown values."""
         return [*self._checker.possible_arguments(entry, self.index.packages), {}]
 
     def configuration_files(self, file: Path) -> list[Path]:
-        """Return the files of a file's package that may mention links and joints; empty if it is in no package."""
+        """Return the files of a file's package, if it has one, that may mention links and joints."""
         package = enclosing_package(file.parent)
         return [] if package is None else self.configurations_below(package[1])
 
@@ -122,12 +122,12 @@ class Workspace:
         return [real(path) for path in found]
 
     def files(self, suffixes: tuple[str, ...]) -> list[Path]:
-        """Return the files of the workspace with some endings, also those outside of packages."""
+        """Return the files of the workspace with some suffixes, inside packages or not."""
         found = (path for folder in self._folders for path in walk(folder, suffixes)[0])
         return [*dict.fromkeys(map(real, found))]
 
     def neighbours(self, file: Path, known: Container[Path]) -> list[Path]:
-        """Return the other descriptions in a file's package."""
+        """Return the descriptions in a file's package, except known ones."""
         package = enclosing_package(file.parent)
         if package is None:
             return []
@@ -135,7 +135,7 @@ class Workspace:
         return [other for other in self.index.files if other not in known and other.is_relative_to(folder)]
 
     def names(self, file: Path, texts: Mapping[Path, str]) -> list[NameDefinition]:
-        """Return the names that a file, the descriptions that include it and their other files define.
+        """Return the names defined in a file, and in the descriptions that include it.
 
         Args:
             file: the file.
@@ -144,11 +144,11 @@ class Workspace:
         return [name for other in self.index.related(file, texts) for name in self._names_in(other, texts)]
 
     def robot(self, entry: Path, texts: Mapping[Path, str]) -> Robot | None:
-        """Return the robot of a description with the default arguments; None if it cannot be expanded.
+        """Return the robot of a description with default arguments, or None if it has errors.
 
         Args:
             entry: the description.
-            texts: the texts of the open files. The result is kept while those of descriptions are the same.
+            texts: the texts of the open files. The result is cached until the text of a description changes.
         """
         texts = {
             file: text for file, text in texts.items() if file.name.endswith(DESCRIPTIONS) and file in self.index.files
@@ -190,7 +190,7 @@ class Workspace:
         return known[1]
 
     def subjects(self, file: Path, texts: Mapping[Path, str]) -> list[Path]:
-        """Return what to check when a file has changed.
+        """Return the descriptions and packages to check when a file has changed.
 
         These are the descriptions that include it, and the folder of its package.
 
@@ -216,7 +216,7 @@ class Workspace:
     def check(
         self, subject: Path, texts: Mapping[Path, str], changed: Iterable[Path] = ()
     ) -> dict[Path, list[Diagnostic]]:
-        """Check a description or package, and return the findings about each file whose findings may have changed.
+        """Check a description or package, and return the findings about each affected file.
 
         Args:
             subject: a description, or the folder of a package, as `subjects` returns them.
@@ -230,12 +230,12 @@ class Workspace:
         return self._of_files({_file(diagnostic, subject) for diagnostic in (*before, *found)} | {*changed})
 
     def without_findings(self) -> dict[Path, list[Diagnostic]]:
-        """Return the files with findings, each with none, so that an editor removes those that it shows."""
+        """Return an empty list for each file with findings, to clear the findings in an editor."""
         results = self._results.items()
         return {_file(finding, subject): [] for subject, result in results for finding in result.findings}
 
     def fixable(self, file: Path, texts: Mapping[Path, str]) -> list[Finding]:
-        """Return the findings about a file that have a fix, if the texts that the fix edits are those of the check.
+        """Return the findings about a file with a fix that applies to the current texts.
 
         Args:
             file: the file.
@@ -252,7 +252,7 @@ class Workspace:
         return [finding for finding in found.all() if isinstance(finding, Finding)]
 
     def findings(self, file: Path, texts: Mapping[Path, str]) -> list[Diagnostic]:
-        """Return the findings about a file with a location, if they are those of its current text.
+        """Return the findings with a location in a file, if its text has not changed since.
 
         Args:
             file: the file.
@@ -288,7 +288,7 @@ class Workspace:
 
 
 def _file(diagnostic: Diagnostic, subject: Path) -> Path:
-    """Return the file of a finding; one without a place belongs to its description or manifest."""
+    """Return the file of a finding: its location, or else its description or manifest."""
     if diagnostic.span is not None:
         return real(diagnostic.span.file)
     return subject / MANIFEST if subject.is_dir() else subject

@@ -1,4 +1,4 @@
-"""The elements of a text that need not be XML, with their ranges."""
+"""The elements of an XML text, which may be malformed, with their ranges."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ class WrittenElement:
 
     Attributes:
         tag: its start tag.
-        parent: the element around it, or None.
-        children: the elements in it.
+        parent: its parent element, or None.
+        children: its child elements.
         end: the character offset after its end tag, or -1 if it is not closed.
     """
 
@@ -46,7 +46,7 @@ class WrittenElement:
 
     @property
     def top(self) -> WrittenElement | None:
-        """The child of the root that contains the element, or is it; None for the root."""
+        """The child of the root that is or contains the element, or None for the root."""
         chain = [*self.around()]
         return chain[-2] if len(chain) > 1 else None
 
@@ -56,17 +56,17 @@ class WrittenElement:
         return next((element for element in self.around() if element.name == MACRO and element is not self), None)
 
     def child_of(self, outer: WrittenElement) -> WrittenElement:
-        """Return the child of an outer element that contains this element, or is it."""
+        """Return the child of an outer element that is or contains this element."""
         return next(element for element in self.around() if element.parent is outer)
 
     def value(self, attribute: str) -> str:
-        """Return the value of an attribute as written; empty if there is none."""
+        """Return the value of an attribute as written, or empty if it is missing."""
         return next((one.value or "" for one in self.tag.attributes() if one.name == attribute), "")
 
 
 @lru_cache(maxsize=1)
 def written_elements(text: str) -> Sequence[WrittenElement]:
-    """Return all elements of a text in the order of their start tags; those of the last text are kept."""
+    """Return all elements of a text in the order of their start tags, cached for the last text."""
     elements: list[WrittenElement] = []
     current: WrittenElement | None = None
     for token in tokens(text):

@@ -1,6 +1,6 @@
 """The content of the YAML files that properties load.
 
-It is found from the texts alone, because a half-typed file has no expansion.
+It is found without an expansion, because a half-typed file cannot be expanded.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ _DEEPEST = 8
 
 
 def yaml_value(document: Document, name: str, names: Sequence[NameDefinition]) -> Any:
-    """Return the value of a property that is the content of a YAML file or a part of it; None for other properties.
+    """Return the value of a property that is loaded from a YAML file, or None for others.
 
     Args:
         document: the text that uses the property.
@@ -57,7 +57,7 @@ def _written(name: str, kind: NameKind, names: Sequence[NameDefinition]) -> tupl
 
 
 def _replaced(text: str, file: Path, document: Document, names: Sequence[NameDefinition]) -> str:
-    """Return a text with its properties, arguments and packages replaced as far as they are known."""
+    """Replace the known properties, arguments and packages in a text."""
 
     def value(part: re.Match[str]) -> str:
         if part[1] == "find":
@@ -79,7 +79,7 @@ def _replaced(text: str, file: Path, document: Document, names: Sequence[NameDef
 
 @lru_cache(maxsize=32)
 def _content(file: Path, _: int) -> Any:
-    """Return the content of a YAML file that was last changed at a time; None if it cannot be read."""
+    """Return the content of a YAML file, cached by its modification time, or None."""
     try:
         return yaml_data.load(decode(read_bytes(file), str(file)), lambda _: 0.0)
     except (OSError, LinkwrightError, yaml_data.YamlError, ValueError):

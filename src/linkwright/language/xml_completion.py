@@ -1,10 +1,10 @@
-"""Completions at a place of an XML file: what its language, its package and its macros offer there."""
+"""Completion in XML files: elements, attributes, values and macro calls."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 
-from linkwright.language.completion import Completion, ItemKind, Parts, most_used, of_kind
+from linkwright.language.completion import Completion, ItemKind, most_used, of_kind
 from linkwright.language.cursor import Cursor, Spot, cursor_at
 from linkwright.language.definitions import NameDefinition, NameKind
 from linkwright.language.format import Document
@@ -16,31 +16,28 @@ from linkwright.schema import AttributeRule, ElementRule, describe_attribute, de
 from linkwright.xacro.macros import Parameter
 
 
-def complete(
-    document: Document, offset: int, names: Sequence[NameDefinition] = (), parts: Parts = tuple
-) -> list[Completion]:
+def complete(document: Document, offset: int, names: Sequence[NameDefinition] = ()) -> list[Completion]:
     """Return the completions at an offset, the likeliest first, each label once.
 
     Args:
-        document: the text; the name of its file tells the language.
+        document: the text. The name of its file determines the language.
         offset: the character offset of the cursor.
         names: the names that the files of the description define.
-        parts: returns the links and joints after the expansion.
     """
     found: dict[str, Completion] = {}
-    for item in _complete(document, offset, names, parts):
+    for item in _complete(document, offset, names):
         found.setdefault(item.label, item)
     return list(found.values())
 
 
-def _complete(document: Document, offset: int, names: Sequence[NameDefinition], parts: Parts) -> Iterator[Completion]:
+def _complete(document: Document, offset: int, names: Sequence[NameDefinition]) -> Iterator[Completion]:
     root = root_of(document.file)
     if root is None:
         return
     cursor = cursor_at(document.text, offset)
     if cursor.spot is Spot.TEXT and cursor.tags:
         rule = rule_at(root, cursor.tags, cursor.elements)
-        yield from complete_text(document, cursor, rule, names, parts)
+        yield from complete_text(document, cursor, rule, names)
         if cursor.typed.strip() or (rule is not None and rule.text is not None and not rule.child_rules):
             return
     if cursor.spot is Spot.TAG or (cursor.spot is Spot.TEXT and not cursor.typed.strip()):
@@ -51,7 +48,7 @@ def _complete(document: Document, offset: int, names: Sequence[NameDefinition], 
         yield from _attributes(cursor, root, names)
     elif cursor.spot is Spot.VALUE:
         rule = None if cursor.tags[-1].startswith(PREFIX) else rule_at(root, cursor.tags, cursor.elements)
-        yield from complete_value(document, cursor, rule, names, parts)
+        yield from complete_value(document, cursor, rule, names)
 
 
 # --- elements ---------------------------------------------------------------------------------------------------------
@@ -85,7 +82,7 @@ def _elements(
 
 
 def _given_elements(text: str, cursor: Cursor) -> frozenset[str]:
-    """Return the elements that the element around a cursor already has, without the one that is typed."""
+    """Return the existing child elements around a cursor, without the one being typed."""
     inside = Outline.of(text).elements
     around: OutlineElement | None = None
     for element in cursor.elements:

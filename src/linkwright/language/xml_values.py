@@ -1,4 +1,4 @@
-"""Completions of the values of attributes and of the texts of elements in descriptions and worlds."""
+"""Completion of attribute values and element texts in descriptions and worlds."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from pathlib import Path
 
 from linkwright.diagnostics import phrase
 from linkwright.diagnostics.translation import localized
-from linkwright.language.completion import Completion, ItemKind, Parts, most_used, of_kind
+from linkwright.language.completion import Completion, ItemKind, most_used, of_kind
 from linkwright.language.cursor import Cursor
 from linkwright.language.definitions import NameDefinition, NameKind
 from linkwright.language.expression_completion import (
@@ -28,6 +28,7 @@ from linkwright.language.format import Document
 from linkwright.language.hardware_plugins import hardware_parameters, hardware_plugins
 from linkwright.language.occurrences import kinds_of_reference, kinds_of_text
 from linkwright.language.outline import Outline, OutlineElement
+from linkwright.language.robot_names import part_names
 from linkwright.language.simulator_plugins import plugin_of, simulator_plugins
 from linkwright.lint.extension_names import INTERFACES
 from linkwright.schema import AttributeRule, ElementRule
@@ -75,16 +76,14 @@ def complete_value(
     cursor: Cursor,
     rule: ElementRule | None,
     names: Sequence[NameDefinition],
-    parts: Parts,
 ) -> Iterator[Completion]:
     """Yield the values of an attribute.
 
     Args:
         document: the text.
-        cursor: a place in the value.
+        cursor: a cursor in the value.
         rule: the rule of the element, or None.
         names: the names that the files of the description define.
-        parts: returns the links and joints after the expansion.
     """
     if cursor.attribute is None or cursor.token is None or (yield from _computed(document, cursor, names)):
         return
@@ -101,11 +100,11 @@ def complete_value(
     attribute = None if rule is None else rule.attribute_rules.get(name)
     yield from _offer(_CHOICES.get((tag, name), ()), start)
     if attribute is not None:
-        yield from _of_type(document, cursor, attribute, start, names, parts)
+        yield from _of_type(document, cursor, attribute, start, names)
     kinds = kinds_of_reference(tag, name)
     if (tag, name) == ("joint", "name") and "ros2_control" in cursor.tags:
         kinds = (NameKind.JOINT,)
-    yield from _parts_of(document, cursor, kinds, start, names, parts)
+    yield from _parts_of(document, cursor, kinds, start, names)
     if name in _PATH_ATTRIBUTES:
         yield from complete_path(document, cursor.typed, cursor.offset, _ENDINGS.get(tag, ()), names)
     yield from _given(cursor.attribute.value, attribute, start)
@@ -116,16 +115,14 @@ def complete_text(
     cursor: Cursor,
     rule: ElementRule | None,
     names: Sequence[NameDefinition],
-    parts: Parts,
 ) -> Iterator[Completion]:
     """Yield the texts that an element may contain.
 
     Args:
         document: the text.
-        cursor: a place in the content of the element.
+        cursor: a cursor in the content of the element.
         rule: the rule of the element, or None.
         names: the names that the files of the description define.
-        parts: returns the links and joints after the expansion.
     """
     tag, typed = cursor.tags[-1], cursor.typed.lstrip()
     if "\n" in typed or (yield from _computed(document, cursor, names)):
@@ -137,15 +134,15 @@ def complete_text(
     if tag == "output_type":
         yield from _offer(_OUTPUT_TYPES, start)
     if text is not None:
-        yield from _of_type(document, cursor, text, start, names, parts)
-    yield from _parts_of(document, cursor, kinds_of_text(tag), start, names, parts)
+        yield from _of_type(document, cursor, text, start, names)
+    yield from _parts_of(document, cursor, kinds_of_text(tag), start, names)
     if tag in _PATH_TAGS:
         yield from complete_path(document, typed, cursor.offset, _ENDINGS.get(tag, ()), names)
     yield from _given(None, text, start)
 
 
 def _computed(document: Document, cursor: Cursor, names: Sequence[NameDefinition]) -> Generator[Completion, None, bool]:
-    """Yield the completions in an expression or substitution, and return whether the place is in one."""
+    """Yield the completions in an expression or substitution, and return whether there is one."""
     if cursor.in_expression:
         yield from complete_expression(document, cursor, names)
         return True
@@ -161,7 +158,7 @@ def _offer(values: Iterable[str], start: int, detail: str = "") -> Iterator[Comp
 
 
 def _given(written: str | None, rule: AttributeRule | None, start: int) -> Iterator[Completion]:
-    """Yield the default of a value, unless the value is it already."""
+    """Yield the default of a value, unless the value equals the default."""
     if rule is not None and rule.default and rule.default != written and rule.type is not TRUTH:
         yield Completion(rule.default, ItemKind.VALUE, start, localized(phrase("default")))
 
@@ -175,7 +172,6 @@ def _of_type(
     rule: AttributeRule,
     start: int,
     names: Sequence[NameDefinition],
-    parts: Parts,
 ) -> Iterator[Completion]:
     kind = rule.type
     if kind is JOINT_TYPE:
@@ -193,12 +189,12 @@ def _of_type(
     elif kind is PARAMETER_NAME:
         yield from _parameters(document, cursor, start)
     elif kind in _KINDS_OF_TYPES:
-        yield from _parts_of(document, cursor, _KINDS_OF_TYPES[kind], start, names, parts)
+        yield from _parts_of(document, cursor, _KINDS_OF_TYPES[kind], start, names)
 
 
 def _interfaces(document: Document, cursor: Cursor, start: int) -> Iterator[Completion]:
     """Yield the names of interfaces that the component does not have yet."""
-    around = _around(document.text, cursor.elements[:-1])
+    around = element_at(document.text, cursor.elements[:-1])
     tag = cursor.tags[-1]
     others = [] if around is None else [each for each in around.children if each.tag.name == tag]
     given = {_attribute(each.tag, "name") for each in others if each.tag.start != cursor.elements[-1].start}
@@ -213,7 +209,7 @@ def _written(text: str, tag: str) -> list[str]:
 
 def _parameters(document: Document, cursor: Cursor, start: int) -> Iterator[Completion]:
     """Yield the parameters of hardware or of an interface."""
-    around = _around(document.text, cursor.elements[:-1])
+    around = element_at(document.text, cursor.elements[:-1])
     others = [] if around is None else [child for child in around.children if child.tag.name == "param"]
     given = {_attribute(each.tag, "name") for each in others if each.tag.start != cursor.elements[-1].start}
     if cursor.tags[-2:-1] == ("hardware",):
@@ -228,12 +224,12 @@ def _parameters(document: Document, cursor: Cursor, start: int) -> Iterator[Comp
 
 
 def hardware_of(text: str, hardware: OutlineElement | None) -> str:
-    """Return the plugin that an element ``<hardware>`` names; empty if it names none."""
+    """Return the plugin in an element ``<hardware>``, or empty if there is none."""
     plugin = next((child for child in hardware.children if child.tag.name == "plugin"), None) if hardware else None
     return "" if plugin is None else text[plugin.tag.end : plugin.end].partition("<")[0].strip()
 
 
-def _around(text: str, elements: Sequence[Token]) -> OutlineElement | None:
+def element_at(text: str, elements: Sequence[Token]) -> OutlineElement | None:
     """Return the innermost of some nested elements in the outline of a text."""
     inside, found = Outline.of(text).elements, None
     for element in elements:
@@ -255,12 +251,11 @@ def _parts_of(
     kinds: Sequence[NameKind],
     start: int,
     names: Sequence[NameDefinition],
-    parts: Parts,
 ) -> Iterator[Completion]:
-    """Yield the names of some kinds: in a macro as they are written, elsewhere as they are after the expansion."""
+    """Yield the names of some kinds: expanded names and, in a macro, names as written."""
     if not kinds:
         return
-    expanded = [name for name in parts() if name.kind in kinds]
+    expanded = [name for name in part_names(document) if name.kind in kinds]
     written = [name for kind in kinds for name in most_used(of_kind(names, kind), document.text)]
     near = [name for name in written if name.file == document.file]
     in_macro = cursor.macro is not None
@@ -274,7 +269,7 @@ def _parts_of(
 
 
 def _simulator_plugin(document: Document, cursor: Cursor, start: int) -> Iterator[Completion]:
-    """Yield the libraries of plugins, or the names for a plugin, those of the simulator that the file is for first."""
+    """Yield the libraries or names of plugins, the plugins for the file's simulator first."""
     assert cursor.attribute is not None
     token, name = cursor.elements[-1], cursor.attribute.name
     library, class_name = _attribute(token, "filename"), _attribute(token, "name")
@@ -299,7 +294,7 @@ def _simulator_plugin(document: Document, cursor: Cursor, start: int) -> Iterato
 
 
 def _spelt(name: str, typed: str) -> str:
-    """Return the name of a plugin with the older names of gz where they are typed, as ``ignition-gazebo-``."""
+    """Return the name of a plugin, with an old prefix such as ``ignition-gazebo-`` if typed."""
     if typed.startswith(("ign", "libign")):
         prefix = "lib" if typed.startswith("lib") else ""
         return prefix + name.replace("gz-sim-", "ignition-gazebo-").replace("gz::sim::", "ignition::gazebo::")
@@ -318,7 +313,7 @@ def complete_path(
         document: the text.
         typed: the typed part of the path.
         offset: the offset of the cursor.
-        endings: the endings of the files that the place is for; they come first.
+        endings: the suffixes of the expected files, which come first.
         names: the names that the files of the description define.
     """
     package = _PACKAGE.match(typed)

@@ -1,7 +1,7 @@
-"""The keys and items of a YAML text in any state, by the indentation of its lines.
+"""The keys and items of a YAML text, found by the indentation of its lines.
 
-This is not a parser: anchors and tags are part of the texts. It reads texts that are being typed, of which a parser
-would only say that they are not YAML.
+This is not a YAML parser: anchors and tags are parts of the values. It also reads texts that are being typed, which a
+parser would reject.
 """
 
 from __future__ import annotations
@@ -14,17 +14,17 @@ from enum import Enum
 from linkwright.loading.deferred import lazy_pattern
 
 MAX_TEXT = 500_000
-"""Characters; longer files are data and not configuration."""
+"""The maximum length of a text in characters. Longer files are data, not configuration."""
 _MAX_FLOW_LINES = 300
 _MAX_DASHES = 20
-"""Items that begin in one line."""
+"""The maximum number of list items that begin in one line."""
 _MAX_KEY = 500
 _KEY = lazy_pattern(r"""("(?:[^"\\\n]|\\.)*"|'[^'\n]*'|(?![\s#\[\]{},"'&!|>@`])[^\n]*?):(?=\s|$)""")
 _BLOCK_TEXT = lazy_pattern(r"[|>][+-]?\d?[+-]?\s*$")
 
 
 class Place(Enum):
-    """The kinds of places in a YAML text."""
+    """The kinds of cursor positions in a YAML text."""
 
     KEY = "key"
     VALUE = "value"
@@ -36,15 +36,15 @@ class YamlEntry:
     """A key with its value, or an item of a list.
 
     Attributes:
-        key: the key without quotes; empty for an item.
-        column: the column of the key, or of the dash of an item, from 0; -1 for the whole text.
+        key: the key without quotes, or empty for an item.
+        column: the column of the key or the dash, from 0, or -1 for the whole text.
         start: the offset of the key or the dash.
-        value: the text of a value that begins in the same line, without a comment; empty for a block.
+        value: the text of a value that begins in the same line, without a comment, or empty for a block.
         value_start: the offset of the value, or where it would be.
         line: the line, from 0.
-        parent: the entry that contains it; None for the whole text.
+        parent: the entry that contains it, or None for the whole text.
         children: the entries in it.
-        end: the offset behind the last line of it.
+        end: the offset at which the next entry outside it begins, or the end of the text.
     """
 
     key: str
@@ -64,7 +64,7 @@ class YamlEntry:
 
     @property
     def path(self) -> tuple[str, ...]:
-        """The keys from the root to this entry; items are left out."""
+        """The keys from the root to this entry, without list items."""
         keys: list[str] = []
         entry: YamlEntry | None = self
         while entry is not None:
@@ -83,7 +83,7 @@ class YamlEntry:
         return next((child for child in self.children if child.key == key), None)
 
     def all(self) -> Iterator[YamlEntry]:
-        """Yield the entries in it, at all depths, in the order of the text."""
+        """Yield all descendants of the entry, in text order."""
         pending = list(reversed(self.children))
         while pending:
             entry = pending.pop()
@@ -91,7 +91,7 @@ class YamlEntry:
             pending += reversed(entry.children)
 
     def items(self) -> list[tuple[str, int]]:
-        """Return the items of a list in a flow or a block, without quotes, each with its offset."""
+        """Return the items of a flow or block list without quotes, each with its offset."""
         if self.value.startswith("["):
             return [*_flow_items(self.value, self.value_start)]
         return [(unquoted(child.value), _inside(child)) for child in self.children if child.is_item and child.value]
@@ -99,15 +99,15 @@ class YamlEntry:
 
 @dataclass(frozen=True, slots=True)
 class YamlCursor:
-    """A place in a YAML text.
+    """A cursor position in a YAML text.
 
     Attributes:
-        place: its kind.
+        place: the kind of position.
         offset: the character offset.
-        within: the entry whose content has the place; for a value that is the entry with the value.
-        start: the offset where the key or value at the place begins.
-        typed: the part of it before the place, without an opening quote.
-        entry: the entry whose key is at the place, if there is one already.
+        within: the entry that contains the position; for a value, the entry with the value.
+        start: the offset at which the key or value at the cursor begins.
+        typed: the part of the key or value before the cursor, without an opening quote.
+        entry: the entry whose key is at the cursor, or None.
         in_list: whether the value is an item of a list.
     """
 
@@ -124,7 +124,7 @@ class YamlOutline:
     """The entries of a text.
 
     Args:
-        text: the text, in any state.
+        text: the text, which may be incomplete.
 
     Attributes:
         root: the whole text.
@@ -141,7 +141,7 @@ class YamlOutline:
         _set_ends(self.root, len(text))
 
     def cursor(self, offset: int) -> YamlCursor:
-        """Return the place of an offset."""
+        """Return the cursor at an offset."""
         start = self.text.rfind("\n", 0, offset) + 1
         line = self.text.count("\n", 0, start)
         nothing = YamlCursor(Place.NOTHING, offset, self.root, offset)
@@ -160,7 +160,7 @@ class YamlOutline:
             if offset > entry.start and (not entry.key or offset >= entry.value_start) and entry.value_start <= offset:
                 return self._in_value(entry, offset)
         if on_line and on_line[0].key and offset > on_line[0].start:
-            return nothing  # directly behind the colon
+            return nothing  # directly after the colon
         if on_line and before.strip():
             return nothing
         return self._in_new_line(before, last, line, offset)
@@ -174,7 +174,7 @@ class YamlOutline:
         return cursor
 
     def _in_new_line(self, before: str, last: YamlEntry, line: int, offset: int) -> YamlCursor:
-        """Return the place in a line that has no entry yet."""
+        """Return the cursor in a line that has no entry yet."""
         typed = before.lstrip(" \t")
         column = len(before) - len(typed)
         within = self._before(last, line)
@@ -219,7 +219,7 @@ class YamlOutline:
             offset += len(line) + 1
 
     def _read_line(self, line: str, column: int, offset: int, number: int, stack: list[YamlEntry]) -> YamlEntry | None:
-        """Add the entries of a line, and return the last."""
+        """Add the entries of a line, and return the last one, or None."""
         added: YamlEntry | None = None
         end = _comment_start(line, column)
         if end < len(line):
@@ -251,7 +251,7 @@ class YamlOutline:
         return added
 
     def _read_flow(self, entry: YamlEntry) -> int:
-        """Extend the value of an entry to the end of its flow, add the keys in it, and return where it ends."""
+        """Extend a value to the end of its flow collection, add its keys, and return its end."""
         end = _flow_end(self.text, entry.value_start, entry.column)
         entry.value = self.text[entry.value_start : end].rstrip()
         if entry.value.startswith("{"):
@@ -274,7 +274,7 @@ def unquoted(text: str) -> str:
 
 
 def _leave(stack: list[YamlEntry], column: int, *, is_item: bool) -> None:
-    """Drop the entries that a line at a column does not belong to."""
+    """Pop the entries that a line at a column does not belong to."""
     while stack[-1].column >= column:
         if is_item and stack[-1].column == column and stack[-1].key and not stack[-1].value:
             return  # a list may begin at the column of its key
@@ -296,7 +296,10 @@ def _comment_start(line: str, column: int) -> int:
 
 
 def _flow_end(text: str, start: int, column: int) -> int:
-    """Return the offset behind a flow; one that is not closed ends before the next key at the column of its own."""
+    """Return the offset after a flow collection.
+
+    An unclosed one ends before the next line at the column of its entry.
+    """
     depth, offset = 0, start
     for number in range(_MAX_FLOW_LINES):
         line_end = text.find("\n", offset)
@@ -323,7 +326,7 @@ def _flow_end(text: str, start: int, column: int) -> int:
 
 
 def _flow_items(value: str, start: int) -> Iterator[tuple[str, int]]:
-    """Yield the items of a flow without quotes, each with its offset."""
+    """Yield the items of a flow collection without quotes, each with its offset."""
     depth, quote, begin = 0, "", 1
     for index, character in enumerate(value):
         if quote:
@@ -354,7 +357,7 @@ def _inside(entry: YamlEntry) -> int:
 
 
 def _set_ends(root: YamlEntry, end: int) -> None:
-    """Set the ends of all entries: where the next one begins that is not in it."""
+    """Set the end of each entry to the start of the next entry outside it."""
     pending = [(root, end)]
     while pending:
         entry, limit = pending.pop()
@@ -381,7 +384,7 @@ def _is_in_flow(entry: YamlEntry, offset: int) -> bool:
 
 
 def _value_cursor(text: str, entry: YamlEntry, offset: int) -> YamlCursor:
-    """Return the place in a value, in a flow that of the item."""
+    """Return the cursor in a value, or in an item of a flow collection."""
     start = entry.value_start
     in_list = entry.is_item
     if text[start : start + 1] in ("[", "{") and offset > start:

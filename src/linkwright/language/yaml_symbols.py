@@ -1,4 +1,4 @@
-"""The keys of a YAML text as symbols, and other helpers that YAML formats share."""
+"""The symbols of a YAML text, and other functions shared by YAML formats."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from linkwright.language.yaml_outline import YamlEntry, YamlOutline
 _MAX_DEPTH = 30
 _MAX_SYMBOLS = 20_000
 _NAMING = ("Name", "name", "Class", "type", "plugin")
-"""Keys whose value names an item of a list, the first that it has."""
+"""The keys whose value names an item of a list, in order of precedence."""
 
 
 def yaml_symbols(document: Document) -> list[Symbol]:
@@ -47,7 +47,10 @@ def _symbols(entries: Iterable[YamlEntry], depth: int) -> Iterator[Symbol]:
 
 
 def by_typed(items: Iterable[Completion], typed: str) -> list[Completion]:
-    """Return completions without duplicates, those first that begin with the typed text, then those that contain it."""
+    """Remove duplicates, and sort completions by their match with the typed text.
+
+    Labels that begin with the text come first, then labels that contain it, then the others.
+    """
     unique: dict[str, Completion] = {}
     for item in items:
         unique.setdefault(item.label, item)
@@ -63,12 +66,12 @@ def by_typed(items: Iterable[Completion], typed: str) -> list[Completion]:
 
 
 def snippet_text(text: str) -> str:
-    """Return a text with the marks of snippets escaped."""
+    """Escape the special characters of snippets in a text."""
     return text.replace("\\", "\\\\").replace("$", "\\$").replace("}", "\\}")
 
 
 def has_colon(text: str, offset: int) -> bool:
-    """Return whether a colon follows an offset in its line, behind the rest of a word."""
+    """Return whether a colon follows an offset in its line, outside a comment."""
     end = text.find("\n", offset)
     rest = text[offset : end if end >= 0 else len(text)]
     return ":" in rest.partition("#")[0]

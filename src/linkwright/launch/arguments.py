@@ -83,7 +83,7 @@ def _misspelt(name: str, undeclared: Sequence[str], error: Diagnostic) -> Diagno
     similar_names = nearest(name, undeclared, limit=1)
     return (
         error.with_changes(
-            hint=phrase(("argument '{near}' was passed; did you mean '{name}'?"), near=similar_names[0], name=name)
+            hint=phrase(("did you mean '{name}' instead of '{like}'?"), like=similar_names[0], name=name)
         )
         if similar_names
         else error

@@ -55,7 +55,7 @@ def get_launch_file_paths(*, path: str) -> list[str]:
 
 
 def is_launch_file(path: str) -> bool:
-    """Return whether a path is that of an existing file with the name of a launch file."""
+    """Return whether a path leads to an existing file with the name of a launch file."""
     return is_launch_file_name(str(path)) and Path(path).is_file()
 
 

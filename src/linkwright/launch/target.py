@@ -61,7 +61,7 @@ class LaunchTarget:
             paths_text = ", ".join(str(path.relative_to(share)) for path in matching_files)
             raise LinkwrightError(
                 Diagnostic(
-                    "LAUNCH101", message, hint=phrase("give the path of one of them: {listed}", listed=paths_text)
+                    "LAUNCH101", message, hint=phrase("pass the path of one of them: {listed}", listed=paths_text)
                 )
             )
         names = [path.name for path in launch_files]
@@ -74,9 +74,9 @@ class LaunchTarget:
         hint = did_you_mean(self.file, names)
         if hint is None:
             hint = (
-                phrase("it has {names}", names=joined(names))
+                phrase("the package has {names}", names=joined(names))
                 if names
-                else phrase("it has no launch files; check that its setup.py installs them")
+                else phrase("check that setup.py installs the launch files; the package has none")
             )
         raise LinkwrightError(Diagnostic("LAUNCH101", message, hint=hint))
 
@@ -104,15 +104,15 @@ def parse_launch_words(words: Sequence[str]) -> tuple[LaunchTarget, dict[str, st
     if not target_names:
         raise _incomplete_error(
             phrase("no launch file is given"),
-            phrase("name a PACKAGE and a FILE in it, or give the PATH of a launch file"),
+            phrase("pass a PACKAGE and a FILE in it, or the PATH of a launch file"),
         )
     if len(target_names) == 1:
         if not _is_file(target_names[0]) and not _is_path(target_names[0]):
             files = [path.name for path in _files_of_package(target_names[0])]
             if files:
-                hint = phrase("it has {names}", names=joined(files))
+                hint = phrase("the package has {names}", names=joined(files))
                 raise _incomplete_error(
-                    phrase(("'{named}' is a package; also name a launch file in it"), named=target_names[0]), hint
+                    phrase(("'{named}' is a package: add the name of a launch file in it"), named=target_names[0]), hint
                 )
         return LaunchTarget(target_names[0]), values
     return LaunchTarget(target_names[1], target_names[0]), values

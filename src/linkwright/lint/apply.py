@@ -97,7 +97,7 @@ def write_text(path: Path, text: str, encoding: str = "utf-8") -> None:
         )
     except OSError as error:
         message = phrase(
-            "cannot write '{path}': {strerror}", path=display_path(path), strerror=foreign(error.strerror or error)
+            "cannot write '{path}': {reason}", path=display_path(path), reason=foreign(error.strerror or error)
         )
         raise LinkwrightError(
             Diagnostic("LINT201", message, hint=phrase("check that you have permission to change the file"))
@@ -190,6 +190,6 @@ def _diff(file: str, text: str) -> str:
 
 
 def unified_changes(name: str, before: str, after: str) -> str:
-    """Return the changes of a file as a unified diff that ``patch -p0`` accepts."""
+    """Return the changes to a file as a unified diff that ``patch -p0`` accepts."""
     lines = unified_diff(before.splitlines(keepends=True), after.splitlines(keepends=True), name, name)
     return "".join(line if line.endswith("\n") else f"{line}\n\\ No newline at end of file\n" for line in lines)

@@ -1,4 +1,4 @@
-"""Checks of a description with every set of values that its arguments receive, with each finding reported once."""
+"""Checks of a description with every set of argument values, without duplicate findings."""
 
 from __future__ import annotations
 
@@ -93,7 +93,7 @@ class SetCheck:
     _is_expanded: bool = field(default=False, init=False)
 
     def with_configured(self, sets: Sequence[Mapping[str, str]]) -> Checked:
-        """Return the merged result for configured argument sets, without the argument sets of callers."""
+        """Return the merged result for configured argument sets, without those of callers."""
         return self._merge_runs([self._run(ArgumentSet(values)) for values in sets], ())
 
     def with_callers(self, find_sets: Callable[[], Sequence[ArgumentSet]]) -> Checked:
@@ -138,9 +138,10 @@ class SetCheck:
         return self._merge_runs(usable_runs, self._needs_arguments_finding(usable_runs[0], default, common, sets))
 
     def _run_expanded(self, sets: Sequence[ArgumentSet]) -> _Run | None:
-        """Check the file again with expansion, because launch files pass it to xacro, and return the default run.
+        """Check the file again with expansion, and return the run with default values.
 
-        The result is None if there are no argument sets, or if the defaults and all sets cause errors.
+        The file needs expansion because launch files pass it to xacro. The result is None if there are no argument
+        sets, or if the defaults and all sets cause errors.
         """
         if not sets:
             return None
@@ -177,7 +178,7 @@ class SetCheck:
     def _merge_runs(self, runs: Sequence[_Run], extra: Iterable[Diagnostic]) -> Checked:
         """Merge the findings of several runs without duplicates.
 
-        The robot is that of the first run that has one.
+        The robot is taken from the first run that has one.
         """
         occurrences: dict[Key, tuple[Diagnostic, list[_Run]]] = {}
         for run in runs:
@@ -209,9 +210,9 @@ class SetCheck:
             f"{name}:={working_run.argument_set.values[name]}" for name in names[:_MAX_SHOWN_ARGUMENTS]
         )
         message = (
-            phrase("for instance, it gets {values} here", values=shown_values)
+            phrase("for instance, a caller passes {values} here", values=shown_values)
             if working_run.argument_set in sets
-            else phrase("for instance, it can be expanded with {values}", values=shown_values)
+            else phrase("for instance, {values} expands the file", values=shown_values)
         )
         notes = [Note(message, working_run.argument_set.span)]
         if len(sets) > 1 and working_run.argument_set in sets:
@@ -414,9 +415,7 @@ def _runtime_value_note(sets: Sequence[ArgumentSet]) -> tuple[Note, ...]:
     """Return a note on the first caller with values known only at runtime, or an empty tuple."""
     call_spans = [argument_set.span for argument_set in sets if argument_set.runtime_names]
     return (
-        (Note(phrase("the values of these arguments are only known when this runs"), call_spans[0]),)
-        if call_spans
-        else ()
+        (Note(phrase("the values of these arguments are only known at run time"), call_spans[0]),) if call_spans else ()
     )
 
 

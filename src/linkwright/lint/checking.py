@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 class UniqueFindings:
-    """A collection of findings without duplicates, such as those of a file that two robots include."""
+    """A collection of findings without duplicates, as from a file that two robots include."""
 
     def __init__(self) -> None:
         self._findings: dict[tuple[str, Span | None, str], Diagnostic] = {}
@@ -57,7 +57,7 @@ def _location(diagnostic: Diagnostic) -> Span | None:
 
 @dataclass(frozen=True, slots=True)
 class Checker:
-    """A checker of files and packages that searches for packages and callers of descriptions only once.
+    """A checker of files and packages that finds packages and callers of descriptions once.
 
     Attributes:
         values: the values of arguments; if empty, the values of the settings or of callers are used.
@@ -125,7 +125,7 @@ class Checker:
     def check_file(
         self, file: Path, targets: Targets, overlay: Overlay | None = None, contexts: Contexts | None = None
     ) -> tuple[Checked, tuple[Diagnostic, ...]]:
-        """Check a file with `values`, else with the configured argument sets, else with the callers' argument sets.
+        """Check a file with `values`, or with the configured or the callers' argument sets.
 
         Args:
             file: the file.
@@ -162,7 +162,7 @@ class Checker:
     def check_package(
         self, folder: Path, overlay: Overlay | None = None, contexts: Contexts | None = None
     ) -> tuple[tuple[Diagnostic, ...], tuple[Diagnostic, ...]]:
-        """Return the findings about a package without its descriptions, and the findings about its settings."""
+        """Return the findings about a package without its descriptions, and about its settings."""
         settings, settings_findings = self.settings(folder)
         checked = examine_package(folder, settings, self.finder(folder / MANIFEST), overlay, contexts)
         return checked.diagnostics, settings_findings
@@ -188,7 +188,9 @@ class Checker:
         ]
 
     def possible_arguments(self, file: Path, packages: Sequence[Path]) -> list[Mapping[str, str]]:
-        """Return the argument values that callers pass to a description, also if some are known only at runtime.
+        """Return the argument values that callers pass to a description.
+
+        The values of a set are included even if other values of the set are known only at runtime.
 
         Args:
             file: the description.

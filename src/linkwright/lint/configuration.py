@@ -232,7 +232,9 @@ class _Reader:
         for key, value in table.items():
             rule = find_rule(key)
             if rule is None:
-                self._add("LINT104", phrase("there is no rule '{key}'", key=key), ("options", key), selector_hint(key))
+                self._add(
+                    "LINT104", phrase("there is no rule '{word}'", word=key), ("options", key), selector_hint(key)
+                )
             elif not isinstance(value, dict):
                 self._report_invalid(
                     ("options", key), phrase("is not a table"), phrase("write [options.{key}]", key=key)

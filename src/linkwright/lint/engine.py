@@ -251,14 +251,14 @@ def _library_findings(description: Description) -> Iterator[Diagnostic]:
         if diagnostic.code in HOLDS_FOR_PARTS and diagnostic.span != root_span
     )
     hint = phrase("check the file that includes it")
-    message = phrase("this file only has parts for other files to include, and is not a robot by itself")
+    message = phrase("this file only defines parts for other files, and is not a robot by itself")
     yield Diagnostic("LINT302", message, root_span, Severity.INFO, hint=hint, source=root.source)
 
 
 def sorted_by_location(diagnostics: Iterable[Diagnostic], first_file: str) -> list[Diagnostic]:
     """Return diagnostics sorted by location.
 
-    Diagnostics without a location come first, then those of `first_file`. The other files follow in the order of their
+    Diagnostics without a location come first, then `first_file`. The other files follow in the order of their
     first diagnostics.
     """
     files = {first_file: 0}

@@ -1,4 +1,4 @@
-"""The documentation pages of diagnostic codes: docstrings of rules, or sections of ``pages/``.
+"""The documentation pages of codes: docstrings of rules, or sections of ``pages/``.
 
 Each file of ``pages/`` has a section ``## CODE: title`` for each code of one room.
 """
@@ -27,7 +27,9 @@ _HEADINGS: dict[str, str] = {
 
 @dataclass(frozen=True, slots=True)
 class Page:
-    """The documentation page of a code. Texts that can be translated are phrases.
+    """The documentation page of a code.
+
+    Texts that can be translated are phrases.
 
     Attributes:
         code: the code of the diagnostic.

@@ -87,4 +87,4 @@ INTERFACES = (
     "stiffness", "damping", "mechanical_gain", "position.x", "position.y", "position.z", "orientation.x",
     "orientation.y", "orientation.z", "orientation.w",
 )  # fmt: skip
-"""The names of interfaces that controllers request; hardware may have others."""
+"""The names of interfaces that controllers request. Hardware may have others."""

@@ -67,10 +67,10 @@ class Extents:
 
     @cached_property
     def measured(self) -> list[tuple[Link, Inertial, Bounds]]:
-        """The links whose body can rotate and be measured, each with its ``<inertial>`` and the box of the body.
+        """The links whose body can rotate and be measured, with ``<inertial>`` and bounding box.
 
-        The links are among `links_with_relevant_mass`. The box is in the link's frame. Links are left out if their body
-        cannot be measured, or if the body is so small that it is a marker.
+        The links are among `links_with_relevant_mass`. The box of the body is in the link's frame. Links are left out
+        if their body cannot be measured, or if the body is so small that it is a marker.
         """
         rotating_links = (item for item in self.links_with_relevant_mass if self._bodies.turns(item[0].name))
         boxes = ((link, inertial, self.body_bounds(link)) for link, inertial in rotating_links)
@@ -106,7 +106,7 @@ class Extents:
         return self._shape_boxes[key]
 
     def link_bounds(self, link: Link) -> Bounds | None:
-        """Return the box around a link's shapes in the link's frame, or None if it cannot be measured."""
+        """Return the bounding box of a link's shapes in its frame, or None if it is unknown."""
         return self._union_of_bounds([*link.visuals, *link.collisions])
 
     def separate_bounds(self, link: Link) -> list[Bounds]:

@@ -16,7 +16,7 @@ class Finding(Diagnostic):
     """A diagnostic that a rule reports.
 
     Attributes:
-        fix: a change of the source that fixes the problem, or None if only the author can fix it.
+        fix: a change to the source that fixes the problem, or None if only the author can fix it.
         element: the element that the finding is about. The engine adds notes on the macro calls and includes that
             produced the element.
     """
@@ -55,5 +55,5 @@ def with_related(first: Diagnostic, others: Sequence[Diagnostic]) -> Diagnostic:
 
 
 def without_element(diagnostic: Diagnostic) -> Diagnostic:
-    """Return a finding without its element, so that it does not keep the whole description in memory."""
+    """Return a finding without its element, which would keep the description in memory."""
     return diagnostic.with_changes(element=None) if isinstance(diagnostic, Finding) else diagnostic

@@ -105,7 +105,7 @@ def remove_element(element: Element, *, safe: bool = True) -> Fix | None:
 
 
 def value_edit(element: Element, attribute: str, value: str) -> Edit | None:
-    """Return the edit that changes an attribute's value, or None if the value is not written literally."""
+    """Return the edit that changes an attribute's value, or None if it is not a literal."""
     source = element.source
     if source is None or not is_literal(element, attribute):
         return None

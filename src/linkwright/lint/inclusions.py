@@ -1,4 +1,4 @@
-"""The includes in the texts of descriptions, and the files that they can lead to, before anything is expanded."""
+"""The includes in unexpanded descriptions, and the files that they may resolve to."""
 
 from __future__ import annotations
 
@@ -44,9 +44,10 @@ class Inclusion:
         return Path(self.path).name
 
     def may_lead(self, includer: Path, file: Path, packages: Mapping[str, Sequence[Path]]) -> bool:
-        """Return whether this include can mean a file with the included name.
+        """Return whether this include can refer to a file.
 
-        If the path cannot be followed, every file with that name is possible. That of another package is not.
+        If its path cannot be resolved, any file with the included name is possible. If it names a
+        package, files of other packages are excluded.
 
         Args:
             includer: the absolute path of the file with the include.

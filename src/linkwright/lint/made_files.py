@@ -1,4 +1,4 @@
-"""Files that are missing from a package's sources because a program or a user creates them later."""
+"""Files that are not in a package's sources because a program or a user creates them."""
 
 from __future__ import annotations
 

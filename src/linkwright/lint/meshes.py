@@ -86,7 +86,7 @@ class MeshFacts:
         return None
 
     def outline(self, shape: Visual | Collision) -> Outline | None:
-        """Return the scaled outline of a shape's mesh in the shape frame, or None if the mesh cannot be read."""
+        """Return the scaled outline of a shape's mesh in the shape frame, or None if unreadable."""
         if not isinstance(shape.geometry, Mesh):
             return None
         try:

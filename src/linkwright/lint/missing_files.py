@@ -1,4 +1,4 @@
-"""Included files that may be missing, because the build creates them or another program locates them."""
+"""Included files that may be missing: the build creates them, or a program locates them."""
 
 from __future__ import annotations
 

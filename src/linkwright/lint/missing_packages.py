@@ -14,7 +14,7 @@ _MISSING = "PKG101"
 
 
 def with_package_severity(diagnostics: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
-    """Yield the diagnostics, with only a warning for each missing package that is a declared dependency.
+    """Yield the diagnostics, with missing packages that are declared dependencies as warnings.
 
     Either the package that uses the missing one or a neighbouring package must declare it.
     """

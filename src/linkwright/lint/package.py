@@ -1,4 +1,4 @@
-"""The ROS package that contains a description: its files, and their references to one another."""
+"""The ROS package that contains a description: its files and their references."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def find_package(
 
     Args:
         path: the file or folder.
-        overlay: texts that replace those of files.
+        overlay: texts that replace the contents of files.
         cache: the cache of packages by folder, which is not used with an overlay.
     """
     path = path.absolute()
@@ -51,7 +51,7 @@ class PackageContext:
 
     Args:
         folder: the folder with the ``package.xml``.
-        overlay: texts that replace those of files.
+        overlay: texts that replace the contents of files.
 
     Attributes:
         folder: the absolute path of the folder.
@@ -88,12 +88,12 @@ class PackageContext:
 
     @cached_property
     def files(self) -> tuple[str, ...]:
-        """The sorted paths of all files, relative to the package, without hidden files and build products."""
+        """The sorted paths of all files in the package, without hidden files and build products."""
         return tuple(sorted(self._walk()))
 
     @cached_property
     def folders(self) -> frozenset[str]:
-        """The paths of all folders that contain files, directly or in subfolders, relative to the package."""
+        """The paths of all folders with files in them or in subfolders, relative to the package."""
         paths: set[str] = set()
         for file in self.files:
             parts = file.split("/")[:-1]

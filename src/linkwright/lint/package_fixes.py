@@ -33,7 +33,8 @@ _FIRST_IMPORT = lazy_pattern(r"^(import|from)[ \t]", re.MULTILINE)
 def dependency_fix(manifest: Manifest, names: list[str]) -> Fix | None:
     """Return the fix that adds dependencies to ``package.xml``, or None if this is not possible.
 
-    The new lines follow the last dependency that is not only for tests, or else the licence, and have its indentation.
+    The new lines follow the last dependency that is not only for tests or documentation, or else the licence. They have
+    its indentation.
     """
     source = manifest.document.source
     dependencies = manifest.dependencies
@@ -52,7 +53,7 @@ def dependency_fix(manifest: Manifest, names: list[str]) -> Fix | None:
 
 
 def setup_folders_fix(package: PackageContext, setup: SetupFile, folders: Iterable[str], *, safe: bool) -> Fix | None:
-    """Return the fix that installs the files of folders by the ``data_files`` of ``setup.py``, or None."""
+    """Return the fix that adds folders to ``data_files`` in ``setup.py``, or None."""
     glob, imports = _glob(setup)
     if glob is None:
         return None
@@ -68,7 +69,7 @@ def setup_file_fix(package: PackageContext, setup: SetupFile, destination: str, 
     Args:
         package: the package.
         setup: its ``setup.py``.
-        destination: the folder relative to the prefix; an empty text for the share folder of the package.
+        destination: the folder relative to the prefix; an empty string for the share folder of the package.
         file: the path of the file in the package.
     """
     into = f"'{destination}'" if destination else _share_folder(setup, package.name)
@@ -78,8 +79,8 @@ def setup_file_fix(package: PackageContext, setup: SetupFile, destination: str, 
 def cmake_folder_fix(source: SourceText, folder: str, *, safe: bool) -> Fix | None:
     """Return the fix that installs a folder by ``CMakeLists.txt``, or None.
 
-    A folder in the package is added to a command that installs folders into the share folder; otherwise, a command is
-    added before ``ament_package()``.
+    A folder directly in the package is added to a command that installs folders into the share folder. For any other
+    folder, or without such a command, a command is added before ``ament_package()``.
 
     Args:
         source: the ``CMakeLists.txt``.
@@ -104,7 +105,7 @@ def cmake_folder_fix(source: SourceText, folder: str, *, safe: bool) -> Fix | No
 
 
 def _last_folders(source: SourceText) -> Iterator[Token]:
-    """Yield the last folder of each unconditional command that installs folders into the share folder."""
+    """Yield the last folder of each unconditional command that installs into the share folder."""
     from linkwright.packages.readers.cmake_syntax import BLOCK_ENDS, statements
 
     depth = 0
@@ -126,7 +127,7 @@ def _installed_folders(statement: Statement) -> tuple[Token, ...]:
 
 
 def _data_files_fix(setup: SetupFile, entries: list[str], imports: tuple[Edit, ...], *, safe: bool) -> Fix | None:
-    """Return the fix that adds entries to the list ``data_files``, or None if it is not written as a list."""
+    """Return the fix that adds entries to ``data_files``, or None if it is not a list."""
     listed = _data_files_list(setup)
     if listed is None:
         return None
@@ -169,7 +170,10 @@ def _after_last(source: SourceText, last: tuple[int, int], entries: list[str]) -
 
 
 def _data_files_list(setup: SetupFile) -> tuple[int, list[tuple[int, int]]] | None:
-    """Return the offset of the list ``data_files`` of the call of ``setup``, and the ranges of its elements."""
+    """Return the offset of the list ``data_files`` in the call of ``setup``, and its elements.
+
+    The elements are ranges of offsets. The result is None if there is no such list.
+    """
     from linkwright.packages.readers.python_values import PythonFile, argument_of
 
     try:
@@ -188,9 +192,9 @@ def _data_files_list(setup: SetupFile) -> tuple[int, list[tuple[int, int]]] | No
 
 
 def _glob(setup: SetupFile) -> tuple[str | None, tuple[Edit, ...]]:
-    """Return the name under which ``setup.py`` can call ``glob``, and the edit that adds a missing import.
+    """Return the name by which ``setup.py`` can call ``glob``, and the edit that imports it.
 
-    The name is None if there is no place for the import.
+    The edit is empty if the import exists. The name is None if there is no position for the import.
     """
     for node in () if setup.tree is None else setup.tree.body:
         if isinstance(node, ast.ImportFrom) and node.module == "glob":

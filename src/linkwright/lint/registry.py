@@ -44,12 +44,12 @@ def rules_of(scopes: Collection[Scope]) -> tuple[Rule, ...]:
 
 
 def unusable_rules() -> tuple[Diagnostic, ...]:
-    """Return a warning (LINT301) for each entry point of another package whose rules cannot be used."""
+    """Return a warning (LINT301) for each external entry point whose rules cannot be used."""
     return _all_rules(include_packages=False)[1]
 
 
 def has_external_rules() -> bool:
-    """Return whether another package adds rules. The findings of such rules may depend on anything."""
+    """Return whether another package adds rules, whose findings may depend on anything."""
     return any(is_external(rule) for rule in _all_rules(include_packages=False)[0])
 
 
@@ -131,7 +131,7 @@ def _rules_of(entry: EntryPoint, used_names: set[str], *, include_packages: bool
 
 
 def _load(entry: EntryPoint, used_names: set[str], *, is_ours: bool, include_packages: bool) -> list[Rule]:
-    """Return the rules that an entry point provides, and add their codes and names to `used_names`.
+    """Return the rules of an entry point, and add their codes and names to `used_names`.
 
     Raises:
         ValueError: If a code or name is taken or malformed.

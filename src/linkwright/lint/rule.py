@@ -110,7 +110,7 @@ class Rule:
             source: the text that contains `span`, for the excerpt.
             notes: facts that explain the finding, with their locations.
             hint: how to fix the problem.
-            fix: a change of the source that fixes the problem.
+            fix: a change to the source that fixes the problem.
             severity: the severity, if it differs from the rule's.
         """
         if element is not None:

@@ -1,4 +1,4 @@
-"""Settings that determine which rules run, how severe their findings are, and the rules' options."""
+"""The settings of rules: which run, how severe their findings are, and their options."""
 
 from __future__ import annotations
 
@@ -30,10 +30,10 @@ class SwitchableRule(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Settings:
-    """The settings of a check. Selectors are codes, beginnings of codes, or ``ALL``.
+    """The settings of a check.
 
-    If several selectors match a code, the most specific one decides. Among equally specific selectors, an ignoring one
-    takes precedence.
+    Selectors are codes, beginnings of codes, or ``ALL``. If several selectors match a code, the most specific one
+    decides. Among equally specific selectors, an ignoring one takes precedence.
 
     Attributes:
         select: the selectors of findings to report; None means all rules that are on by default and all warnings of the

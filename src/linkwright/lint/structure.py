@@ -1,4 +1,4 @@
-"""The elements of a description that the URDF schema defines, and those that it does not define."""
+"""The elements of a description that the URDF schema defines, and the other elements."""
 
 from __future__ import annotations
 
@@ -53,7 +53,10 @@ class Structure:
 
     @cached_property
     def places(self) -> list[Place]:
-        """The elements that URDF defines, in document order. The list is empty if the root is not a ``<robot>``."""
+        """The elements that URDF defines, in document order.
+
+        The list is empty if the root is not a ``<robot>``.
+        """
         return self._classified_elements[0]
 
     @cached_property
@@ -70,7 +73,10 @@ class Structure:
 
     @cached_property
     def unknown_attributes(self) -> list[tuple[Place, str]]:
-        """The attributes that URDF does not define for their elements, except attributes of other namespaces."""
+        """The attributes that URDF does not define for their elements.
+
+        Attributes of other namespaces are left out.
+        """
         return [
             (schema_element, name)
             for schema_element in self.places

@@ -159,7 +159,7 @@ class Suppressions:
                 phrase("this comment suppresses {what}, but no such finding occurs here", what=targets),
                 span=directive.source.span(directive.start, directive.end),
                 source=directive.source,
-                hint=phrase("remove it") if fix else phrase("remove {what} from it", what=targets),
+                hint=phrase("remove it") if fix else phrase("remove {what} from this comment", what=targets),
                 fix=fix,
             )
 

@@ -60,7 +60,7 @@ def find_targets(paths: Iterable[Path], *, with_packages: bool = False) -> Targe
     A file is always checked. The package of a file is checked only with `with_packages`.
 
     For a folder, the packages in and below the folder are checked, and the package that contains the folder. Of the
-    descriptions, those that no other file there includes are checked: ``.urdf``, ``.sdf`` and ``.world`` files, and
+    descriptions, the files that no other file there includes are checked: ``.urdf``, ``.sdf`` and ``.world`` files, and
     ``.xacro`` files that describe a complete robot. The root of such a file is a ``<robot>`` with a name, and it
     contains more than declarations. Build products, hidden folders and empty files are skipped. Web pages inside a
     package are also skipped, because they read URDF in their own way.
@@ -160,7 +160,7 @@ def _is_part(path: Path) -> bool:
 
 
 def _is_empty(path: Path, error: LinkwrightError) -> bool:
-    """Return whether a file that is not XML is blank or only has comments."""
+    """Return whether a file that is not XML is empty or only has comments."""
     if any(diagnostic.code == _EMPTY_FILE for diagnostic in error.diagnostics):
         return True
     return not _COMMENT.sub("", _text(path).lstrip("\ufeff")).strip()

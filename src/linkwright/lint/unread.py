@@ -98,7 +98,7 @@ def is_expected_attribute(name: str) -> bool:
 def reader_hints(subject: Subject) -> dict[Span | None, str]:
     """Return the hints of the URDF reader's diagnostics, by location.
 
-    A diagnostic without a hint has an empty text.
+    A diagnostic without a hint has an empty string.
     """
     return {diagnostic.span: diagnostic.hint or "" for diagnostic in subject.reading.diagnostics}
 
@@ -117,7 +117,10 @@ def intended_element(rule: ElementRule, child: Element) -> str | None:
 
 
 def is_misspelt(name: str, intended: str) -> bool:
-    """Return whether a name is a misspelling of another, and not its equivalent in another format."""
+    """Return whether a name is a misspelling of another.
+
+    The equivalent in another format is not a misspelling.
+    """
     return find_misspelt(name, [intended]) is not None
 
 

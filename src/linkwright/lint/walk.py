@@ -88,7 +88,7 @@ def value(element: Element, attribute: str) -> float | None:
 
 
 def values(element: Element, attribute: str) -> tuple[float, ...]:
-    """Return the numbers in an attribute, or an empty tuple if it is absent or contains anything else."""
+    """Return the numbers in an attribute, or an empty tuple if it is absent or malformed."""
     text = element.attributes.get(attribute)
     if text is None:
         return ()

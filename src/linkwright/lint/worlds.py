@@ -214,7 +214,7 @@ def _inertial_findings(link: Link, inertial: Inertial) -> Iterator[Diagnostic]:
         return
     if robot_inertial.mass <= 0:
         finding = (_NEGATIVE_MASS if robot_inertial.mass < 0 else _ZERO_MASS).finding(link.name, robot_inertial)
-        yield finding.with_changes(hint=phrase("masses are in kg and positive"))
+        yield finding.with_changes(hint=phrase("give a positive mass in kg"))
     flaw = first_flaw(robot_inertial)
     if flaw is not None and flaw.kind in _FLAW_RULES:
         hint = phrase("a solid box has m (a2 + b2) / 12 about each axis, with a and b its edges across the axis")

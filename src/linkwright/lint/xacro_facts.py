@@ -161,7 +161,7 @@ class FileFacts:
         return facts
 
     def parameters(self, macro: Element) -> tuple[Parameter, ...]:
-        """Return the parameters that a macro of this file declares, or an empty tuple if they are malformed."""
+        """Return the parameters of a macro of this file, or an empty tuple if they are malformed."""
         try:
             return parse_parameters(macro.attributes.get("params", ""))
         except Fault:
@@ -324,7 +324,7 @@ class XacroFacts:
 
     @cached_property
     def names(self) -> frozenset[str]:
-        """All names that a file or a neighbour mentions in an expression or could substitute into one."""
+        """All names that a file or a neighbour uses, or could substitute, in an expression."""
         mentioned_names: set[str] = set()
         for facts in self._all():
             mentioned_names |= facts.names | facts.blocks

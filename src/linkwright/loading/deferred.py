@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 def deferred(package: str, names: Mapping[str, Sequence[str]]) -> Callable[[str], Any]:
-    """Return a ``__getattr__`` for a package's ``__init__`` that imports modules on first access.
+    """Return a ``__getattr__`` for a package's ``__init__``, for imports on first access.
 
     Source: PEP 562.
 
@@ -62,7 +62,10 @@ def _lazy_pattern(text: Any, flags: int = 0) -> Any:
 if TYPE_CHECKING:
 
     def lazy_pattern(text: AnyStr, flags: int = 0) -> re.Pattern[AnyStr]:
-        """Return a pattern like `re.compile`. Errors in the pattern are raised only on first use."""
+        """Return a pattern like `re.compile`.
+
+        Errors in the pattern are raised only on first use.
+        """
 
 else:
     lazy_pattern = _lazy_pattern

@@ -1,4 +1,4 @@
-"""A faster replacement for `dataclasses`. Its methods are compiled on first use.
+"""A faster replacement for `dataclasses`, which compiles methods on first use.
 
 The standard library generates the methods of a class as source code, and compiles them when the class is defined. For
 this purpose, it also imports `inspect`. A check of a small robot defines sixty classes and creates objects of half of
@@ -7,7 +7,7 @@ all classes share the remaining methods.
 
 For type checkers, the functions are `dataclasses.dataclass`, `field` and `replace`, with those of their arguments that
 are used here. The functions of `dataclasses` for a class or an object, such as ``fields`` and ``asdict``, also accept
-these classes. `NamedTuple` replaces that of `typing`, and does not compile each annotation.
+these classes. `NamedTuple` replaces the one in `typing`, and does not compile each annotation.
 """
 
 from __future__ import annotations
@@ -210,7 +210,7 @@ def _set_state(self: Any, state: list[Any]) -> None:
 
 
 class _StandardAttribute:
-    """An attribute that `dataclasses` sets on a class. It is computed on first access."""
+    """An attribute that `dataclasses` sets on a class, computed on first access."""
 
     def __init__(self, name: str) -> None:
         self._name = name

@@ -1,1 +1,4 @@
-"""The language server: the protocol of editors around the room `language`; needs the extra ``lsp``."""
+"""The language server, which offers the functions of `language` to editors.
+
+It needs the extra ``lsp``.
+"""

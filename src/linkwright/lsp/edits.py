@@ -1,4 +1,4 @@
-"""Edits of files as those of the protocol, with the versions of the open texts."""
+"""Conversion of edits to the protocol, with the versions of the open texts."""
 
 from __future__ import annotations
 
@@ -12,7 +12,10 @@ from linkwright.lsp.server import LinkwrightServer
 
 
 def document_edits(server: LinkwrightServer, edits: Iterable[Edit]) -> types.WorkspaceEdit:
-    """Return edits for the editor, with the versions of the open files: it applies all or none."""
+    """Convert edits for the editor, with the versions of the open files.
+
+    The editor rejects the edits if a file has another version.
+    """
     changes: list[types.TextDocumentEdit | types.CreateFile | types.RenameFile | types.DeleteFile] = []
     for file, own in groupby(sorted(edits), key=lambda edit: edit.file):
         positions = server.positions(file)
@@ -30,7 +33,7 @@ def document_edits(server: LinkwrightServer, edits: Iterable[Edit]) -> types.Wor
 
 
 def new_file_edit(uri: str, text: str) -> types.WorkspaceEdit:
-    """Return the edit that makes a file with a text.
+    """Return the edit that creates a file with a text.
 
     Args:
         uri: the URI of the file, which does not exist.

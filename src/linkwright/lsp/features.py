@@ -15,6 +15,7 @@ from linkwright.lsp.requests import (
     names,
     navigation,
     renames,
+    robot_pages,
     texts,
     virtual_documents,
 )
@@ -79,13 +80,24 @@ def make_server() -> LinkwrightServer:
         for file in deleted.files:
             server.file_saved(file.uri)
 
-    for requests in (texts, names, renames, actions, hints, appearance, navigation, expansions, virtual_documents):
+    for requests in (
+        texts,
+        names,
+        renames,
+        actions,
+        hints,
+        appearance,
+        navigation,
+        expansions,
+        virtual_documents,
+        robot_pages,
+    ):
         requests.add_requests(server)
     return server
 
 
 def _folders(server: LinkwrightServer) -> list[Path]:
-    """Return the folders that the editor has opened; its root if it names no folders."""
+    """Return the folders that the editor has opened, or its root if it reports no folders."""
     folders = [path for uri in server.workspace.folders if (path := path_of(uri)) is not None]
     root = path_of(server.workspace.root_uri) if server.workspace.root_uri else None
     return folders or ([root] if root else [])

@@ -29,7 +29,7 @@ def as_diagnostics(
     Args:
         findings: the findings.
         positions: the texts of files.
-        uri: returns the URI that the editor has for a file.
+        uri: returns the URI that the editor uses for a file.
         links_pages: whether the editor opens the page of a rule by its URI.
     """
     diagnostics = [_diagnostic(finding, positions, uri) for finding in findings]

@@ -1,4 +1,4 @@
-"""The folders of an editor: the search for their files with its progress, and changes on the disk."""
+"""The folders of an editor: the progress of the search, and changes to files on the disk."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ from linkwright.diagnostics import Phrase
 from linkwright.diagnostics.translation import localized
 
 _PROGRESS_AFTER = 0.5
-"""The time in seconds after which an editor shows the progress of work; shorter work would only flicker."""
+"""The time in seconds after which an editor shows progress. Shorter work would only flicker."""
 
 WATCHED_FILES = (
     "**/*.{xacro,urdf,sdf,world,srdf,launch,xml,py,yaml,yml,toml,msg,srv,action}",
     "**/model.config",
     "**/CMakeLists.txt",
 )
-"""The files whose changes on the disk can change findings: descriptions, their callers, packages and settings."""
+"""The files on the disk that affect findings: descriptions, callers, packages and settings."""
 
 
 async def with_progress(server: LanguageServer, title: Phrase, work: Awaitable[None]) -> None:
-    """Wait for work. If it takes long, the editor shows its progress, provided that it can.
+    """Wait for work, and show its progress in the editor if the work takes long.
 
     Args:
         server: the server.
@@ -48,7 +48,7 @@ async def with_progress(server: LanguageServer, title: Phrase, work: Awaitable[N
 
 
 async def watch_files(server: LanguageServer) -> None:
-    """Ask the editor for the changes of files on the disk, provided that it can be asked."""
+    """Register for changes to files on the disk, if the editor supports it."""
     workspace = server.client_capabilities.workspace
     watched = None if workspace is None else workspace.did_change_watched_files
     if watched is None or not watched.dynamic_registration:

@@ -31,7 +31,7 @@ class TextPositions:
         self._codec, self._bytes = _UNITS[types.PositionEncodingKind(encoding)]
 
     def offset(self, position: types.Position) -> int:
-        """Return the character offset of a position; beyond the end of its line, that of the end."""
+        """Return the character offset of a position, at most the end of its line."""
         line = self._source.line(position.line + 1)
         start = self._source.offset(position.line + 1, 1)
         if line.isascii():
@@ -45,7 +45,7 @@ class TextPositions:
         return self._at(line, column)
 
     def range(self, start: int, end: int) -> types.Range:
-        """Return the range between two character offsets; the end is exclusive."""
+        """Return the range between two character offsets, with an exclusive end."""
         return types.Range(self.position(start), self.position(end))
 
     def range_of(self, span: Span) -> types.Range:
@@ -63,4 +63,4 @@ class TextPositions:
 
 
 TextOf = Callable[[Path], TextPositions | None]
-"""Returns the positions of a file's text; None if it cannot be read."""
+"""Returns the positions of a file's text, or None if the file cannot be read."""

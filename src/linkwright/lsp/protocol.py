@@ -8,7 +8,7 @@ from pygls.protocol import LanguageServerProtocol
 
 
 class LeanProtocol(LanguageServerProtocol):
-    """A protocol that forgets a message when it has been handled.
+    """A protocol that drops the future of a message when it has been handled.
 
     Pygls 2.1 stores the future of each notification, so the memory grows with each edit.
     """

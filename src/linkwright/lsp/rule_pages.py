@@ -18,7 +18,7 @@ def page_uri(code: str) -> str:
 
 
 def page_text(uri: str) -> str | None:
-    """Return the page of a URI in Markdown, or None for the URI of another document, or of an unknown code."""
+    """Return a rule's page in Markdown by its URI, or None for other URIs and unknown codes."""
     from linkwright.lint.explain import find_page
 
     scheme, _, code = uri.partition(":")

@@ -31,6 +31,7 @@ from linkwright.lsp.findings import as_diagnostics
 from linkwright.lsp.folders import with_progress
 from linkwright.lsp.positions import UTF_16, TextPositions
 from linkwright.lsp.protocol import LeanProtocol
+from linkwright.lsp.robot_views import RobotViews
 from linkwright.xacro.cache import BoundedCache
 from linkwright.xmltree.decoding import decode
 from linkwright.xmltree.reader import read_bytes
@@ -47,7 +48,7 @@ _IDLE_SECONDS = 1.0
 
 
 class FormattedText(NamedTuple):
-    """A text in a format with functions of its own."""
+    """A text in a format with its own editor functions."""
 
     format: Format
     document: Document
@@ -58,7 +59,8 @@ class LinkwrightServer(LanguageServer):
     """The language server for one editor.
 
     Attributes:
-        project: the files of the editor's folders; None before it has named them.
+        project: the workspace, or None before the editor has opened its folders.
+        robot_views: the pages that show robots.
     """
 
     def __init__(self) -> None:
@@ -71,13 +73,15 @@ class LinkwrightServer(LanguageServer):
         self._has_changes = asyncio.Event()
         self._is_indexed = asyncio.Event()
         self._thread = ThreadPoolExecutor(1, thread_name_prefix="check")
-        self._background: dict[Path, Future[None]] = {}
+        self._preparing: dict[Format, asyncio.Future[object]] = {}
+        self._background: dict[Path, list[Future[object]]] = {}
         self._work: asyncio.Task[None] | None = None
+        self.robot_views = RobotViews(self._go_to)
 
     # --- files ------------------------------------------------------------------------------------------------
 
     def begin(self, folders: Iterable[Path]) -> None:
-        """Open the folders of the editor, and check what changes from now on."""
+        """Open the folders of the editor, and start to check changed files."""
         BoundedCache.divisor = _CACHE_DIVISOR
         if self._work is not None:
             self._work.cancel()
@@ -96,23 +100,36 @@ class LinkwrightServer(LanguageServer):
         if self._work is not None:
             self._work.cancel()
         self._thread.shutdown(wait=False, cancel_futures=True)
+        self.robot_views.close()
+
+    def _go_to(self, file: Path, line: int, column: int) -> None:
+        """Show a place in the editor, where it can; the line and the column count from 1."""
+        window = self.client_capabilities.window
+        if window is not None and window.show_document is not None and window.show_document.support:
+            place = types.Position(line - 1, column - 1)
+            asked = types.ShowDocumentParams(self.uri_of(file), take_focus=True, selection=types.Range(place, place))
+            self.window_show_document(asked)
 
     def file_opened(self, uri: str) -> None:
-        """Remember the URI that the editor has for a file, and check the file."""
+        """Store the editor's URI of a file, and schedule a check of the file."""
         path = path_of(uri)
         if path is not None:
             self._uris[real(path)] = uri
             self.file_changed(uri)
+            known = format_of(path)
+            if known is not None:
+                self._prepared(known)
 
     def file_changed(self, uri: str) -> None:
-        """Check a file soon, with what includes it."""
+        """Schedule a check of a file and of the descriptions that include it."""
         path = path_of(uri)
         if path is not None:
             self._changed[real(path)] = None
             self._has_changes.set()
+            self.robot_views.texts_changed(self.texts)
 
     def file_saved(self, uri: str) -> None:
-        """Note that a file on the disk has changed."""
+        """Update the workspace after a file on the disk has changed."""
         path = path_of(uri)
         if path is not None and self.project is not None:
             self.project.file_saved(real(path))
@@ -120,14 +137,35 @@ class LinkwrightServer(LanguageServer):
             self.file_changed(uri)
 
     def text(self, document: types.TextDocumentIdentifier) -> tuple[Path, TextPositions | None]:
-        """Return the path of a document, and its text; None if it is not a file in XML that can be read."""
+        """Return the path and the text of a document, with None unless it is readable XML."""
         path = path_of(document.uri)
         if path is None or not path.name.endswith((*XML_FILES, ".xml")):
             return Path(), None
         return path, self.positions(path)
 
+    def readable(self, document: types.TextDocumentIdentifier) -> tuple[Path, TextPositions | None]:
+        """Return the path and the text of a document, with None if its format is not supported."""
+        path = path_of(document.uri)
+        if path is None or (format_of(path) is None and not path.name.endswith((*XML_FILES, ".xml"))):
+            return Path(), None
+        return path, self.positions(path)
+
+    async def when_prepared(self, path: Path) -> None:
+        """Wait for the index, and for the imports that the format of a file needs."""
+        await self.when_indexed()
+        known = format_of(path)
+        if known is not None:
+            await self._prepared(known)
+
+    def _prepared(self, known: Format) -> asyncio.Future[object]:
+        """Return a future of the preparation of a format, which runs once in its own thread."""
+        work = self._preparing.get(known)
+        if work is None:
+            work = self._preparing[known] = asyncio.ensure_future(asyncio.to_thread(known.prepare))
+        return asyncio.shield(work)
+
     async def formatted(self, document: types.TextDocumentIdentifier) -> FormattedText | None:
-        """Return a document as `document` does, once the folders have been searched if its format needs that."""
+        """Return a document like `document`, but wait for the index if its format needs it."""
         found = self.document(document)
         if found is not None and found.format.needs_index:
             await self.when_indexed()
@@ -135,7 +173,7 @@ class LinkwrightServer(LanguageServer):
         return found
 
     def document(self, document: types.TextDocumentIdentifier) -> FormattedText | None:
-        """Return a document with its format; None if its format has no functions of its own or it cannot be read."""
+        """Return a document with its format, or None if it has no format or is unreadable."""
         path = path_of(document.uri)
         format_ = None if path is None else format_of(path)
         if path is None or format_ is None or self.project is None:
@@ -146,14 +184,14 @@ class LinkwrightServer(LanguageServer):
         return FormattedText(format_, Document(self.project, self.texts(), real(path), positions.text), positions)
 
     async def names(self, path: Path) -> list[NameDefinition]:
-        """Return the names that the description of a file defines, once the folders have been searched."""
+        """Wait for the index, and return the names that a file's descriptions define."""
         if self.project is None:
             return []
         await self.when_indexed()
         return self.project.names(real(path), self.texts())
 
     async def values(self, path: Path) -> list[ValuedText]:
-        """Return the values of the expressions in a file, once the folders have been searched."""
+        """Wait for the index, and return the values of the expressions in a file."""
         project, file, texts = self.project, real(path), self.texts()
         if project is None:
             return []
@@ -168,7 +206,7 @@ class LinkwrightServer(LanguageServer):
         """Check that a text has not changed during a request.
 
         Raises:
-            JsonRpcException: ContentModified, the text has changed, so offsets in it are of no use.
+            JsonRpcException: ContentModified, the text has changed, so its offsets are invalid.
         """
         current = self.positions(path)
         if current is None or current.text != positions.text:
@@ -177,21 +215,21 @@ class LinkwrightServer(LanguageServer):
 
     @property
     def client_commands(self) -> frozenset[str]:
-        """The commands that the client offers to lenses, from the capability ``experimental.commands``."""
+        """The client's commands for code lenses, from its capability ``experimental.commands``."""
         experimental = self.client_capabilities.experimental
         commands = experimental.get("commands") if isinstance(experimental, dict) else None
         return frozenset(map(str, commands)) if isinstance(commands, list) else frozenset()
 
     @property
     def opens_pages(self) -> bool:
-        """Whether the client follows the address of a finding's code, and asks for virtual documents."""
+        """Whether the client can open the page of a finding's code as a virtual document."""
         document = self.client_capabilities.text_document
         published = None if document is None else document.publish_diagnostics
         return self.opens_virtual_documents and published is not None and bool(published.code_description_support)
 
     @property
     def opens_virtual_documents(self) -> bool:
-        """Whether the client asks for the content of virtual documents; other clients show an empty file."""
+        """Whether the client requests the content of virtual documents, and shows no empty file."""
         workspace = self.client_capabilities.workspace
         return workspace is not None and workspace.text_document_content is not None
 
@@ -200,7 +238,7 @@ class LinkwrightServer(LanguageServer):
         await self._is_indexed.wait()
 
     def positions(self, path: Path) -> TextPositions | None:
-        """Return the positions of a file's text, that of the editor if it is open; None if it cannot be read."""
+        """Return the positions of a file's text, open or saved, or None if it is unreadable."""
         file = real(path)
         encoding = self.workspace.position_encoding or UTF_16
         uri = self._uris.get(file)
@@ -219,7 +257,7 @@ class LinkwrightServer(LanguageServer):
         return known[1]
 
     def uri_of(self, path: Path) -> str:
-        """Return the URI of a file, the one that the editor uses if it has opened it."""
+        """Return the URI of a file, in the editor's spelling if the file is open."""
         file = real(path)
         return self._uris.get(file) or file.as_uri()
 
@@ -231,7 +269,7 @@ class LinkwrightServer(LanguageServer):
     # --- checks -----------------------------------------------------------------------------------------------
 
     async def _check_changes(self, project: Workspace) -> None:
-        """Check files as they change, the newest change first; a subject that still waits is checked once."""
+        """Check files as they change, the newest first, and each waiting subject once."""
         search = self._attempt(project.index.refresh, Path())
         await with_progress(self, phrase("Linkwright: searching the folders for robot descriptions"), search)
         self._is_indexed.set()
@@ -270,13 +308,13 @@ class LinkwrightServer(LanguageServer):
         self._publish(await self._attempt(partial(project.check, subject, texts, changed), subject) or {}, texts)
 
     def _publish(self, found: Mapping[Path, Sequence[Diagnostic]], texts: Mapping[Path, str]) -> None:
-        """Publish the findings about files; those about an open file only if its text is still that of the check."""
+        """Publish the findings about files, except open files that have changed since the check."""
         positions = cache(self.positions)
         for file, findings in found.items():
             uri = self.uri_of(file)
             document = self.workspace.text_documents.get(uri)
             if document is not None and texts.get(file) != document.source:
-                continue  # the text has changed since: its next check comes
+                continue  # the text has changed since then, and is checked again
             self.text_document_publish_diagnostics(
                 types.PublishDiagnosticsParams(
                     uri,
@@ -286,26 +324,25 @@ class LinkwrightServer(LanguageServer):
             )
 
     async def _attempt(self, work: Callable[[], T], about: Path) -> T | None:
-        """Return the result of work in the thread; a fault of ours is logged, and the server continues."""
+        """Return the result of work in the thread, or log an unexpected error and return None."""
         try:
             return await self.in_thread(work)
         except Exception:  # noqa: BLE001 - the editor continues to work, and the log has the reason
             _log.exception("The check of '%s' failed", about)
             return None
 
-    def in_background(self, work: Callable[[], None], about: Path) -> None:
-        """Do work in the thread of the checks without waiting for it; work about a file replaces what still waits."""
-        waiting = self._background.get(about)
-        if waiting is not None:
+    def in_background(self, work: Iterable[Callable[[], object]], about: Path) -> None:
+        """Submit work to the check thread, and replace waiting work about the same file."""
+        for waiting in self._background.pop(about, ()):
             waiting.cancel()
-        self._background[about] = self._thread.submit(work)
+        self._background[about] = [self._thread.submit(each) for each in work]
 
     async def in_thread(self, work: Callable[[], T]) -> T:
-        """Return the result of work in the thread of the checks, which is the only one that reads the workspace."""
+        """Return the result of work in the check thread, the only one that reads the workspace."""
         return await asyncio.get_running_loop().run_in_executor(self._thread, work)
 
 
 def path_of(uri: str) -> Path | None:
-    """Return the path of a file's URI; None for other URIs."""
+    """Return the path of a file's URI, or None for other URIs."""
     parts = urlsplit(uri)
     return Path(url2pathname(unquote(parts.path))) if parts.scheme == "file" else None

@@ -1,7 +1,7 @@
-"""The interfaces that come with Linkwright: those of ROS 2 Humble.
+"""The interfaces that come with Linkwright: the interfaces of ROS 2 Humble.
 
 Each package has one text file in ``data/`` with its interface files, each after a heading such as
-``=== msg/JointState``. The comments are not those of ROS, and rarely used types have none. A file is read when the
+``=== msg/JointState``. The comments differ from ROS's, and rarely used types have none. A file is read when the
 first of its interfaces is requested. If ``jazzy`` follows the name in a heading, the definition applies to later
 distributions. It is used if ``ROS_DISTRO`` names one of them.
 """

@@ -286,7 +286,10 @@ def get_interface(name: str) -> type[Any]:
 
 
 def class_of(structure: Structure) -> type[Any]:
-    """Return the message class for a structure. The class is created on first use."""
+    """Return the message class for a structure.
+
+    The class is created on first use.
+    """
     return cast("type[Any]", _class_for(structure))
 
 

@@ -14,7 +14,7 @@ class DefinitionError(LinkwrightError):
 
 
 class MessageDataError(LinkwrightError, ValueError):
-    """Raised when bytes are not a message of the expected type, or a message cannot be serialized."""
+    """Raised if bytes are not a message of the expected type, or if serialization fails."""
 
 
 class FieldValueError(LinkwrightError, ValueError):

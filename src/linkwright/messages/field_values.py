@@ -51,7 +51,10 @@ def set_fields(
 
 
 class _InvalidValueError(Exception):
-    """Raised when a value is invalid for a field. The argument describes a valid value."""
+    """Raised when a value is invalid for a field.
+
+    The argument describes a valid value.
+    """
 
 
 class _Setter:

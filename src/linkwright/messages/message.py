@@ -124,7 +124,10 @@ def _rebuild(type_name: str, values: tuple[Any, ...]) -> Message:
 
 
 class ServiceType:
-    """A service: the classes of its request and its response. It cannot be instantiated."""
+    """The base class of services, which contain the classes of request and response.
+
+    A service cannot be instantiated.
+    """
 
     TYPE_NAME: ClassVar[str]
     Request: ClassVar[type[Any]]
@@ -160,7 +163,10 @@ class ActionImplementation:
 
 
 class ActionType:
-    """An action: the classes of its goal, result and feedback. It cannot be instantiated."""
+    """The base class of actions, which contain the classes of goal, result and feedback.
+
+    An action cannot be instantiated.
+    """
 
     TYPE_NAME: ClassVar[str]
     Goal: ClassVar[type[Any]]
@@ -297,7 +303,7 @@ def _reader_for(data: bytes, message_class: type[Any]) -> Any:
 
 def _read_error(message_class: type[Any], data: bytes, fault: Exception) -> MessageDataError:
     if isinstance(fault, UnicodeDecodeError):
-        why = phrase("a string in it is not UTF-8")
+        why = phrase("a string is not UTF-8")
     elif isinstance(fault, DataFaultError):
         why = foreign(fault)
     else:

@@ -13,7 +13,7 @@ from linkwright.messages.yaml_text import to_yaml
 def definition_text(interface: Any) -> str:
     """Return the text of an interface file.
 
-    The comments in files that come with Linkwright are not those of ROS.
+    The comments in files that come with Linkwright differ from ROS's.
 
     Args:
         interface: a class, or a type name.

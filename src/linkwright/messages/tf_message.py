@@ -235,7 +235,7 @@ class TransformBatch:
 
     @classmethod
     def from_messages(cls, transforms: Iterable[TransformStamped]) -> TransformBatch:
-        """Create a batch from message objects. Its stamp is the newest of their stamps."""
+        """Create a batch from message objects, with the newest of their stamps."""
         transforms = list(transforms)
         return cls(
             parents=tuple(transform.header.frame_id for transform in transforms),

@@ -176,7 +176,7 @@ def _scalar(text: str) -> str:
 
 
 def _block_scalar(text: str, path: tuple[str, ...]) -> str:
-    """Format a multi-line string. Its indentation depends on its path.
+    """Format a multi-line string with the indentation for its path.
 
     To get this indentation, PyYAML formats the string inside containers of the same kinds.
     """

@@ -1,4 +1,4 @@
-"""Third-party trained models, downloaded on request: the table, their locations, and their checksums."""
+"""Third-party trained models, downloaded on request: the table, locations and checksums."""
 
 from linkwright.model_files.installed import find_model, is_installed, models_folder, remove, verify
 from linkwright.model_files.installing import install

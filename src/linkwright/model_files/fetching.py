@@ -142,6 +142,6 @@ def _failed(entry: ModelEntry, address: str, problem: Phrase) -> LinkwrightError
 
 def cannot_write(path: Path, error: OSError) -> LinkwrightError:
     """Return the error for a path that is not writable (MODEL106)."""
-    message = phrase("cannot write '{path}': {strerror}", path=path, strerror=foreign(error.strerror or error))
+    message = phrase("cannot write '{path}': {reason}", path=path, reason=foreign(error.strerror or error))
     hint = phrase("free disk space, or choose another folder with --to")
     return LinkwrightError(Diagnostic("MODEL106", message, hint=hint))

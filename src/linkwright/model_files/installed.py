@@ -14,7 +14,7 @@ _BLOCK_BYTES = 1 << 20
 
 
 def models_folder() -> Path:
-    """Return the folder of models: ``XDG_DATA_HOME/linkwright/models`` or ``~/.local/share/linkwright/models``.
+    """Return the folder ``linkwright/models`` in ``XDG_DATA_HOME`` or ``~/.local/share``.
 
     It is not a cache: an offline user cannot download models again.
     """

@@ -85,7 +85,7 @@ def _install_local(entry: ModelEntry, source: Path, target: Path) -> Path:
                 if (unpacked_folder / first_file).is_file():
                     return _install_folder(entry, unpacked_folder, target)
     message = phrase("'{path}' does not contain the model '{name}'", path=source, name=entry.name)
-    hint = phrase("give the file {file}, or a folder that contains it", file=entry.file_name)
+    hint = phrase("pass the file {file}, or a folder that contains it", file=entry.file_name)
     raise LinkwrightError(Diagnostic("MODEL107", message, hint=hint))
 
 
@@ -114,7 +114,7 @@ def _install_folder(entry: ModelEntry, folder: Path, target: Path) -> Path:
 
 @contextmanager
 def _draft(entry: ModelEntry, target: Path) -> Iterator[Path]:
-    """Provide a temporary path for the model. It is renamed on success and deleted on an error."""
+    """Provide a temporary path for the model, to be renamed on success and deleted on error."""
     installed_path = target / entry.installed_name
     draft = target / f".{entry.installed_name}.draft-{os.urandom(4).hex()}"
     previous = target / f".{entry.installed_name}.former-{os.urandom(4).hex()}"

@@ -69,7 +69,7 @@ def load_session(file: Path, gpu: str | None = None, threads: int = 0) -> Any:
     options.add_session_config_entry("session.intra_op.allow_spinning", "0")  # spinning would slow down other processes
     try:
         return onnxruntime.InferenceSession(str(file), options, providers=providers)
-    except Exception as error:  # noqa: BLE001 - many classes, which onnxruntime does not document
+    except Exception as error:  # noqa: BLE001 - onnxruntime raises many undocumented classes
         raise _load_error(file, error) from None
 
 

@@ -1,4 +1,4 @@
-"""cam2image of image_tools without a camera. It publishes a test pattern on ``image``."""
+"""cam2image of image_tools without a camera: publishes a test pattern on ``image``."""
 
 from __future__ import annotations
 
@@ -92,7 +92,7 @@ def _policy_name(kind: type[HistoryPolicy | ReliabilityPolicy], name: str, value
             Diagnostic(
                 "NODE421",
                 phrase("parameter '{name}' has the invalid value '{value}'", name=name, value=value),
-                hint=phrase("choose from {known}", known=joined(choices)),
+                hint=phrase("choose from {names}", names=joined(choices)),
             )
         )
     return value.upper()

@@ -18,7 +18,7 @@ _UNLIMITED = 1 << 31
 
 
 class _CountingNode(SingleNode, ABC):
-    """The base class of both nodes, which parses the arguments and ends after a number of messages."""
+    """The base class of both nodes: parses arguments, and ends after a number of messages."""
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         self.finished: asyncio.Future[int] = asyncio.get_running_loop().create_future()

@@ -1,4 +1,4 @@
-"""Publishes a node's diagnostics on ``/diagnostics`` once a second, as diagnostic_updater does."""
+"""Publishes a node's diagnostics on ``/diagnostics`` every second (diagnostic_updater)."""
 
 from __future__ import annotations
 

@@ -36,7 +36,7 @@ class ReadWorld(Protocol):
 
 
 class FileFollower(Protocol):
-    """The host of a node. It watches the node's files.
+    """The host of a node, which watches the node's files.
 
     All methods are called on the event loop.
     """

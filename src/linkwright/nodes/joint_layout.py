@@ -276,7 +276,7 @@ def make_layout(robot: Robot, settings: JointSettings) -> JointLayout:
 
 
 def _resolve_chain(name: str, dependent: Mapping[str, Dependence]) -> tuple[str, float, float]:
-    """Return the free joint at the end of a mimic chain, and the chain's total factor and offset."""
+    """Return the free joint at the end of a mimic chain, and the total factor and offset."""
     chain = [name]
     factor, offset = 1.0, 0.0
     while (dependence := dependent.get(name)) is not None:

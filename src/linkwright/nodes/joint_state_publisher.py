@@ -47,7 +47,10 @@ Array = NDArray[np.float64]
 
 
 class _Quantity:
-    """The positions, velocities or efforts of the free joints. NaN marks a joint without a value."""
+    """The positions, velocities or efforts of the free joints.
+
+    NaN marks a joint without a value.
+    """
 
     def __init__(self, values: Array) -> None:
         self._values_and_zero = np.append(values, 0.0)
@@ -118,7 +121,10 @@ class JointPositions:
                 self._store(joint, old_states[:, row], old_zeros[joint.name])
 
     def apply_message(self, message: JointState) -> None:
-        """Apply the values of a message to the free joints. Positions are not clamped to the limits."""
+        """Apply the values of a message to the free joints.
+
+        Positions are not clamped to the limits.
+        """
         for index, name in enumerate(message.name):
             row = self._rows.get(name)
             if row is None:
@@ -132,9 +138,9 @@ class JointPositions:
                     quantity.values[row] = values[index]
 
     def sweep(self, delta: float) -> None:
-        """Move every free joint by `delta` (rad or m). Joints reverse at their limits.
+        """Move every free joint by `delta` (rad or m).
 
-        Continuous joints wrap around instead.
+        Joints reverse at their limits. Continuous joints wrap around instead.
         """
         position, direction = self._position.values, self._direction
         position += direction * delta
@@ -271,7 +277,7 @@ class JointStatePublisher(SingleNode):
                 Diagnostic(
                     "NODE204",
                     phrase("unrecognized arguments: {unknown}", unknown=unknown),
-                    hint=phrase("the only argument is a URDF file"),
+                    hint=phrase("pass only a URDF file"),
                 )
             )
         path = arguments[0]
@@ -292,7 +298,7 @@ class JointStatePublisher(SingleNode):
                     Diagnostic(
                         "NODE205",
                         phrase("'{path}' contains {other}, but this node reads only URDF", path=path, other=other),
-                        hint=phrase("the ROS node reads SDF and COLLADA too; convert the file to URDF"),
+                        hint=phrase("convert the file to URDF; only the ROS node also reads SDF and COLLADA"),
                     )
                 )
             raise LinkwrightError(*reading.diagnostics)

@@ -106,7 +106,7 @@ class JointPanel:
         self._publish_move()
 
     def center(self) -> None:
-        """Set every free joint to its zero position. It need not be the middle of the joint's range."""
+        """Set every free joint to its zero position, which need not be the middle of its range."""
         self._logger.info("Centering")
         for slider in self._free_sliders():
             self._joints.set(slider.name, slider.zero)
@@ -178,7 +178,7 @@ class JointPanel:
         for callback in tuple(self._subscribers):
             try:
                 callback(change)
-            except Exception as error:  # noqa: BLE001, PERF203 - one subscriber must not take the others with it
+            except Exception as error:  # noqa: BLE001, PERF203 - an error must not affect other subscribers
                 log_failure(self._logger, "joint panel callback", error)
 
 

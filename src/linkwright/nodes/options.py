@@ -92,7 +92,7 @@ class FinishingNode(RunningNode, Protocol):
     """A node that ends by itself."""
 
     finished: asyncio.Future[int]
-    """Receives the exit status when the node is done; the node must then be closed."""
+    """Receives the exit status when the node is done. The node must then be closed."""
 
 
 @runtime_checkable
@@ -102,7 +102,7 @@ class LoadingNode(RunningNode, Protocol):
     on_loaded: list[Callable[[RunningNode, NodeOptions], None]]
     """The functions to call with each loaded node and its options."""
     loading: Callable[[], AbstractContextManager[object]]
-    """The function that returns a context for the creation of a node; the host replaces this function."""
+    """The function that returns a context for the creation of a node. The host replaces this function."""
 
 
 @runtime_checkable
@@ -126,7 +126,9 @@ class NodeWithFiles(RunningNode, Protocol):
 
 
 class SingleNode:
-    """The base class of nodes with a single graph node, `_node`. `close` destroys it.
+    """The base class of nodes with a single graph node, `_node`.
+
+    `close` destroys it.
 
     Attributes:
         DEFAULT_NAME: the name of a node whose options do not set a name; not defined if each node has a different name.
@@ -264,7 +266,7 @@ class NodeRegistry(Mapping[tuple[str, str], Factory]):
             package, name = key
             message = phrase("the node '{package}/{name}' cannot be imported", package=package, name=name)
             hint = phrase(
-                "the Python package '{place}' provides it, but its import fails: {problem}",
+                "fix the Python package '{place}', whose import fails: {problem}",
                 place=entry_point.distribution,
                 problem=foreign(error),
             )

@@ -98,7 +98,7 @@ def parameter(
 
 
 def for_each(names: str, table: type[Any], *, prefix: str = "") -> Any:
-    """Declare a group of parameters for each name in another parameter, such as ``gains.JOINT.p``.
+    """Declare a group of parameters for each name in a parameter, such as ``gains.JOINT.p``.
 
     Args:
         names: the parameter that contains the names, which precedes this field in the same table; several parameters
@@ -174,7 +174,7 @@ class _Declaration:
 
 
 def declared(node: Node, table: type[P], prefix: str = "", usual: P | None = None) -> P:
-    """Declare the parameters of a table unless they are declared already, and return their values.
+    """Declare the parameters of a table that are not yet declared, and return their values.
 
     Args:
         node: the node.
@@ -243,7 +243,7 @@ class _Reader:
     """Declares and reads the parameters of tables.
 
     Attributes:
-        declared: the declared parameters by name, including those that were declared before.
+        declared: the declared parameters by name, including previously declared ones.
     """
 
     def __init__(self, node: Node) -> None:
@@ -301,7 +301,10 @@ def _distribution() -> str:
 
 
 def _listed(names: Any) -> Iterable[str]:
-    """Return the names in a parameter value. The value is one string or a sequence of strings."""
+    """Return the names in a parameter value.
+
+    The value is one string or a sequence of strings.
+    """
     return (names,) if isinstance(names, str) else names
 
 

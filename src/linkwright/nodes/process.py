@@ -130,7 +130,7 @@ def _find_factory(package: str, executable: str) -> Factory:
     raise LinkwrightError(
         Diagnostic(
             "NODE001",
-            phrase("package '{package}' has no executable '{executable}'", package=package, executable=executable),
+            phrase("package '{package}' has no executable '{name}'", package=package, name=executable),
             hint=hint,
         )
     )

@@ -196,7 +196,7 @@ class JointGroup:
 
 
 class Throttle:
-    """Decides when transforms may be published, from the times at which each joint was published.
+    """Decides when transforms may be published, from the publication times of the joints.
 
     Times are in nanoseconds, and 0 means never. A message may be published when its stamp is at least one interval
     after the last publication of the joint that was published least recently. Messages that repeat the previous
@@ -217,7 +217,10 @@ class Throttle:
         self._stamp_ns: NDArray[np.int64] = np.zeros(0, dtype=np.int64)
 
     def group(self, names: Sequence[str]) -> JointGroup:
-        """Return the group for a list of joint names. The list must not be empty."""
+        """Return the group for a list of joint names.
+
+        The list must not be empty.
+        """
         key = tuple(names)
         group = self._groups.get(key)
         if group is None:
@@ -363,9 +366,9 @@ class RobotStatePublisher(SingleNode):
                 Diagnostic(
                     "NODE104",
                     phrase(
-                        "URDF file '{path}' cannot be read: {error}",
+                        "URDF file '{path}' cannot be read: {reason}",
                         path=path,
-                        error=foreign(getattr(error, "strerror", error)),
+                        reason=foreign(getattr(error, "strerror", error)),
                     ),
                 )
             ) from error

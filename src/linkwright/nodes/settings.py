@@ -63,7 +63,7 @@ def _convert_argument(argument: str, name: str, convert: Callable[[str], Any], h
     try:
         return convert(argument)
     except ValueError:
-        message = phrase("'{word}' is not a value of '{name}'", word=argument, name=name)
+        message = phrase("'{text}' is not a valid value for '{name}'", text=argument, name=name)
         raise LinkwrightError(Diagnostic("NODE432", message, hint=hint)) from None
 
 
@@ -88,7 +88,7 @@ def bad_value(name: str, value: object, node: str, known: Sequence[str] = ()) ->
     message = phrase("parameter '{name}' of '{node}' cannot be '{value}'", name=name, node=node, value=value)
     hint = None
     if known:
-        hint = did_you_mean(str(value), known) or phrase("choose from {known}", known=", ".join(known))
+        hint = did_you_mean(str(value), known) or phrase("choose from {names}", names=", ".join(known))
     return LinkwrightError(Diagnostic("NODE433", message, hint=hint))
 
 

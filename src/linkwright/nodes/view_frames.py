@@ -1,4 +1,4 @@
-"""view_frames of tf2_tools: records transforms for a few seconds and draws the tree of frames."""
+"""view_frames of tf2_tools: records transforms for some seconds and draws their tree."""
 
 from __future__ import annotations
 
@@ -76,9 +76,9 @@ class ViewFrames(SingleNode):
                 Diagnostic(
                     "NODE412",
                     phrase(
-                        "'{drawing}' cannot be written: {strerror}",
-                        drawing=dot_path,
-                        strerror=foreign(error.strerror or error),
+                        "cannot write '{path}': {reason}",
+                        path=dot_path,
+                        reason=foreign(error.strerror or error),
                     ),
                 )
             ) from error

@@ -1,4 +1,4 @@
-"""The search for ROS packages in the environment, workspaces, source trees and shipped packages."""
+"""The search for ROS packages in the environment, workspaces, sources and Linkwright."""
 
 from linkwright.packages.active import current_finder, use_finder
 from linkwright.packages.ament import install_prefix, is_installed

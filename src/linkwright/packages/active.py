@@ -1,4 +1,4 @@
-"""The current package finder, for code that does not receive one as an argument, such as a launch file."""
+"""The current package finder, for code that receives none, such as a launch file."""
 
 from __future__ import annotations
 

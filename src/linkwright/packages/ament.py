@@ -82,7 +82,10 @@ def share_in_install(install: Path, name: str) -> Path | None:
 
 
 def packages_in_install(install: Path) -> Iterator[tuple[str, Path]]:
-    """Yield the name and share folder of every package in a colcon install folder of either layout."""
+    """Yield the name and share folder of each package in a colcon install folder.
+
+    Both layouts, isolated and merged, are supported.
+    """
     yield from packages_in_prefix(install)
     for entry in _entries(install):
         share = share_in_prefix(install / entry, entry)

@@ -53,7 +53,7 @@ MAXIMUM_FOLDERS = 3000
 
 
 class SourceScan:
-    """A breadth-first search for packages below one folder that reads only as many folders as needed.
+    """A lazy breadth-first search for packages below a folder.
 
     Folders nearer to the root come first, and siblings are sorted by name. A folder with a ``package.xml`` is a package
     and is not searched further. Hidden folders, build products and folders with an ignore marker are skipped. The

@@ -68,9 +68,10 @@ def token_folder() -> Path:
 
 
 def load_token(port: int) -> PortToken:
-    """Return the stored token of a port. If there is no valid one, create and store a new token.
+    """Return the stored token of a port.
 
-    The result contains the `pages_wait` of the previous program, which is reset in the file.
+    If there is no valid one, create and store a new token. The result contains the `pages_wait` of the previous
+    program, which is reset in the file.
     """
     now = time.time()
     created, stored = _read(token_folder() / str(port))
@@ -166,7 +167,7 @@ class Gate:
         )
 
     def proof(self, nonce: str) -> str | None:
-        """Return the HMAC-SHA256 of a page's nonce under the token, or None if the nonce is not valid.
+        """Return the HMAC-SHA256 of a page's nonce under the token, or None for an invalid nonce.
 
         A nonce has 32 hexadecimal digits. The result proves that the server has the token, but does not reveal it.
         """
@@ -292,7 +293,7 @@ _FORWARDED_EVENTS = ("data_received", "eof_received", "pause_writing", "resume_w
 
 
 class LimitedConnection(asyncio.Protocol):
-    """The outer protocol of a connection. It counts and limits the connection.
+    """The outer protocol of a connection, which counts and limits the connection.
 
     Received data goes directly to the inner protocol.
     """

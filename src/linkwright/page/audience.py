@@ -140,7 +140,7 @@ class Page:
         self.outbox.put(redundancy_key(message), encode(message, self.language))
 
     async def write(self) -> None:
-        """Send the opening payloads, and then those of the outbox, until the connection is lost."""
+        """Send the opening payloads, then the outbox's payloads, until the connection is lost."""
         try:
             for payload in self._opening:
                 content = self.outbox.make(payload)
@@ -247,7 +247,10 @@ class Page:
             del self._reduced[completion.key]
 
     def _chunk_size(self) -> int:
-        """Return the size of a chunk in bytes. At most two chunks are in transit."""
+        """Return the size of a chunk in bytes.
+
+        At most two chunks are in transit.
+        """
         return max(MIN_MEASURED_SIZE, self.line.room // 2)
 
 
@@ -326,7 +329,10 @@ class Audience(PageGroup):
 
     @contextmanager
     def expecting(self) -> Iterator[None]:
-        """Reserve a slot for a page while its socket is opened. `attend` then uses the slot."""
+        """Reserve a slot for a page while its socket is opened.
+
+        `attend` then uses the slot.
+        """
         self._reserved_slots += 1
         try:
             yield

@@ -171,7 +171,10 @@ def without_secrets(text: str) -> str:
 
 
 class MeshFolders:
-    """The folders that pages may read, by key. Each display adds the folders of its description."""
+    """The folders that pages may read, by key.
+
+    Each display adds the folders of its description.
+    """
 
     def __init__(self) -> None:
         self._folders: dict[str, dict[str, ServedFolder]] = {}
@@ -181,7 +184,7 @@ class MeshFolders:
         self._folders[owner] = folders
 
     def copy(self) -> MeshFolders:
-        """Return a copy that is not affected by later changes of the displays."""
+        """Return a copy that is not affected by later changes to the displays."""
         copied = MeshFolders()
         copied._folders.update(self._folders)
         return copied

@@ -1,4 +1,4 @@
-"""The server of a viewer. It serves the page even before the viewer exists."""
+"""The server of a viewer, which serves the page even before the viewer exists."""
 
 from __future__ import annotations
 
@@ -39,7 +39,9 @@ class PageServer:
         self._port_token: tuple[int, PortToken] | None = None
 
     async def open(self) -> None:
-        """Start listening, and serve the files of the page. Other requests wait for `show`.
+        """Start listening, and serve the files of the page.
+
+        Other requests wait for `show`.
 
         Raises:
             LinkwrightError: VIEW101 to VIEW103, the server cannot listen at the address.
@@ -66,7 +68,10 @@ class PageServer:
         return self._port_token is not None and self._port_token[1].pages_wait
 
     def store_pages_wait(self, *, pages_wait: bool) -> None:
-        """Store whether pages wait for the next program. Call this before the program ends."""
+        """Store whether pages wait for the next program.
+
+        Call this before the program ends.
+        """
         if self._port_token is not None:
             (port, port_token), self._port_token = self._port_token, None
             store_pages_wait(port, port_token.token, pages_wait=pages_wait)

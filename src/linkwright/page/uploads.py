@@ -266,7 +266,8 @@ def _problem_response(text: str) -> web.Response:
 
 def _no_space_text(needed: int, free: int) -> Phrase:
     return phrase(
-        "the machine of the program does not have enough space for a recording of {needed} MB: {free} MB are free",
+        "the machine that runs Linkwright does not have enough space for a recording of "
+        "{needed} MB: {free} MB are free",
         needed=needed // 1_000_000,
         free=free // 1_000_000,
     )

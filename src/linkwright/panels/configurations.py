@@ -264,7 +264,10 @@ ConfigurationFeature.RECEIVES = tuple(_HANDLERS)
 
 
 def _displays_of(manager: VisualizationManager, identities: list[str]) -> list[ViewerDisplay]:
-    """Return the displays with these IDs, in the order of the tree. Unknown IDs are ignored."""
+    """Return the displays with these IDs, in the order of the tree.
+
+    Unknown IDs are ignored.
+    """
     selected = set(identities)
     return [display for display in manager.displays if display.id in selected]
 
@@ -291,10 +294,11 @@ def _name(text: str) -> str:
 
 
 class PanelsFeature(PageFeature):
-    """The open panels of pages. Initially they are the panels that the file opens.
+    """The open panels of pages.
 
-    Each page has its own panels, so a change does not affect the other pages. The panels of the page that was changed
-    last are written to the file. If there is no file, only the browser stores the panels.
+    Initially they are the panels that the file opens. Each page has its own panels, so a change does not affect the
+    other pages. The panels of the page that was changed last are written to the file. If there is no file, only the
+    browser stores the panels.
     """
 
     RECEIVES: ClassVar[tuple[type, ...]] = (ShowPanels,)

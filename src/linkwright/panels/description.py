@@ -55,7 +55,7 @@ class ArgumentsFeature(PageFeature):
         self._on_values: OnValues | None = None
 
     def opening(self) -> list[ServerMessage]:
-        """Return the form. It is empty if no arguments are requested."""
+        """Return the form, which is empty if no arguments are requested."""
         return [self._form]
 
     def show_form(self, form: ArgumentForm, on_values: OnValues | None) -> None:
@@ -80,7 +80,7 @@ Part = TypeVar("Part")
 
 
 class KnownDescription:
-    """The description that a display shows. Its methods may be called in any thread.
+    """The description that a display shows, with methods that may be called in any thread.
 
     Args:
         display: the ID of the RobotModel display.
@@ -150,7 +150,10 @@ class KnownDescription:
 
 
 def _changed(previous: Mapping[str, Part], after: Mapping[str, Part]) -> list[str]:
-    """Return the names of new or changed links or joints. Source positions are ignored."""
+    """Return the names of new or changed links or joints.
+
+    Source positions are ignored.
+    """
     # Links and joints are compared without their elements, which contain the source positions.
     return [name for name, element in after.items() if previous.get(name) != element]
 
@@ -234,6 +237,14 @@ class DescriptionFeature(PageFeature):
         for task in self._answer_tasks.values():
             task.cancel()
 
+    async def details(self, display: RobotModelDisplay) -> Description | None:
+        """Return the details of the description that a display shows, or None if it shows none."""
+        known = self._current_description(display)
+        if known is None:
+            return None
+        async with self._answer_lock:
+            return await asyncio.to_thread(lambda: known.account)
+
     async def _answer(self, page: Page, request: _Request) -> None:
         robot_models = self.managers.of(page).robot_models()
         display = next((display for display in robot_models if display.id == request.display), None)
@@ -301,7 +312,10 @@ class DiagnosticsFeature(PageFeature):
         return [self._shown_diagnostics]
 
     def diagnostics_changed(self, diagnostics: Sequence[Diagnostic]) -> None:
-        """Replace the current findings with new findings. The list may be empty."""
+        """Replace the current findings with new findings.
+
+        The list may be empty.
+        """
         self._diagnostics = diagnostics
         self._shown_diagnostics = self._all_diagnostics()
         self.context.pages.publish(self._shown_diagnostics)

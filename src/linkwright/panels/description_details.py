@@ -95,9 +95,9 @@ def _source_range(element: Element) -> SourceRange | None:
 
 
 def account(robot: Robot, text: str, files: list[str], *, display: str, revision: int, prefix: str) -> Description:
-    """Return all details of a robot except its shapes. Pages already have the shapes.
+    """Return all details of a robot except its shapes.
 
-    The text is parsed again. This takes as long as reading the description.
+    Pages already have the shapes. The text is parsed again. This takes as long as reading the description.
 
     Args:
         robot: the robot that was read from the text.

@@ -41,7 +41,10 @@ class DisplaysFeature(PageFeature):
                 display.receive(message)
 
     def page_closed(self, page: Page) -> None:
-        """Remove the panel sizes of a page. Images are then sized for the other pages."""
+        """Remove the panel sizes of a page.
+
+        Images are then sized for the other pages.
+        """
         for display, sizes in list(self._sizes_by_display.items()):
             if sizes.pop(page, None) is not None:
                 self._send_size(display)

@@ -69,7 +69,10 @@ class JointsFeature(PageFeature):
         return [self._joints_message(self._panel), JointPositions(self._panel.positions())]
 
     def receive(self, page: Page, message: SetJoint | SetJoints | RandomizeJoints | CenterJoints) -> None:
-        """Move joints. Unknown joints, and joints that mimic another joint, are ignored."""
+        """Move joints.
+
+        Unknown joints, and joints that mimic another joint, are ignored.
+        """
         panel = self._panel
         if panel is None:
             return

@@ -100,7 +100,7 @@ class LiveHistory:
         return 0 if self._stored_history is None else self._stored_history.size
 
     def freeze(self) -> None:
-        """Stop showing new messages. They are still stored."""
+        """Stop showing new messages, but continue to store them."""
         if not self.live:
             return
         with self._lock:
@@ -252,10 +252,10 @@ class LiveHistory:
         return history
 
     def _store(self, history: History, topic: str, time_ns: int, message: Any, *, thins: bool) -> None:
-        """Add a message to the history. A failure is logged, and does not affect other messages.
+        """Add a message to the history.
 
-        If `thins` is true, some messages without a change of content are omitted. While a past time is shown, playback
-        needs every message.
+        A failure is logged, and does not affect other messages. If `thins` is true, some messages without a change of
+        content are omitted. While a past time is shown, playback needs every message.
         """
         from linkwright.bag.stillness import content_of
 

@@ -76,7 +76,7 @@ class PageFeature:
     """
 
     RECEIVES: ClassVar[tuple[type, ...]] = ()
-    """The messages that `receive` handles; for a feature created on demand, its `OnDemand` declares them."""
+    """The messages that `receive` handles. For a feature created on demand, its `OnDemand` declares them."""
 
     BEFORE_DISPLAYS: ClassVar[bool] = False
     """Whether a page receives the messages of `opening` before the displays, which may depend on them."""
@@ -106,7 +106,7 @@ class PageFeature:
         return []
 
     def edited(self, manager: VisualizationManager) -> None:
-        """Handle a change of a configuration's undo history or of its unsaved state."""
+        """Handle a change to a configuration's undo history or its unsaved state."""
 
     def manager_closed(self, manager: VisualizationManager) -> None:
         """Discard the data of a manager that was closed."""
@@ -121,10 +121,13 @@ class PageFeature:
         """
 
     def recording_shown(self) -> None:
-        """Handle the display of a recording. Refuse requests to robots and simulations from now on."""
+        """Handle the display of a recording.
+
+        Refuse requests to robots and simulations from now on.
+        """
 
     def receive(self, page: Page, message: Any) -> None:
-        """Handle a message of a page. Its class is one of `receives`."""
+        """Handle a message of a page, whose class is one of `receives`."""
 
     def page_closed(self, page: Page) -> None:
         """Discard the data of a page that was closed."""

@@ -223,7 +223,10 @@ class TimelineFeature(PageFeature):
         self._loop = asyncio.get_running_loop()
 
     def attach(self, playback: Playback, bag: BagReader) -> None:
-        """Show a recording to pages. A read error must be reported with `failed`."""
+        """Show a recording to pages.
+
+        A read error must be reported with `failed`.
+        """
         from linkwright.bag.publishing import missing_type_findings
 
         counts = bag.counts(_COUNT_INTERVALS)

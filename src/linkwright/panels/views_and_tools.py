@@ -43,7 +43,7 @@ if TYPE_CHECKING:
 
 
 class ViewsFeature(PageFeature):
-    """The views of pages. They start with the view of the file.
+    """The views of pages, which start with the view of the file.
 
     The view that any page changed last is written to the file.
     """
@@ -63,7 +63,10 @@ class ViewsFeature(PageFeature):
         return [ViewState(manager.view, manager.opened, manager.shows_whole_robot), self._saved_views_message(manager)]
 
     def receive(self, page: Page, message: Any) -> None:
-        """Handle a changed view of a page, or an edit of the saved views. Invalid views are refused."""
+        """Handle a changed view of a page, or an edit of the saved views.
+
+        Invalid views are refused.
+        """
         manager = self.managers.of(page)
         views = manager.config.views
         try:
@@ -137,7 +140,10 @@ class ToolsFeature(PageFeature):
             self._destroy_all(tool_set)
 
     def receive(self, page: Page, message: Any) -> None:
-        """Change or use a tool. Messages for removed tools are ignored."""
+        """Change or use a tool.
+
+        Messages for removed tools are ignored.
+        """
         manager = self.managers.of(page)
         tool_set = self._tool_set(manager)
         if isinstance(message, SetToolProperty):
@@ -255,7 +261,10 @@ class ToolsFeature(PageFeature):
     def _find_with_publisher(
         self, manager: VisualizationManager, identity: str, classes: Collection[str]
     ) -> tuple[ToolEntry, Publisher[Any]] | None:
-        """Return a tool and its publisher, or None if the tool has no publisher or another class."""
+        """Return a tool and its publisher, or None.
+
+        The result is None if the tool has no publisher, or if its class is not in `classes`.
+        """
         tool_set = self._tool_sets[manager]
         entry, publisher = tool_set.config.find(identity), tool_set.publishers.get(identity)
         return None if entry is None or publisher is None or entry.cls not in classes else (entry, publisher)

@@ -79,7 +79,7 @@ def attitude_at_rest(acceleration: Vector3, magnetic: Vector3 | None, world: Wor
 
 @dataclass(slots=True)
 class MadgwickFilter:
-    """A filter that integrates the gyroscope, and corrects by gradient descent on the other sensors' error (Madgwick).
+    """A Madgwick filter: integrates the gyroscope, and corrects the result by gradient descent.
 
     Attributes:
         gain: the size of the correction, in rad/s.
@@ -147,9 +147,9 @@ class MadgwickFilter:
 
 @dataclass(slots=True)
 class ComplementaryFilter:
-    """A filter that integrates the gyroscope, and corrects a fraction of the error that the other sensors show.
+    """A filter that integrates the gyroscope, and corrects a fraction of the error.
 
-    The world axes are north, west, up.
+    The other sensors measure the error. The world axes are north, west, up.
 
     Attributes:
         gain_acc: the fraction of the error that the accelerometer corrects at each measurement, 0 to 1.
@@ -201,7 +201,7 @@ class ComplementaryFilter:
 
 
 def _acceleration_weight(length: float) -> float:
-    """Return the weight of an acceleration: 1 if its length is within 10 % of gravity, 0 beyond 20 %."""
+    """Return an acceleration's weight: 1 within 10 % of gravity, falling to 0 at 20 %."""
     error = abs(length - GRAVITY) / GRAVITY
     return min(1.0, max(0.0, 2.0 - error / 0.1))
 

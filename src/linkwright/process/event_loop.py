@@ -1,4 +1,4 @@
-"""Runs a coroutine as ``asyncio.run`` does since Python 3.11, with a callback before it starts.
+"""Runs a coroutine as Python 3.11's ``asyncio.run`` does, with a callback before it.
 
 The callback is called when the loop exists, because interrupting the creation of a loop prints an error. Ctrl-C cancels
 the coroutine. Elsewhere, a KeyboardInterrupt could abort an import. On Python 3.10, the import lock would then remain

@@ -80,7 +80,10 @@ def on_lost_interrupt(deliver: Callable[[], None]) -> Callable[[Any], Any]:
 
 
 def signal_again(signal_number: int) -> None:
-    """Send a signal to this process. The main thread handles it like a signal from outside."""
+    """Send a signal to this process.
+
+    The main thread handles it like a signal from outside.
+    """
     if sys.platform == "win32":
         _thread.interrupt_main(signal_number)  # on this system, ``os.kill`` would end the process
     else:
@@ -88,7 +91,10 @@ def signal_again(signal_number: int) -> None:
 
 
 def interrupt(process: Interruptible) -> None:
-    """Request the end of another process, as Ctrl-C does. On Windows, terminate the process."""
+    """Request the end of another process, as Ctrl-C does.
+
+    On Windows, terminate the process.
+    """
     if sys.platform == "win32":
         process.terminate()
     else:

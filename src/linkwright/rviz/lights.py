@@ -14,7 +14,7 @@ _DOWN = (0.0, 0.0, -1.0)
 
 
 def lights_of(world: World) -> list[LightScene]:
-    """Return the lights of a world and of its links, omitting those that are off.
+    """Return the lights of a world and of its links that are on.
 
     A light of the world is omitted if its pose is unknown. If the pose of any link is unknown, the lights of all links
     are omitted.

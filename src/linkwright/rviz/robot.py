@@ -130,7 +130,7 @@ class DescriptionSource:
         self._reading_task: asyncio.Task[None] | None = None
         self._publishers: dict[bytes, EndpointInfo | None] = {}
         self.publisher: bytes | None = None
-        """The GID of the publisher of the last description; None before the first one and for a file."""
+        """The GID of the publisher of the last description, or None before the first one and for a file."""
 
     def follow(self) -> Phrase | None:
         """Subscribe to the topic or start reading the file that the properties select.

@@ -40,7 +40,7 @@ def describe_attribute(attribute: AttributeRule) -> Phrase:
 
 
 def _describe_value(rule: ElementRule) -> Phrase:
-    """Return a line of Markdown about an element with a single value, like that of an attribute."""
+    """Return a line of Markdown about an element with a single value, as for an attribute."""
     assert rule.text is not None
     facts = _facts(rule.text)
     if rule.many:

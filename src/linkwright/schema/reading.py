@@ -180,7 +180,7 @@ UNREADABLE: Final = type("Unreadable", (), {"__repr__": lambda _: "UNREADABLE"})
 
 
 class Report(Protocol):
-    """The receiver of a reader's findings. It formulates the messages for one XML language.
+    """The receiver of a reader's findings, which formulates messages for an XML language.
 
     `owner` is the link or joint that contains an element; messages use it to describe the element's location.
 

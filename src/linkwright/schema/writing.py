@@ -13,9 +13,9 @@ Completion = Callable[[Element, ElementRule, Any], None]
 
 
 def write_element(rule: ElementRule, instance: Any, complete: Completion | None = None) -> Element:
-    """Return an object as an element. The reader returns an equal object from it.
+    """Return an object as an element.
 
-    Default values are omitted, except values that are usually written.
+    The reader returns an equal object from it. Default values are omitted, except values that are usually written.
 
     Args:
         rule: the rule of the element.

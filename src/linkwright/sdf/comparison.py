@@ -1,4 +1,4 @@
-"""Comparison of models and their elements by content, regardless of form and place."""
+"""Comparison of models and their elements by content, regardless of form and position."""
 
 from __future__ import annotations
 

@@ -31,10 +31,10 @@ from linkwright.urdf.bodies import Bodies
 _Posed = TypeVar("_Posed", Sensor, Light)
 
 _SDF_JOINT_TYPES = {"revolute": "revolute", "continuous": "revolute", "prismatic": "prismatic", "fixed": "fixed"}
-"""The SDF joint type for each URDF type; other joints are left out, so that their child links move freely."""
+"""The SDF joint type for each URDF type. Other joints are left out, so that their child links move freely."""
 _LUMP_SEPARATOR = "_fixed_joint_lump__"
 _TINY_INERTIAL = Inertial(1e-6, inertia=Inertia(1e-9, 1e-9, 1e-9))
-"""The mass properties of a massless link that is fixed to links with mass; without them, SDF assumes 1 kg."""
+"""The mass properties of a massless link that is fixed to links with mass. Without them, SDF assumes 1 kg."""
 _BRIGHTNESS_FACTOR = 1.25
 """The factor that brightens URDF colours, because gz renders them darker than RViz does."""
 
@@ -104,7 +104,7 @@ class _Converter:
         )
 
     def _remove_massless(self, bodies: list[Body]) -> list[Body]:
-        """Return the bodies that have mass.
+        """Return the bodies that have mass, and report the bodies without mass.
 
         As in gz, descendants of massless bodies are also left out.
         """

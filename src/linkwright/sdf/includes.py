@@ -150,7 +150,7 @@ class _Resolver:
             self._report("SDF160", message, include, model_path.hint, model_path.severity)
             return None
         if model_path in chain or model_path == path or len(chain) >= _MAX_DEPTH:
-            self._report("SDF161", phrase("'{uri}' includes itself", uri=include.uri), include, None)
+            self._report("SDF161", phrase("'{name}' includes itself", name=include.uri), include, None)
             return None
         self._count += 1
         if self._count > _MOST:

@@ -11,7 +11,7 @@ from xml.parsers import expat
 _MIN_LINK_LENGTH = len('<link name="l"/>')
 _CONTAINER_TAGS = frozenset({"sdf", "gazebo", "world", "model"})
 _COUNTED_TAGS = frozenset({"link", "include"})
-"""Elements to count, if they are only inside container elements; an include counts as one link."""
+"""Elements to count, if they are only inside container elements. An include counts as one link."""
 
 
 def has_more_links(data: bytes | str, limit: int) -> bool:

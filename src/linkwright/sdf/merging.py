@@ -50,7 +50,7 @@ def merged(enclosing_model: Model, included_model: Model) -> Model:
         frames=(*enclosing_model.frames, *frames),
         models=(*enclosing_model.models, *(_with_pose_in_frame(model, frame_name) for model in included_model.models)),
         plugins=(*enclosing_model.plugins, *included_model.plugins),
-        includes=(*enclosing_model.includes, *included_model.includes),  # those that cannot be resolved
+        includes=(*enclosing_model.includes, *included_model.includes),  # includes that cannot be resolved
     )
 
 

@@ -137,8 +137,8 @@ def read(document: Document) -> Reading:
         return Reading(None, report.in_order())
     sdf: Sdf = read_element(upgraded(root, SDF) if is_old(root) else root, SDF, report)
     if not (sdf.worlds or sdf.models or sdf.lights or sdf.actors):
-        hint = phrase("put a <world> or a <model> in it")
-        report.error("SDF131", phrase("<sdf> has neither a world nor a model in it"), root, hint=hint)
+        hint = phrase("put a <world> or a <model> into <sdf>")
+        report.error("SDF131", phrase("<sdf> contains neither a world nor a model"), root, hint=hint)
     return Reading(sdf, report.in_order())
 
 
@@ -179,7 +179,7 @@ def _explain_root(root: Element, report: SdfReport) -> None:
     if root.tag in _OTHER_FORMATS:
         hint = phrase("this is {format}, not a world or model", format=_OTHER_FORMATS[root.tag])
     elif root.tag in ("world", "model"):
-        hint = phrase('put <sdf version="1.6"> around it')
+        hint = phrase('enclose the element in <sdf version="1.6">')
     else:
         hint = did_you_mean(root.tag, ["sdf"]) or phrase("an SDF file has <sdf> as its root")
     report.reject("SDF101", phrase("the root element is <{tag}>, not <sdf>", tag=root.tag), root, hint=hint)

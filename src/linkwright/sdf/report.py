@@ -27,7 +27,7 @@ from linkwright.urdf.values import number_hint, vector_hint
 from linkwright.xmltree import Element
 
 NEWEST = (1, 12)
-"""The newest supported version of SDF; older files are read with its rules, as in libsdformat."""
+"""The newest supported version of SDF. Older files are read with its rules, as in libsdformat."""
 
 
 def described(element: Element) -> Phrase:
@@ -46,7 +46,7 @@ class SdfReport(Findings):
     def __init__(self) -> None:
         super().__init__(NEWEST)
         self.is_of_classic = False
-        """Whether the SDF version is older than 1.7; Gazebo classic accepts more than newer libsdformat."""
+        """Whether the SDF version is older than 1.7. Gazebo classic accepts more than newer libsdformat."""
         self._misspelt: list[Element] = []
 
     def missing_attribute(self, element: Element, rule: ElementRule, attribute: AttributeRule, owner: Element) -> None:
@@ -108,7 +108,7 @@ class SdfReport(Findings):
         misspelt = next((candidate for candidate in candidates if candidate.tag in similar_tags), None)
         hint = phrase("add <{tag}>...</{tag}>", tag=child.tag)
         if misspelt is not None:
-            hint = phrase("did you mean '{tag}' instead of '{misspelt_tag}'?", tag=child.tag, misspelt_tag=misspelt.tag)
+            hint = phrase("did you mean '{name}' instead of '{like}'?", name=child.tag, like=misspelt.tag)
             self._misspelt.append(misspelt)
         self.error(
             "SDF130",
@@ -184,7 +184,7 @@ class SdfReport(Findings):
 
     def twice(self, element: Element, first: Element) -> None:
         """Report an element that has the same name as an earlier sibling."""
-        notes: Sequence[Note] = (Note(phrase("it is first defined here"), first.span()),)
+        notes: Sequence[Note] = (Note(phrase("first defined here"), first.span()),)
         message = phrase(
             ("two elements of the same parent are named '{name}'"), name=element.attributes.get("name", "")
         )

@@ -51,7 +51,7 @@ _SCHEMES = ("model", "package", "file")
 _TEMPLATE_SUFFIXES = (".jinja", ".jinja2", ".j2", ".em", ".erb", ".in", ".template", ".xacro")
 """Suffixes of templates from which a build creates a file, such as ``model.sdf.jinja``."""
 _MIN_NAME_LENGTH = 4
-"""The minimum length of a name for which similar names are suggested; ``suv`` is not a misspelling of ``sun``."""
+"""The minimum length of a name for which similar names are suggested. ``suv`` is not a misspelling of ``sun``."""
 _SUN_AND_GROUND = {"sun": "sun", "ground plane": "ground_plane"}
 """Fuel models that most worlds include, and the models of this program that replace them."""
 
@@ -252,7 +252,7 @@ class ResourceFinder:
         suggested_name = find_misspelt(name, self.models()) if len(name) >= _MIN_NAME_LENGTH else None
         if suggested_name is not None:
             return Missing(reason, did_you_mean(name, [suggested_name]))
-        hint = phrase("add the folder that contains '{name}' to {variable}", name=name, variable=SEARCH_VARIABLES[0])
+        hint = phrase("add the folder that contains '{path}' to {variable}", path=name, variable=SEARCH_VARIABLES[0])
         return Missing(reason, hint, Severity.INFO)
 
     def _find_in_cache(self, address: str) -> Path | Missing:

@@ -88,10 +88,10 @@ _BUILT_IN_LOOKS = {
     "YellowTransparent": _uniform_look(1, 1, 0, 0.5),
     "ZincYellow": _uniform_look(0.9725, 0.9529, 0.2078),
 }
-"""Gazebo's built-in materials by name without prefix; textured ones have the approximate colour of their image."""
+"""Gazebo's built-in materials by name without prefix. Textured materials have the approximate colour of their image."""
 _PREFIX = "Gazebo/"
 _MAX_SCRIPT_BYTES = 1_000_000
-"""The maximum size of a script in bytes; the script with Gazebo's materials has 19 000."""
+"""The maximum size of a script in bytes. The script with Gazebo's materials has 19 000."""
 _TOKENS = re.compile(r"//[^\n]*|/\*.*?\*/|\{|\}|\n|[^\s{}]+", re.DOTALL)
 _COLORS = ("ambient", "diffuse", "specular", "emissive")
 

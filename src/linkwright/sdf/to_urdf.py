@@ -30,7 +30,7 @@ _URDF_JOINT_TYPES: dict[str, urdf.JointType] = {
     "prismatic": "prismatic",
     "fixed": "fixed",
 }
-"""The URDF joint type for each SDF type; joints of any other type become floating joints."""
+"""The URDF joint type for each SDF type. Joints of any other type become floating joints."""
 _UNBOUNDED = 1e16
 """The number that SDF uses for an unbounded limit; also written to URDF, which has no value for it."""
 _AMBIENT_INTENSITY, _DIFFUSE_INTENSITY = 0.4, 0.8

@@ -1,4 +1,4 @@
-"""Explanations of elements in places where SDF does not define them."""
+"""Tests of whether SDF reads an element, and the parents in which it does."""
 
 from __future__ import annotations
 

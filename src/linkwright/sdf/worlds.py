@@ -139,7 +139,7 @@ class Sdf:
 def gravity_of(world: World) -> Vector3:
     """Return the effective gravity of a world in m/s2.
 
-    This is the world's own gravity, or that of its physics settings (up to SDF 1.5), or the default.
+    This is the world's own gravity, or the gravity of its physics (up to SDF 1.5), or the default.
     """
     if world.gravity is not None:
         return world.gravity

@@ -20,9 +20,9 @@ from linkwright.xmltree.writer import strip_mixed_text
 VERSION = "1.11"
 """The SDF version of the output, which is the newest that gz Harmonic, and so ROS Jazzy, can read."""
 _DEFAULT_NAMESPACE = "http://gazebosim.org/schema"
-"""The namespace for prefixes that a file uses but does not declare; Gazebo accepts such files."""
+"""The namespace for prefixes that a file uses but does not declare. Gazebo accepts such files."""
 _PLACEHOLDER_NAME = "\x01"
-"""The name of a placeholder model, which the written models replace; XML does not allow this character."""
+"""The name of a placeholder model, which the written models replace. XML does not allow this character."""
 
 
 @dataclass(frozen=True, slots=True)

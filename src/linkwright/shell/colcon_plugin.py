@@ -35,7 +35,7 @@ class CopiedPackageIdentification(RosPackageIdentification):  # type: ignore[mis
     PRIORITY = RosPackageIdentification.PRIORITY + 10
 
     def identify(self, desc: Any) -> None:
-        """Identify a ROS package as colcon-ros does, and set the type `COPIED` if ament_cmake is missing."""
+        """Identify a ROS package as colcon-ros does, with type `COPIED` if ament_cmake is missing."""
         super().identify(desc)
         if desc.type == "ros.ament_cmake" and not _has_ament_cmake(os.environ):
             desc.type = COPIED

@@ -50,7 +50,7 @@ def write_programs(folder: Path, python: str = sys.executable) -> None:
 
 
 def offer_programs(environment: MutableMapping[str, str]) -> None:
-    """Append the folder of Linkwright's programs to the search path, for commands in launch files.
+    """Append the folder of Linkwright's programs to the search path, for launch files.
 
     The programs are written to the cache folder. If that is not possible, the search path does not change.
     """

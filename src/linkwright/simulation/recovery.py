@@ -20,7 +20,7 @@ from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.scene.scene import SERVO
 
 _MAX_SEPARATION_SPEED = 0.3
-"""The maximum speed in m/s at which overlapping bodies separate; at this speed, a body rises by 5 mm."""
+"""The maximum speed in m/s at which overlapping bodies separate. At this speed, a body rises by 5 mm."""
 _MAX_CORRECTION_SPEED = 1.0
 """The maximum speed in rad/s or m/s at which joints return to their limits, and couplings and loops close."""
 _MAX_STEPS_WITHOUT_OVERLAP = 100

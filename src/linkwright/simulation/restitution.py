@@ -27,7 +27,7 @@ from linkwright.simulation.scene.surfaces import RESTITUTION_DATA
 _MIN_IMPACT_SPEED = 0.1
 """The minimum impact speed in m/s at which bodies bounce, as in gz's engine DART."""
 _ITERATIONS = 50
-"""The number of iterations over all impulses; a box that lands flat has four contacts."""
+"""The number of iterations over all impulses. A box that lands flat has four contacts."""
 
 
 class Stepper:

@@ -21,7 +21,7 @@ _ISLAND_COST, _AWAKE_COST = 80, 300
 Measured with 4 to 100 mbots: an island costs 2.5 us, and 0.03 us for each motor; mbot itself, as a box, 9 us.
 """
 _CHECK_STEPS = 20
-"""The number of steps between two checks; resting bodies may fall asleep within half as many."""
+"""The number of steps between two checks. Resting bodies may fall asleep within half as many."""
 _CHECKS_TOGETHER = 50
 """The number of checks during which all bodies are solved together, before islands are tried again."""
 

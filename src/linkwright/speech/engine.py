@@ -55,11 +55,14 @@ class EngineOptions:
 
 
 class SpeechEngine(ABC):
-    """A recogniser of phrases in a stream of sound. Only one thread at a time may call it."""
+    """A recogniser of phrases in a stream of sound.
+
+    Only one thread at a time may call it.
+    """
 
     @abstractmethod
     def hear(self, samples: Samples) -> Sequence[Heard]:
-        """Process the next samples of the stream, any number of them, and return new results in order."""
+        """Process the next samples of the stream, any number, and return new results in order."""
 
     @abstractmethod
     def finish(self) -> Sequence[Heard]:
@@ -74,7 +77,10 @@ class SpeechEngine(ABC):
         return None
 
     def close(self) -> None:  # noqa: B027 - few engines have resources to release
-        """Release the engine's resources. No other method is called afterwards."""
+        """Release the engine's resources.
+
+        No other method is called afterwards.
+        """
 
 
 def engine_names() -> tuple[str, ...]:

@@ -1,4 +1,4 @@
-"""Commands and environments for users' programs that import the stand-ins, such as ``rclpy``.
+"""Commands and environments for user programs that import stand-ins such as ``rclpy``.
 
 An installed rclpy takes precedence.
 """

@@ -35,7 +35,10 @@ class StorageOptions:
 
 @dataclass(slots=True)
 class ConverterOptions:
-    """The serialization formats of messages. Only CDR is supported."""
+    """The serialization formats of messages.
+
+    Only CDR is supported.
+    """
 
     input_serialization_format: str = ""
     output_serialization_format: str = ""
@@ -43,7 +46,10 @@ class ConverterOptions:
 
 @dataclass(slots=True)
 class StorageFilter:
-    """Selects topics by name and by regular expression. By default, it selects all topics."""
+    """Selects topics by name and by regular expression.
+
+    By default, it selects all topics.
+    """
 
     topics: list[str] = field(default_factory=list)
     topics_regex: str = ""

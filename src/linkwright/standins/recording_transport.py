@@ -112,7 +112,10 @@ class RecordOptions:
 
     @property
     def selection(self) -> TopicSelection:
-        """The selection of topics. As in ``ros2bag``, a service is selected by its event topic."""
+        """The selection of topics.
+
+        As in ``ros2bag``, a service is selected by its event topic.
+        """
         return TopicSelection(
             everything=self.all_topics or self.all,
             names=_absolute_names(self.topics),

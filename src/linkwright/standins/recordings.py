@@ -380,7 +380,10 @@ class LocalMessageDefinitionSource:
     """Provides the definitions of message types."""
 
     def get_full_text(self, root_topic_type: str) -> MessageDefinition:
-        """Return the definition of a type. The definition of an unknown type is empty."""
+        """Return the definition of a type.
+
+        The definition of an unknown type is empty.
+        """
         try:
             return MessageDefinition(root_topic_type, "ros2msg", schema_of(root_topic_type), type_hash(root_topic_type))
         except LinkwrightError:

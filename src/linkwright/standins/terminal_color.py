@@ -87,7 +87,7 @@ def format_color(msg: str) -> str:
 
 
 def print_color(*args: Any, **kwargs: Any) -> None:
-    """Print strings after replacing their markup. The arguments are those of ``print``."""
+    """Print strings after replacing their markup, with the arguments of ``print``."""
     end, separator = kwargs.pop("end", "\n"), kwargs.pop("sep", " ")
     print(format_color(separator.join(map(str, args))), end=end, **kwargs)
 

@@ -1,4 +1,4 @@
-"""Rotations and homogeneous matrices with the names and conventions of ``tf_transformations``.
+"""Rotations and homogeneous matrices with the API of ``tf_transformations``.
 
 Quaternions are in the order x y z w. A matrix is an array of shape (4, 4) that multiplies column vectors. Euler angles
 are in radians. Their axes code is ``s`` for static or ``r`` for rotating axes, followed by the three axes in the order

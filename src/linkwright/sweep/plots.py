@@ -19,7 +19,9 @@ _POINT_RADIUS = 3.0
 
 @dataclass(frozen=True)
 class Axis:
-    """An axis of a plot. Calling it converts a value to a coordinate in the drawing.
+    """An axis of a plot.
+
+    Calling it converts a value to a coordinate in the drawing.
 
     Attributes:
         low, high: the values at both ends.
@@ -59,7 +61,10 @@ class Axis:
 
     @classmethod
     def of_names(cls, names: Sequence[str], begin: float, end: float) -> Axis:
-        """Return an axis with a position for each name. The first position has the value 0."""
+        """Return an axis with a position for each name.
+
+        The first position has the value 0.
+        """
         return cls(-0.5, len(names) - 0.5, [(float(index), name) for index, name in enumerate(names)], begin, end)
 
     def __call__(self, value: float) -> float:

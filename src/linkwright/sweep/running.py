@@ -55,7 +55,10 @@ def load_into_process(path: Path) -> Scenario:
 
 
 def run_once(scenario: Scenario, run: Run) -> Outcome:
-    """Run a scenario, and return the outcome. An exception becomes the outcome's error."""
+    """Run a scenario, and return the outcome.
+
+    An exception becomes the outcome's error.
+    """
     try:
         return Outcome(run.row, run_scenario(scenario, run))
     except (Exception, SystemExit) as error:  # noqa: BLE001 - a scenario may raise any exception

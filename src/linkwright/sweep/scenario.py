@@ -116,7 +116,7 @@ def load_scenario(path: Path) -> Scenario:
 
     Raises:
         LinkwrightError: SWEEP101, the file cannot be read; SWEEP102, the file cannot be run; SWEEP103, the file does
-            not contain exactly one scenario; SWEEP104, the declared parameters are not those of the function; SWEEP105,
+            not contain exactly one scenario; SWEEP104, declared and function parameters differ; SWEEP105,
             the values are not valid.
     """
     module = _load_module(path)
@@ -230,7 +230,7 @@ def _load_module(path: Path) -> ModuleType:
     spec = importlib.util.spec_from_file_location(_MODULE_NAME, path)
     if path.suffix != ".py" or spec is None or spec.loader is None or not path.is_file():
         message = phrase("there is no scenario '{path}'", path=display_path(path))
-        hint = phrase("name a Python file, such as drive.py")
+        hint = phrase("pass a Python file, such as drive.py")
         raise LinkwrightError(Diagnostic("SWEEP101", message, hint=hint))
     module = importlib.util.module_from_spec(spec)
     folder = str(path.parent)

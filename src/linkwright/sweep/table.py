@@ -56,14 +56,16 @@ class Table:
 
 
 def check_format(path: Path) -> None:
-    """Raise if a table cannot be written to a file. Call this before the first run.
+    """Raise if a table cannot be written to a file.
+
+    Call this before the first run.
 
     Raises:
         LinkwrightError: SWEEP110, the extension is not supported; SWEEP111, pyarrow is not installed.
     """
     if path.suffix not in FORMATS or path.is_dir():
         message = phrase("a table cannot be written to '{path}'", path=str(path))
-        raise LinkwrightError(Diagnostic("SWEEP110", message, hint=phrase("its name must end in .csv or .parquet")))
+        raise LinkwrightError(Diagnostic("SWEEP110", message, hint=phrase("use a name that ends in .csv or .parquet")))
     if path.suffix == ".parquet":
         _load_pyarrow()
 
@@ -74,7 +76,10 @@ def table_bytes(table: Table, path: Path) -> bytes:
 
 
 def _to_csv(table: Table) -> bytes:
-    """Return the table as CSV with a header line. Floats keep their full precision."""
+    """Return the table as CSV with a header line.
+
+    Floats keep their full precision.
+    """
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(table.columns)

@@ -1,6 +1,7 @@
-"""Graphs for tests of nodes. Time passes only when the test advances it.
+"""Graphs for tests of nodes.
 
-An hour of such time takes milliseconds. With `SteppedSimulation`, a simulated world advances together with the graph.
+Time passes only when the test advances it. An hour of such time takes milliseconds. With `SteppedSimulation`, a
+simulated world advances together with the graph.
 """
 
 from __future__ import annotations

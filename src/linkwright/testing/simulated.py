@@ -1,4 +1,4 @@
-"""A simulated world for tests. It advances together with the graph, step by step."""
+"""A simulated world for tests, which advances with the graph step by step."""
 
 from __future__ import annotations
 
@@ -168,9 +168,9 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
         self.publish(topic, message)
 
     async def settle(self) -> None:
-        """Run all ready callbacks of the graph and the simulation, and the callbacks that these cause.
+        """Run all ready callbacks of the graph and the simulation.
 
-        Time does not advance.
+        Callbacks that these cause are run, too. Time does not advance.
 
         Raises:
             Exception: the error of a callback.

@@ -102,7 +102,10 @@ class AsyncSteppedGraph:
         return self.clock.steady_ns() / 1e9
 
     def create_node(self, name: str, **options: Any) -> Node:
-        """Create a node in the graph. The options are the arguments of ``Graph.create_node``."""
+        """Create a node in the graph.
+
+        The options are the arguments of ``Graph.create_node``.
+        """
         return self.graph.create_node(name, **options)
 
     def record(self, topic: str, msg_type: Any = None) -> Recording:
@@ -115,9 +118,9 @@ class AsyncSteppedGraph:
         return Recording(self.graph, self.node, topic, msg_type)
 
     def publish(self, topic: str, message: Any, qos_profile: QoSProfile | int = DEFAULT_QOS) -> None:
-        """Publish a message. Subscribers receive it in the next step.
+        """Publish a message.
 
-        The publisher is created on the first call and used for later messages.
+        Subscribers receive it in the next step. The publisher is created on the first call and used for later messages.
         """
         publisher = self._publishers.get(topic)
         if publisher is None:

@@ -121,7 +121,10 @@ class SteppedGraph:
         return self._context
 
     def create_node(self, name: str, **options: Any) -> Node:
-        """Create a node in the graph. The options are the arguments of ``Graph.create_node``."""
+        """Create a node in the graph.
+
+        The options are the arguments of ``Graph.create_node``.
+        """
         return self._steps.create_node(name, **options)
 
     def record(self, topic: str, msg_type: Any = None) -> Recording:
@@ -132,7 +135,10 @@ class SteppedGraph:
         return self._steps.record(topic, msg_type)
 
     def publish(self, topic: str, message: Any, qos_profile: QoSProfile | int = DEFAULT_QOS) -> None:
-        """Publish a message. Subscribers receive it in the next step."""
+        """Publish a message.
+
+        Subscribers receive it in the next step.
+        """
         self._steps.publish(topic, message, qos_profile)
 
     def settle(self) -> None:

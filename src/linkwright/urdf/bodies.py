@@ -82,9 +82,9 @@ class Bodies:
 
     @cached_property
     def _links_including_massless(self) -> frozenset[str]:
-        """The names of links with a mass that have massless neighbours with a shape.
+        """The names of links with mass whose neighbours include a massless link with a shape.
 
-        Neighbours are connected by fixed joints, possibly through empty links.
+        Neighbours are connected by fixed joints, possibly through massless links without a shape.
         """
         links = self._robot.links if self._robot is not None else {}
         neighbours: dict[str, list[str]] = {name: [] for name in links}

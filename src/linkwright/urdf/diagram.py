@@ -31,9 +31,7 @@ def render(gv_text: str, path: str | Path) -> None:
     path = Path(path)
     suffix = path.suffix.lower()
     if suffix not in IMAGE_SUFFIXES:
-        hint = did_you_mean(suffix, IMAGE_SUFFIXES) or phrase(
-            "choose from {image_endings}", image_endings=joined(IMAGE_SUFFIXES)
-        )
+        hint = did_you_mean(suffix, IMAGE_SUFFIXES) or phrase("choose from {names}", names=joined(IMAGE_SUFFIXES))
         raise LinkwrightError(
             Diagnostic(
                 "URDF201", phrase("an image cannot be written as '{ending}'", ending=suffix or path.name), hint=hint
@@ -61,9 +59,9 @@ def render(gv_text: str, path: str | Path) -> None:
             Diagnostic(
                 "URDF203",
                 phrase(
-                    "'{path}' cannot be written: {strerror}",
+                    "cannot write '{path}': {reason}",
                     path=display_path(path),
-                    strerror=foreign(error.strerror or error),
+                    reason=foreign(error.strerror or error),
                 ),
             )
         ) from error

@@ -1,4 +1,4 @@
-"""The structure of a robot as Graphviz text, byte for byte as ``urdf_to_graphviz`` writes it."""
+"""A robot's structure as Graphviz text, byte for byte as ``urdf_to_graphviz`` writes it."""
 
 from __future__ import annotations
 

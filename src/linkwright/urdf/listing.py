@@ -12,7 +12,7 @@ DEEPEST = 200
 def tree_text(robot: Robot) -> str:
     """Return the robot's name and its links as an indented list.
 
-    Children are ordered by joint name, with four blanks per level. From level `DEEPEST` on, the indentation no
+    Children are ordered by joint name, with four spaces per level. From level `DEEPEST` on, the indentation no
     longer grows. Otherwise, the text of a chain of a hundred thousand links would exhaust the memory.
     """
     lines = [

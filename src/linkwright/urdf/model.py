@@ -1,7 +1,7 @@
 """The robot model: the typed contents of a URDF file.
 
 Units are SI: metres, radians, kilograms, seconds, newtons. Every pose is the pose of a child frame in its parent
-frame. Every part stores its XML element with its position in the file, also if the file was expanded by
+frame. Every part stores its XML element with its position in the file, even if the file was expanded by
 xacro. The sources are the XML specification of the ROS package ``urdf``, and urdfdom's interpretation of it.
 """
 
@@ -94,7 +94,7 @@ class Inertial:
 
     @property
     def is_computable(self) -> bool:
-        """Whether the numbers are small enough to avoid overflow, even if they are not physically valid."""
+        """Whether the numbers are small enough to avoid overflow, even if physically invalid."""
         numbers = (self.mass, self.ixx, self.ixy, self.ixz, self.iyy, self.iyz, self.izz)
         return max(map(abs, numbers)) <= _MAX_MASS and max(map(abs, self.origin.xyz)) <= MAX_COORDINATE
 

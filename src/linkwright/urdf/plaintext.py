@@ -1,8 +1,8 @@
 """XML text as urdfdom's parser reads it, which differs from the XML standard.
 
 tinyxml2 preserves tabs and line breaks inside attribute values, whereas XML converts them to spaces. urdfdom does not
-accept tabs and line breaks between numbers. tinyxml2 also accepts blanks before the XML declaration, and the mistakes
-that `linkwright.xmltree.tinyxml` lists.
+accept tabs and line breaks between numbers. tinyxml2 also accepts whitespace before the XML declaration, and the
+mistakes that `linkwright.xmltree.tinyxml` lists.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ _INSIDE_VALUE = {blank: lazy_pattern(rf"""{blank}[-+0-9eE. ]*["']""") for blank 
 
 
 def parse_as_urdfdom(text: str | bytes, name: str) -> tuple[Document, tuple[Diagnostic, ...]]:
-    """Parse a URDF text, preserving the blanks in its attribute values.
+    """Parse a URDF text, preserving the whitespace in its attribute values.
 
     Returns:
         The document, and a warning for each kind of construct that XML forbids and urdfdom accepts.

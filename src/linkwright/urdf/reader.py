@@ -8,7 +8,7 @@ link, but without this part and without the parts after it, in the order inertia
 does the same, and reports all errors.
 
 If a material is defined several times, the first definition applies. Definitions at robot level take precedence over
-those in links, even over the colour in the visual itself. A definition in a later link does not apply to an earlier
+definitions in links, even over the colour in the visual. A definition in a later link does not apply to an earlier
 link.
 """
 
@@ -113,7 +113,10 @@ class MaterialTable:
         self._undefined: list[tuple[Material, Element]] = []
 
     def define(self, element: Element, robot: Element) -> None:
-        """Add a material at robot level. A material without colour and texture is black."""
+        """Add a material at robot level.
+
+        A material without colour and texture is black.
+        """
         findings = self._findings
         material = read_material(element, robot, findings) or Material("", element=element)
         if material.rgba is None and material.texture is None:
@@ -132,7 +135,7 @@ class MaterialTable:
             self.materials[material.name] = material
 
     def resolve(self, material: Material, owner: Element) -> Material | None:
-        """Return the material that applies to a visual's material element, or None if it is not yet defined.
+        """Return the material that applies to a visual, or None if it is not yet defined.
 
         A name that is defined here for the first time is added to the table.
         """
@@ -172,9 +175,10 @@ def read_material(element: Element, owner: Element, findings: UrdfReport) -> Mat
 
 
 def read_joint(element: Element, findings: UrdfReport) -> Joint:
-    """Return a joint. If it cannot be read, report this and mark the model as refused.
+    """Return a joint.
 
-    As in urdfdom, the axis is 1 0 0 without ``<axis>``, but 0 0 0 for an ``<axis>`` without 'xyz'.
+    If it cannot be read, report this and mark the model as refused. As in urdfdom, the axis is 1 0 0 without
+    ``<axis>``, but 0 0 0 for an ``<axis>`` without 'xyz'.
     """
     errors_before = findings.error_count
     rule = JOINT if element.attributes.get("type") in _AXIS_TYPES else _WITHOUT_AXIS
@@ -292,7 +296,10 @@ def _read_robot(root: Element, findings: UrdfReport) -> Robot | None:
 
 
 def _index_by_name(kind: str, parts: Iterable[PartT], findings: UrdfReport) -> dict[str, PartT]:
-    """Return links or joints by name, with only the first one for a repeated name."""
+    """Return links or joints by name, and report repeated names.
+
+    The first part with a name is returned.
+    """
     parts_by_name: dict[str, PartT] = {}
     for part in parts:
         first = parts_by_name.setdefault(part.name, part)
@@ -315,7 +322,7 @@ def _read_version(root: Element, findings: UrdfReport) -> Version:
     version = numbers[0], numbers[1]
     if not (1, 0) <= version <= NEWEST_VERSION:
         message = phrase("there is no URDF version '{written}'", written=version_text)
-        findings.reject("URDF104", message, root, "version", hint=phrase("the versions are 1.0, 1.1 and 1.2"))
+        findings.reject("URDF104", message, root, "version", hint=phrase("write 1.0, 1.1 or 1.2"))
         return NEWEST_VERSION
     return version
 
@@ -354,7 +361,7 @@ def _report_leftover_xacro(root: Element, extensions: list[Element], findings: U
     names = list(dict.fromkeys(f"<{element.tag}>" for element in xacro_elements))
     names_text = joined(names[:_MAX_NAMES])
     if len(names) > _MAX_NAMES:
-        names_text = phrase("{names}, ...", names=names_text)
+        names_text = phrase("{list}, ...", list=names_text)
     hint = phrase("expand the file with xacro")
     if "xmlns:xacro" not in root.attributes:
         hint = phrase('expand the file with xacro; <robot> must declare xmlns:xacro="http://www.ros.org/wiki/xacro"')
@@ -367,7 +374,10 @@ def _report_leftover_xacro(root: Element, extensions: list[Element], findings: U
 
 
 def _check_mimics(joints: dict[str, Joint], findings: UrdfReport) -> None:
-    """Report mimic joints that follow a missing joint or form a cycle, which urdfdom does not check."""
+    """Report mimic joints that follow a missing joint or form a cycle.
+
+    urdfdom does not check this.
+    """
     for joint in joints.values():
         if joint.mimic is None:
             continue

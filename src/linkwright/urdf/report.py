@@ -95,7 +95,7 @@ class Findings:
 
     def duplicate(self, kind: str, name: str, element: Element, first: Element | None) -> None:
         """Report a second element of the same kind and name as `first`."""
-        notes = (Note(phrase("it is first defined here"), first.span()),) if first else ()
+        notes = (Note(phrase("first defined here"), first.span()),) if first else ()
         hint = phrase("give each {kind} its own name", kind=term(kind))
         self.reject(
             "URDF110",
@@ -275,9 +275,7 @@ class UrdfReport(Findings):
             "add <{tag}/>: {meaning}", tag=f"{child.tag}{_usual_attributes(child)}", meaning=term(child.meaning)
         )
         if misspelt_child is not None:
-            hint = phrase(
-                "did you mean '{tag}' instead of '{misspelt_tag}'?", tag=child.tag, misspelt_tag=misspelt_child.tag
-            )
+            hint = phrase("did you mean '{name}' instead of '{like}'?", name=child.tag, like=misspelt_child.tag)
         owner_text = owner_name(owner)
         if kind:
             owner_text = phrase("{kind} {owner}", kind=kind, owner=owner_text)
@@ -337,7 +335,7 @@ def _joint_type_hint(type_text: str) -> Phrase:
     """Return a hint on how to correct an unknown joint type."""
     lower_case = type_text.strip().casefold()
     if lower_case in JOINT_TYPES:
-        return phrase("write '{folded}'", folded=lower_case)
+        return phrase("write '{text}'", text=lower_case)
     if lower_case in _JOINT_ALIASES:
         intended = _JOINT_ALIASES[lower_case]
         if intended is None:

@@ -90,7 +90,10 @@ def check_origin(pose: Pose, element: Element, owner: Element, findings: Finding
 
 
 def check_sizes(geometry: Geometry, shape: Element, owner: Element, findings: Findings) -> Any:
-    """Check that every size is positive, as URDF 1.2 requires. Older versions accept any size."""
+    """Check that every size is positive, as URDF 1.2 requires.
+
+    Older versions accept any size.
+    """
     if findings.version < (1, 2):
         return geometry
     is_valid = True
@@ -105,7 +108,7 @@ def check_sizes(geometry: Geometry, shape: Element, owner: Element, findings: Fi
                 owner=owner_name(owner),
                 value=value,
             )
-            findings.error("URDF123", message, shape, name, hint=phrase("URDF 1.2 requires sizes above zero"))
+            findings.error("URDF123", message, shape, name, hint=phrase("give a size above zero, as URDF 1.2 requires"))
     return geometry if is_valid else UNREADABLE
 
 
@@ -222,7 +225,7 @@ SHAPES = (
 
 GEOMETRY = ElementRule(
     "geometry",
-    "the shape; the first element in it counts",
+    "the shape; only the first element in it is read",
     children=SHAPES,
     required=True,
     choice=True,

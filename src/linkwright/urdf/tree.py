@@ -154,14 +154,14 @@ def _check_parents(joints: Sequence[Joint], findings: Findings) -> None:
         findings.error(
             "URDF151",
             phrase(
-                "link '{child}' is the child of two joints, '{name}' and '{joint_name}'",
-                child=joint.child,
-                name=first.name,
-                joint_name=joint.name,
+                "link '{link}' is the child of two joints, '{one}' and '{other}'",
+                link=joint.child,
+                one=first.name,
+                other=joint.name,
             ),
             child_element,
             "link",
-            hint=phrase("a link has one parent: remove one of the joints, or add a link for it"),
+            hint=phrase("remove one of the joints, or add a link for it: a link has only one parent"),
             notes=(Note(phrase("'{name}' is defined here", name=first.name), _span_of(first.element)),),
         )
 

@@ -1,8 +1,8 @@
 """Attribute values as urdfdom reads them, and hints for malformed values.
 
 urdfdom reads an attribute with a C++ stream in the classic locale, which must consume the whole text. Therefore,
-blanks may precede a number but not follow it. ``1e3``, ``.5``, ``5.`` and ``+1`` are numbers; ``inf``, ``nan``,
-``0x10``, ``0,5`` and the empty text are not. A vector is split only at the space character.
+whitespace may precede a number but not follow it. ``1e3``, ``.5``, ``5.`` and ``+1`` are numbers; ``inf``, ``nan``,
+``0x10``, ``0,5`` and the empty string are not. A vector is split only at the space character.
 """
 
 from __future__ import annotations
@@ -99,7 +99,7 @@ def number_hint(text: str) -> Phrase | None:
     if _is_number(stripped.replace("\u2212", "-")):
         return phrase("write the minus sign as a hyphen: '{stripped}'", stripped=stripped.replace(chr(8722), "-"))
     if stripped.count(",") == 1 and _is_number(stripped.replace(",", ".")):
-        return phrase("write a point as decimal separator: '{stripped}'", stripped=stripped.replace(",", "."))
+        return phrase("write a point as decimal separator: '{text}'", text=stripped.replace(",", "."))
     if stripped.lower().lstrip("+-") in ("inf", "infinity", "nan") or re.fullmatch(_DIGITS, stripped):
         return phrase("only finite numbers are read")
     if re.fullmatch("[+-]?0[xX][0-9a-fA-F]+", stripped):
@@ -129,7 +129,7 @@ def vector_hint(text: str, count: int) -> Phrase | None:
         return phrase("separate the numbers with spaces, not commas: '{pieces}'", pieces=" ".join(pieces))
     pieces = text.replace(",", ".").split()
     if "," in text and len(pieces) == count and all(map(_is_number, pieces)):
-        return phrase("write a point as decimal separator: '{pieces}'", pieces=" ".join(pieces))
+        return phrase("write a point as decimal separator: '{text}'", text=" ".join(pieces))
     malformed = next((piece for piece in text.split() if not _is_number(piece)), None)
     if malformed is None:
         return phrase("give {count} numbers, not {text_split}", count=count, text_split=len(text.split()))
@@ -139,7 +139,7 @@ def vector_hint(text: str, count: int) -> Phrase | None:
     return (
         phrase("'{bad}': {hint}", bad=malformed, hint=hint)
         if hint
-        else phrase("'{bad}' is not a number", bad=malformed)
+        else phrase("'{text}' is not a number", text=malformed)
     )
 
 

@@ -1,4 +1,7 @@
-"""The meanings of URDF's elements and attributes, by their names or paths such as ``joint.limit.effort``."""
+"""The meanings of URDF's elements and attributes, by name or path.
+
+A path is ``joint.limit.effort``, for example.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +16,7 @@ _Path = tuple[str, ...]
 
 
 def meanings(name: str) -> list[Phrase]:
-    """Return the meanings of a name or path in Markdown, or an empty list if URDF does not define it.
+    """Return the meanings of a name or path in Markdown, or an empty list if there are none.
 
     A path leads from outer to inner elements, may start at any element, and may end with an attribute.
     ``joint.limit.effort`` and ``limit.effort`` are the same, and so are ``limit/effort`` and ``<limit> effort``.

@@ -54,7 +54,9 @@ def show(
     packages: Packages = None,
     height: int = 480,
 ) -> RobotCell:
-    """Return a robot as the output of a notebook cell. Call this in the last line of the cell.
+    """Return a robot as the output of a notebook cell.
+
+    Call this in the last line of the cell.
 
     Args:
         robot: the path of a URDF or xacro file, the text of a description, or a `Robot`.

@@ -183,7 +183,7 @@ class Viewer:
 
     @property
     def url(self) -> str:
-        """The address to open in a browser, including the token. It is empty before `start`."""
+        """The address to open in a browser, with the token, or an empty string before `start`."""
         return self._server.url
 
     @property
@@ -209,7 +209,10 @@ class Viewer:
     # --- content from the rest of the program ------------------------------------------------------------------
 
     def attach_joint_panel(self, panel: JointPanel | None) -> None:
-        """Show the sliders of a node that moves joints. None removes the sliders."""
+        """Show the sliders of a node that moves joints.
+
+        None removes the sliders.
+        """
         self.add_feature(JointsFeature).attach(panel)
 
     def attach_recording(self, playback: Playback, bag: BagReader) -> None:
@@ -255,7 +258,10 @@ class Viewer:
         self._receivers.update((message, feature.receive) for message in (*feature.receives, *receives))
 
     def show_diagnostics(self, diagnostics: Sequence[Diagnostic]) -> None:
-        """Replace the current findings about the description. The new list may be empty."""
+        """Replace the current findings about the description.
+
+        The new list may be empty.
+        """
         for feature in self._features:
             feature.diagnostics_changed(diagnostics)
 

@@ -14,7 +14,7 @@ from linkwright.vision.detections import Detections
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """The limits that detections must satisfy. The defaults are those of yolo_ros.
+    """The limits that detections must satisfy, with the defaults of yolo_ros.
 
     Attributes:
         threshold: the minimum score.
@@ -30,12 +30,12 @@ class Limits:
 
 
 class Detector(ABC):
-    """An object detector. It is not thread-safe: only one thread at a time may call it."""
+    """An object detector, which only one thread at a time may call."""
 
     @property
     @abstractmethod
     def names(self) -> tuple[str, ...]:
-        """The names of its classes, or an empty tuple if they depend on the image, such as the texts of QR codes."""
+        """The class names, or an empty tuple if they depend on the image, as for QR codes."""
 
     @property
     def notes(self) -> tuple[Phrase, ...]:

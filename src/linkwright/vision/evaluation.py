@@ -1,4 +1,4 @@
-"""The evaluation of detectors: average precision as COCO defines it, and confusion of classes."""
+"""The evaluation of detectors: COCO's average precision, and the confusion matrix."""
 
 from __future__ import annotations
 
@@ -150,7 +150,7 @@ def evaluate(names: Sequence[str], truth: Sequence[GroundTruth], predictions: Se
 def best_f1_threshold(names: Sequence[str], truth: Sequence[GroundTruth], predictions: Sequence[Detections]) -> float:
     """Return the score threshold at which F1 over all classes is greatest.
 
-    The arguments have the meaning that they have in `evaluate`.
+    For the arguments, see `evaluate`; `found` are the predictions.
 
     Returns:
         A score between 0.05 and 0.95; 0.5 if no object was found.
@@ -205,7 +205,7 @@ def _renumber_classes(class_numbers: dict[str, int], detections: Detections) -> 
 def _average_precisions(
     place: int, truth: Sequence[GroundTruth], predictions: Sequence[_SortedDetections]
 ) -> NDArray[np.float64] | None:
-    """Return the average precisions of one class, shape (overlaps,), or None if it has no object."""
+    """Return the average precisions of a class, shape (overlaps,), or None if it has no object."""
     object_count = sum(int(((objects.classes == place) & ~objects.ignored).sum()) for objects in truth)
     if object_count == 0:
         return None
@@ -285,7 +285,7 @@ def _confusion_matrix(
         ignored_objects = objects.selected(objects.ignored)
         objects = objects.selected(~objects.ignored)
         overlaps = intersection_over_union(certain.boxes, objects.boxes)
-        # Match objects of the same class first: a correct detection that overlaps another object, too, is right.
+        # Match objects of the same class first: a detection that also overlaps another object is correct.
         same_class_overlaps = overlaps * (certain.classes[:, None] == objects.classes[None])
         matches = _match_objects(same_class_overlaps, _CONFUSION_OVERLAP)
         remaining_overlaps = overlaps.copy()

@@ -1,4 +1,7 @@
-"""The base class of transports. A transport mirrors this process's graph in the background."""
+"""The base class of transports.
+
+A transport mirrors this process's graph in the background.
+"""
 
 from __future__ import annotations
 
@@ -87,7 +90,7 @@ class BackgroundTransport(ABC):
         self._has_left = False
         self._joined_at = 0.0
         self.problem: LinkwrightError | None = None
-        """The reason why the domain could not be joined; None if it was joined, or joining has not ended."""
+        """The reason why the domain could not be joined, or None if it was joined, or joining has not ended."""
         self._join_thread = threading.Thread(target=self._join, name="linkwright-join", daemon=True)
         _open_transports.add(self)
         self._join_thread.start()
@@ -105,7 +108,7 @@ class BackgroundTransport(ABC):
         """Return whether discovery counts as complete.
 
         Args:
-            quiet: the seconds since the last change of the remote graph, or since joining if that is later.
+            quiet: the seconds since the last change to the remote graph, or since joining if that is later.
         """
 
     @property
@@ -215,7 +218,7 @@ class BackgroundTransport(ABC):
         """Withdraw an endpoint that neither sends nor receives."""
         self._mirror(lambda engine: engine.close_endpoint(presence))
 
-    def look_around(self) -> None:  # noqa: B027 - nothing is to be done where all is discovered anyhow
+    def look_around(self) -> None:  # noqa: B027 - not needed if discovery runs continuously
         """Start discovery for the next query, unless discovery runs continuously."""
 
     def remote_nodes(self) -> Sequence[NodeIdentity]:
@@ -227,7 +230,7 @@ class BackgroundTransport(ABC):
         return self._outside.endpoints()
 
     def watch(self, callback: Callable[[], None]) -> None:
-        """Register a callback for changes of remote nodes and endpoints.
+        """Register a callback for changes to remote nodes and endpoints.
 
         The callback may be called from any thread.
         """
@@ -365,10 +368,10 @@ class JoinOptions(TransportOptions, total=False):
     """The options with which a graph joins the network."""
 
     domain_id: int | None
-    """The ROS domain; None for the domain in ROS_DOMAIN_ID."""
+    """The ROS domain, or None for the domain in ROS_DOMAIN_ID."""
 
     environment: Mapping[str, str] | None
-    """The environment variables; those of this process if omitted."""
+    """The environment variables, by default the variables of this process."""
 
 
 def join_with(

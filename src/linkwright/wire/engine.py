@@ -1,4 +1,7 @@
-"""The base class of transport engines. A single thread serves the requests of all threads."""
+"""The base class of transport engines.
+
+A single thread serves the requests of all threads.
+"""
 
 from __future__ import annotations
 

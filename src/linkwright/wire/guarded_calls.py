@@ -11,7 +11,7 @@ R = TypeVar("R")
 
 
 def guarded(call: Callable[[], R], report: Callable[[Exception], object] | None = None) -> R | None:
-    """Call a function. Report an exception instead of raising it.
+    """Call a function, and report an exception instead of raising it.
 
     Args:
         call: the function.

@@ -36,7 +36,7 @@ def middleware(environment: Mapping[str, str] | None = None) -> str:
     """Return the middleware that this process is compatible with: `ZENOH` or `CYCLONE`.
 
     Args:
-        environment: the environment variables; those of this process if omitted.
+        environment: the environment variables; by default, the variables of this process.
     """
     variables = os.environ if environment is None else environment
     requested = variables.get(MIDDLEWARE, "").strip()
@@ -51,7 +51,7 @@ def unavailable_reason(environment: Mapping[str, str] | None = None) -> Phrase:
     Return an empty phrase if it does.
 
     Args:
-        environment: the environment variables; those of this process if omitted.
+        environment: the environment variables; by default, the variables of this process.
     """
     variables = os.environ if environment is None else environment
     if middleware(variables) == ZENOH:

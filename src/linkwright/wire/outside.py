@@ -30,7 +30,10 @@ class Outside(ABC):
         """Return the endpoints of other processes."""
 
     def watch(self, callback: Callable[[], None]) -> None:
-        """Register a callback for changes. The callback runs in the discovery thread."""
+        """Register a callback for changes.
+
+        The callback runs in the discovery thread.
+        """
         self._watchers.append(callback)
 
     def announce(self) -> None:

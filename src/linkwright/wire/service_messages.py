@@ -69,5 +69,8 @@ def _read_or_warn(body: bytes, message_kind: Literal["Request", "Response"], end
 
 
 def to_cdr(message: Any) -> bytes:
-    """Serialize a request or response to CDR with its header. Bytes are returned unchanged."""
+    """Serialize a request or response to CDR with its header.
+
+    Bytes are returned unchanged.
+    """
     return message if type(message) is bytes else serialize(message)

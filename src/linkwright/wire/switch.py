@@ -15,7 +15,7 @@ def is_switched_off(environment: Mapping[str, str] | None = None) -> bool:
     """Return whether communication with other processes is switched off.
 
     Args:
-        environment: the environment variables; those of this process if omitted.
+        environment: the environment variables; by default, the variables of this process.
     """
     variables = os.environ if environment is None else environment
     return variables.get(SWITCH, "1") == "0"

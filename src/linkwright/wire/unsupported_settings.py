@@ -15,7 +15,7 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, phrase
 MIDDLEWARE = "RMW_IMPLEMENTATION"
 SECURITY = ("ROS_SECURITY_ENABLE", "ROS_SECURITY_STRATEGY")
 DISCOVERY_SERVERS = ("ROS_DISCOVERY_SERVER", "ROS2_EASY_MODE")
-"""Variables of Fast DDS; ROS2_EASY_MODE exists since Kilted."""
+"""Variables of Fast DDS. ROS2_EASY_MODE exists since Kilted."""
 
 ZENOH = "rmw_zenoh_cpp"
 CYCLONE = "rmw_cyclonedds_cpp"
@@ -35,7 +35,9 @@ _reported: set[str] = set()
 
 
 def refuse_enforced_security(environment: Mapping[str, str] | None = None) -> None:
-    """Raise an error if security is enforced, because no node may then join the graph without it.
+    """Raise an error if security is enforced.
+
+    No node may join the graph without security then.
 
     Args:
         environment: the environment variables; those of this process if omitted.
@@ -61,7 +63,7 @@ def unsupported_settings(environment: Mapping[str, str] | None = None) -> list[D
     """Return a warning for each setting in the environment that is not supported.
 
     Args:
-        environment: the environment variables; those of this process if omitted.
+        environment: the environment variables; by default, the variables of this process.
     """
     variables = os.environ if environment is None else environment
     warnings = []
@@ -73,8 +75,8 @@ def unsupported_settings(environment: Mapping[str, str] | None = None) -> list[D
                 phrase("ROS_SECURITY_ENABLE is true, but Linkwright has no DDS security: it joins without security"),
                 severity=Severity.WARNING,
                 hint=phrase(
-                    "messages are not encrypted, and nodes with security may refuse them; set "
-                    "ROS_SECURITY_ENABLE=false if this is intended"
+                    "set ROS_SECURITY_ENABLE=false if this is intended: messages are not encrypted, and "
+                    "nodes with security may refuse them"
                 ),
             )
         )
@@ -121,5 +123,8 @@ def new_unsupported_settings(environment: Mapping[str, str] | None = None) -> li
 
 
 def _is_security_enabled(variables: Mapping[str, str]) -> bool:
-    """Return whether rcl would enable security. The variable must have exactly this spelling."""
+    """Return whether rcl would enable security.
+
+    The variable must have exactly this spelling.
+    """
     return variables.get("ROS_SECURITY_ENABLE") == "true"

@@ -1,4 +1,4 @@
-"""The xacro macro language of ros/xacro 2.1, with source positions and a sandbox for expressions."""
+"""The xacro language of ros/xacro 2.1, with source positions and sandboxed expressions."""
 
 from linkwright.loading.deferred import deferred
 from linkwright.loading.lean_typing import TYPE_CHECKING

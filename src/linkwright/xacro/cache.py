@@ -60,7 +60,7 @@ _Form = TypeVar("_Form")
 
 _MAX_CHARACTERS = 1_000_000
 _SIZE_PER_TEXT = 8
-"""The fixed size that each cached text adds to its length; a compiled text is a hundred times as large."""
+"""The fixed size that each cached text adds to its length. A compiled text is a hundred times as large."""
 
 
 class TextCompiler(Generic[_Form]):
@@ -106,7 +106,7 @@ def read_document(path: str, overlay: Overlay | None = None) -> Document:
 
     Args:
         path: the file.
-        overlay: the texts that replace those of files.
+        overlay: the texts that replace the contents of files.
 
     Raises:
         LinkwrightError: see `linkwright.xmltree.parse_file`.

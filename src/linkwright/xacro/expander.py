@@ -7,7 +7,7 @@ includes that contain it.
 A comment directly above a property, macro, argument, include, condition or macro call describes this tag, and is
 removed with it. The same comments are removed as in ros/xacro: all comments above the tag that are separated by blank
 text with at most one newline. A marker is inserted there, at which the next such removal stops. A document has only
-one marker, which moves. The marker is blank text, so its only visible effect is that an element with text and a
+one marker, which moves. The marker is whitespace, so its only visible effect is that an element with text and a
 marker is no longer written on one line.
 """
 
@@ -279,7 +279,7 @@ class Expander:
         return container
 
     def attributes(self, node: Element, scope: Scope) -> dict[str, str]:
-        """Return the evaluated attributes of an element, without those that have the xacro prefix."""
+        """Return the evaluated attributes of an element, without attributes with the xacro prefix."""
         session, plan = self.session, plan_of(node)
         result = plan.attributes.copy()
         for name in plan.evaluated:
@@ -393,7 +393,7 @@ class Expander:
                 continue
             if attributes.setdefault(name, value) != value:
                 message = phrase(
-                    "'{name}' is declared as '{value}' here and as '{attributes}' around it",
+                    "'{name}' is declared as '{value}' here, but as '{attributes}' in an enclosing element",
                     name=name,
                     value=value,
                     attributes=attributes[name],

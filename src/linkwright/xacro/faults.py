@@ -76,7 +76,7 @@ def trail(innermost: Frame | None) -> tuple[Note, ...]:
     for site, same_site_frames in groupby(frames(innermost), key=lambda frame: frame.site):
         same_site = list(same_site_frames)
         if len(notes) == _MAX_NOTES and same_site[0].depth > 1:
-            notes.append(Note(phrase("and {depth} more calls and includes around it", depth=same_site[0].depth)))
+            notes.append(Note(phrase("and {depth} more enclosing calls and includes", depth=same_site[0].depth)))
             break
         note = same_site[0].note()
         if len(same_site) > 1:

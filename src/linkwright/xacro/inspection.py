@@ -40,7 +40,7 @@ def arguments_of(
         path: the file; see `linkwright.xacro.expand`.
         arguments: the values of arguments that may decide which files are included, by name.
         packages: the packages for ``$(find name)``.
-        text: the text to use instead of that of the file.
+        text: the text to use instead of the file's.
         limits: the limits of the expansion.
         root_dir: the base of relative paths.
 
@@ -63,14 +63,14 @@ def explain(
     limits: Limits | None = None,
     root_dir: str | Path | None = None,
 ) -> tuple[Provenance, ...]:
-    """Return the provenance of the links, joints or other elements that have a given name in an expansion.
+    """Return the provenance of the elements of an expansion that have a given name.
 
     Args:
         path: the file; see `linkwright.xacro.expand`.
         name: the value of the attribute ``name``.
         arguments: the values of the arguments, by name.
         packages: the packages for ``$(find name)``.
-        text: the text to use instead of that of the file.
+        text: the text to use instead of the file's.
         limits: the limits of the expansion.
         root_dir: the base of relative paths.
 

@@ -149,7 +149,9 @@ class Budget:
             self._check_clock()
 
     def charge_steps(self, count: int = 2) -> None:
-        """Charge steps of an expression. The default is one iteration of a comprehension.
+        """Charge steps of an expression.
+
+        The default is one iteration of a comprehension.
 
         Raises:
             Fault: XAC603 if there were too many steps, or XAC606 if the expansion took too long.
@@ -183,4 +185,8 @@ class Budget:
     def _check_clock(self) -> None:
         if thread_time() > self._end_time:
             message = phrase("the expansion takes more than {seconds:g} seconds", seconds=self._limits.seconds)
-            raise Fault("XAC606", message, hint=phrase("look for macros or comprehensions that multiply"))
+            raise Fault(
+                "XAC606",
+                message,
+                hint=phrase("look for macros that call each other repeatedly, or for nested comprehensions"),
+            )

@@ -68,7 +68,7 @@ def parse_parameters(text: str) -> tuple[Parameter, ...]:
         else:
             match = bare.match(text, position)
             if match is None:
-                break  # only blanks remain
+                break  # only whitespace remains
             position = match.end()
             parameter = Parameter(match["name"], None, False, match.start("name"), match.end("name"))
         parameters.append(parameter)
@@ -79,8 +79,8 @@ def parse_parameters(text: str) -> tuple[Parameter, ...]:
 def _word_ends(text: str) -> list[int]:
     """Return the end of the word that begins at each offset, or -1 for an unclosed quote.
 
-    A word ends at a blank, but may contain quoted blanks. As in ros/xacro, a quote is closed by the first quote of the
-    same kind after which the word can end. For example, ``'''`` is one word: a quote in quotes.
+    A word ends at whitespace, but may contain quoted whitespace. As in ros/xacro, a quote is closed by the first quote
+    of the same kind after which the word can end. For example, ``'''`` is one word: a quote in quotes.
     """
     ends = [len(text)] * (len(text) + 1)
     ends_after_quotes = {"'": -1, '"': -1}  # the end of a word that continues after the nearest closing quote

@@ -29,7 +29,7 @@ from linkwright.xacro.tags.macro_calls import call_macro
 from linkwright.xmltree import Document, Element, Text
 
 _GAP = "\0"
-"""Name of the attribute, and content of the text, that mark a gap; XML allows neither."""
+"""Name of the attribute, and content of the text, that mark a gap. XML allows neither."""
 _DEFINITION_TAGS = frozenset({"xacro:arg", "xacro:insert_block", "xacro:macro", "xacro:property"})
 _FIXED_SUBSTITUTION = lazy_pattern(r"\$\((?:find|env|optenv|cwd|dirname)\b[^()$]*\)")
 """Substitutions whose values do not depend on properties or arguments."""
@@ -37,7 +37,7 @@ _DECLARING_TAGS = frozenset({"xacro:arg", "xacro:include", "xacro:macro", "xacro
 _SELF_CONTAINED_CODES = frozenset({"XAC101", "XAC102", "XAC301", "XAC304", "XAC407", "XAC412"})
 """Codes of mistakes in the text of a tag or expression, which do not depend on the values of names."""
 _DEFINITION_CODES = frozenset({"XAC402", "XAC403", "XAC404", "XAC405", "XAC408", "XAC409"})
-"""Codes of mistakes in a call that the macro definition may have caused; only the first such call is reported."""
+"""Codes of mistakes in a call that the macro definition may have caused. Only the first such call is reported."""
 _SCOPED_PROPERTY = lazy_pattern(r"""<xacro:property\s[^>]*?\bscope\s*=""")
 
 

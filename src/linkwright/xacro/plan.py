@@ -20,10 +20,10 @@ _DECLARATION = "xmlns:xacro"
 _EVALUATE_COMMENTS = "xacro:eval-comments"
 _EVALUATE_COMMENTS_OFF = "xacro:eval-comments:off"
 _MAX_LOOKAHEAD_DEPTH = 100
-"""The number of nesting levels that a plan covers; deeper elements are planned when the walk reaches them."""
+"""The number of nesting levels that a plan covers. Deeper elements are planned when the walk reaches them."""
 _UNKNOWN_OFFSET = -1
 _CHANGE_MARKERS = ("$", PREFIX, _DECLARATION, "&", "<!", "<?")
-"""Strings of which any element that may change contains at least one; an unchanged element may contain them, too."""
+"""Strings of which any element that may change contains at least one. An unchanged element may contain them, too."""
 
 KEEP, COPY, ELEMENT, TAG, TEXT, COMMENT, SWITCH = range(7)
 """Kinds of steps, in this order: keep nodes unchanged; copy elements and keep the nodes between them; expand an
@@ -74,7 +74,7 @@ class Plan(CachedText):
 
 
 def plan_document(document: Document) -> None:
-    """Record the end offset of a document's root element, so that its plan can be derived from its text.
+    """Record the end offset of a document's root, to derive the root's plan from the text.
 
     Documents with a document type declaration, and documents created by a program, are skipped.
     """

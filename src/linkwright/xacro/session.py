@@ -101,7 +101,7 @@ class Session:
         self.globals = Scope(None, self, symbols.global_names(self))
 
     def close(self) -> None:
-        """Break the reference cycle between the session and its scopes, so that memory is freed immediately."""
+        """Break the reference cycle of the session and its scopes, which frees memory at once."""
         self.globals.values.clear()
         del self.globals
 
@@ -158,13 +158,13 @@ class Session:
         provided_names = self.globals.values
         python = provided_names["python"].values
         if name in ("true", "false"):
-            hint: Phrase | None = phrase("write {name}", name=name.capitalize())
+            hint: Phrase | None = phrase("write {text}", text=name.capitalize())
         elif name in python:
             hint = phrase("write python.{name}", name=name)
         elif name in self.arguments:
             hint = phrase("'{name}' is an argument: write $(arg {name})", name=name)
         elif name.lower() in provided_names:
-            hint = phrase("write {name}", name=name.lower())
+            hint = phrase("write {text}", text=name.lower())
         elif f"**{name}" in set(environment.blocks()):
             hint = phrase(
                 '\'{name}\' is defined without a value; write <xacro:property name="{name}" value="..."/>', name=name
@@ -295,7 +295,7 @@ class Session:
     # findings
 
     def warn_of_unused_arguments(self) -> None:
-        """Warn about passed arguments that no file declares or uses, because they are probably misspelt."""
+        """Warn about passed arguments that no file declares or uses: they may be misspelt."""
         self.current_node = self.frame = None
         for name in self.arguments:
             if name not in self.known_arguments:
@@ -321,7 +321,7 @@ class Session:
         Args:
             code: the code of the diagnostic.
             message: the message of the diagnostic.
-            span: the location, or None for that of the text being evaluated.
+            span: the location, or None for the location of the text being evaluated.
             hint: how to fix the problem.
             severity: the severity of the diagnostic.
             called: the function that the finding is about, if the text being evaluated calls one.
@@ -377,8 +377,8 @@ class Session:
         def warning(*arguments: Any, **named: Any) -> Any:
             self.warn(
                 "XAC507",
-                phrase("calling '{bare}' by its bare name is deprecated", bare=bare),
-                hint=phrase("write {better}", better=better),
+                phrase("calling '{name}' by its bare name is deprecated", name=bare),
+                hint=phrase("write {text}", text=better),
                 called=bare,
             )
             return function(*arguments, **named)
@@ -404,7 +404,7 @@ def _check_characters(text: str) -> None:
     found = None if text.isprintable() else re.search(_NOT_XML, text)
     if found:
         message = phrase("the value contains a character that XML cannot represent: U+{ord:04X}", ord=ord(found[0]))
-        raise Fault("XAC206", message, hint=phrase("'\\' in a string begins an escape; write '\\\\' for a backslash"))
+        raise Fault("XAC206", message, hint=phrase("write '\\\\' for a backslash: '\\' in a string begins an escape"))
 
 
 def _yaml_fault(path: str, text: str, error: YamlError) -> Fault:

@@ -75,7 +75,7 @@ def decoded(data: bytes, name: str) -> Decoded:
 
 
 def unsaved(text: str, name: str) -> Decoded:
-    """Return a text that was not read from a file, such as an unsaved text, as a `Decoded` in UTF-8.
+    """Return a text that was not read from a file as a `Decoded` in UTF-8.
 
     Raises:
         LinkwrightError: XML106 if the text is a Git LFS pointer.
@@ -123,7 +123,7 @@ def _decode(data: bytes, encoding: str, name: str, reason: Phrase) -> Decoded:
                 phrase("byte 0x{data:02x} is not valid {encoding}", data=data[error.start], encoding=encoding.upper()),
                 span=source.span(len(valid_text)),
                 hint=phrase(
-                    "the file is read as {encoding}, because {reason}; save it as UTF-8",
+                    "save the file as UTF-8; it is read as {encoding}, because {reason}",
                     encoding=encoding.upper(),
                     reason=reason,
                 ),

@@ -128,14 +128,16 @@ class _Fault:
             return self._diagnostic(
                 "XML207",
                 phrase("there is content after the end of the root element"),
-                hint=phrase("an XML file has exactly one root element"),
+                hint=phrase("keep one root element: an XML file has exactly one"),
             )
         if code == _MISPLACED_DECLARATION:
             message = phrase("the XML declaration '<?xml' must be at the very start of the file")
             return self._diagnostic("XML206", message, 5, hint=phrase("remove everything before it"))
         if code == _NO_ELEMENT:
             return self._diagnostic(
-                "XML206", phrase("there is no root element"), hint=phrase("a robot starts with <robot name=...>")
+                "XML206",
+                phrase("there is no root element"),
+                hint=phrase("add a root element, such as <robot name=...>"),
             )
         if code == _UNCLOSED_CDATA:
             start = self._text.rfind("<![CDATA[", 0, self._offset)
@@ -315,7 +317,7 @@ class _Fault:
         if self._character != "<" or "<!ENTITY" not in self._text or not self._preceding_text.rstrip().endswith(">"):
             return None
         hint = phrase("check the entities that the document declares")
-        return self._diagnostic("XML206", phrase("this is not well-formed once its entities are expanded"), hint=hint)
+        return self._diagnostic("XML206", phrase("this is not well-formed after its entities are expanded"), hint=hint)
 
     def _less_than_in_tag(self) -> Diagnostic | None:
         if self._character != "<":
@@ -341,7 +343,7 @@ class _Fault:
         if bare_attribute is None:
             return None
         message = phrase("the attribute '{bare}' has no value", bare=bare_attribute[1])
-        hint = phrase('write {bare}="..."', bare=bare_attribute[1])
+        hint = phrase('write {name}="..."', name=bare_attribute[1])
         return self._diagnostic(
             "XML206", message, len(bare_attribute[1]), at=self._offset - len(bare_attribute[0]), hint=hint
         )

@@ -24,7 +24,7 @@ _SPACED_TAG_END, _TIGHT_TAG_END = lazy_pattern(r"[^\S\n]/>"), lazy_pattern(r"\S/
 
 
 class TextEdit(NamedTuple):
-    """A replacement of the lines from `first` up to but excluding `last`, counted from 0, by `lines`."""
+    """A replacement of the lines from `first` up to but excluding `last`, counted from 0."""
 
     first: int
     last: int
@@ -91,7 +91,7 @@ def format_text(text: str, name: str, style: Style = Style()) -> str:  # noqa: B
     formatted = byte_order_mark + layout.document(_nodes(body))
     if not _are_equal(_top_nodes(original), _top_nodes(parse(formatted, name))):
         message = phrase("'{file}' cannot be formatted without changing its meaning", file=name)
-        raise LinkwrightError(Diagnostic("XML303", message, hint=phrase("please report this file as an error")))
+        raise LinkwrightError(Diagnostic("XML303", message, hint=phrase("report this file as a bug")))
     return formatted
 
 

@@ -98,7 +98,7 @@ class Element:
         offset: the character offset of the element's ``<`` in the source.
         origin: the chain of macro calls and includes that produced the element in an expansion, or None.
         plan: the plan of the xacro room for expanding the element, else None. Before changing an element of an expanded
-            tree, set it to None, also in all enclosing elements.
+            tree, set it to None here and in all enclosing elements.
     """
 
     __slots__ = ("attributes", "children", "offset", "origin", "plan", "source", "tag")
@@ -123,7 +123,7 @@ class Element:
         return f"<{self.tag} {self.attributes}>"
 
     def elements(self, tag: str | None = None) -> Iterator[Element]:
-        """Yield the child elements in document order, all or those with one tag."""
+        """Yield the child elements in document order, or only the children with a tag."""
         for child in self.children:
             if isinstance(child, Element) and (tag is None or child.tag == tag):
                 yield child
@@ -148,13 +148,13 @@ class Element:
         return "".join(child.data for child in self.children if isinstance(child, Text))
 
     def span(self) -> Span | None:
-        """Return the location of the ``<`` and the name in the start tag, or None if the node has no source."""
+        """Return the location of ``<`` and the name in the start tag, or None if the node has no source."""
         if self.source is None:
             return None
         return self.source.span(self.offset, self.offset + 1 + len(self.tag))
 
     def attribute_span(self, name: str) -> Span | None:
-        """Return the location of an attribute's value in the source, or None if the node has no source.
+        """Return an attribute value's location in the source, or None if the node has no source.
 
         If the attribute is absent or was created by a program, the location of the element is returned.
         """

@@ -74,7 +74,7 @@ def indentation(text: str, offset: int) -> str | None:
 
 
 def find_start_tag(element: Element) -> StartTag | None:
-    """Return the start tag of an element in its source, or None if the source does not contain it.
+    """Return an element's start tag in its source, or None if it is not in the source.
 
     The source does not contain elements that a program or an entity created.
     """

@@ -32,7 +32,7 @@ def attribute_value_range(text: str, offset: int, name: str) -> tuple[int, int] 
 
 
 def attribute_name_range(text: str, offset: int, name: str) -> tuple[int, int] | None:
-    """Return the character offsets of an attribute's name, or None if the tag does not have the attribute.
+    """Return the character offsets of an attribute's name, or None if it is absent.
 
     `offset` is the character offset of the start tag's ``<``.
     """
@@ -55,7 +55,7 @@ _read_last: tuple[str, int, _Ranges] = ("", -1, {})
 def _attributes(text: str, offset: int) -> _Ranges:
     """Return the ranges of each attribute's name and value in a start tag, by name.
 
-    `offset` is that of the start tag's ``<``.
+    `offset` is the offset of the start tag's ``<``.
     """
     global _read_last  # noqa: PLW0603 - one tuple, so that threads see it whole
     last_text, last_offset, ranges = _read_last

@@ -113,7 +113,11 @@ def parse_file(path: str | Path) -> Document:
 
 
 def read_bytes(path: str | Path) -> bytes:
-    """Return the bytes of a file, or raise a `LinkwrightError` (XML101, XML102, XML103) with the reason."""
+    """Return the bytes of a file.
+
+    Raises:
+        LinkwrightError: XML101, XML102 or XML103, with the reason.
+    """
     try:
         data = read_file(path, MAX_TEXT_BYTES)
     except FileNotFoundError:
@@ -419,7 +423,7 @@ def _to_character_offsets(document: Document, data: bytes) -> None:
 
 
 class Overlay:
-    """Replacement texts of files, such as unsaved texts in an editor, and access to files with or without one.
+    """Replacement texts of files, such as unsaved texts in an editor, and access to files.
 
     Args:
         texts: the replacement texts by path. The files need not exist.

@@ -2,7 +2,7 @@
 
 TinyXML2 does not support namespaces, and ends a comment only at ``-->``. It skips text before the root element and
 elements after the root, and stops at a closing tag without an open element. It also accepts an ``&`` that does not
-begin an entity, a ``<`` in a value, attributes without a blank between them, control characters, and a second XML
+begin an entity, a ``<`` in a value, attributes without a space between them, control characters, and a second XML
 declaration directly after the first. Such files work for their users, so they are accepted with a warning.
 
 expat refuses some characters that TinyXML2 accepts. Before parsing, a repair replaces them with the same number of
@@ -47,7 +47,7 @@ def stand_in(character: str) -> str:
 
 
 def can_stand_in(text: str) -> bool:
-    """Return whether substitutes can be used in a text, because it does not contain any of them yet."""
+    """Return whether substitutes can be used in a text: it contains none of them yet."""
     return _ANY_SUBSTITUTE.search(text) is None
 
 
@@ -79,7 +79,7 @@ def _replace_less_than(text: str, at: int) -> str:
 
 
 def _insert_blanks(text: str, at: int) -> str:
-    """Return the text with a blank inserted between adjacent attributes.
+    """Return the text with a space inserted between adjacent attributes.
 
     To keep positions valid, the closing quote overwrites the last character of the value.
     """
@@ -134,7 +134,7 @@ def _values(text: str) -> Iterator[_Value]:
 
 
 def _values_without_blank_after(text: str) -> Iterator[_Value]:
-    """Yield each value that is followed by another attribute without a blank between them."""
+    """Yield each value that is followed by another attribute without whitespace between them."""
     previous_value: _Value | None = None
     for value, blanks in _values_and_blanks(text):
         if previous_value is not None and previous_value.tag == value.tag and not blanks:
@@ -249,12 +249,12 @@ def _tolerate_ampersands(source: SourceText, read_as: str) -> tuple[str, _Mistak
 
 
 def _with_blank_group(text: str, match: re.Match[str]) -> str:
-    """Return the text with the first group of a match replaced by blanks."""
+    """Return the text with the first group of a match replaced by spaces."""
     return text[: match.start(1)] + blank_out(match[1]) + text[match.end(1) :]
 
 
 def blank_out(text: str) -> str:
-    """Return a text with all characters replaced by blanks, except whitespace and line endings.
+    """Return a text with all characters except whitespace replaced by spaces.
 
     Positions in the rest of a file stay valid.
     """
@@ -312,14 +312,14 @@ def _repair_text(source: SourceText, error: LinkwrightError, text: str) -> str:
 def _ignored_content_warning(source: SourceText, end: int, readers: Phrase) -> Diagnostic:
     """Return the warning about content after the root."""
     message = phrase("there is content after the end of the root element")
-    hint = phrase("an XML file has exactly one root element")
+    hint = phrase("keep one root element: an XML file has exactly one")
     return Diagnostic(
         _AFTER_ROOT_CODE, message, source.span(end, end + 1), Severity.WARNING, (Note(readers),), hint, source
     )
 
 
 def _end_of_root(diagnostic: Diagnostic, text: str) -> int | None:
-    """Return the offset at which ignored content after the root may begin, or None for any other error."""
+    """Return the offset at which content after the root may begin, or None for other errors."""
     if diagnostic.span is None or diagnostic.source is None:
         return None
     offset = diagnostic.source.offset(diagnostic.span.line, diagnostic.span.column)

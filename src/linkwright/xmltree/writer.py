@@ -53,7 +53,7 @@ def write_element(element: Element, depth: int = 0) -> str:
 
 
 def strip_mixed_text(root: Element) -> Element:
-    """Return a copy of an element with surrounding whitespace removed from texts next to elements.
+    """Return a copy of an element with whitespace removed around texts next to elements.
 
     Without this, each write would add whitespace to such texts.
     """
@@ -118,7 +118,7 @@ def _write_nodes(nodes: Iterable[Node], write_text: Callable[[str], None], inden
 
 
 def _text_of_original(copy: LazyCopy, indent: str) -> str:
-    """Return the text of a lazy copy: the text of its original, with the indentation of the copy."""
+    """Return the text of a lazy copy: its original's text, with the copy's indentation."""
     cache, original = copy.plan, copy.original
     if isinstance(cache, CachedText) and cache.written is not None and cache.written[0] == indent:
         return cache.written[1]

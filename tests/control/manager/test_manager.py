@@ -294,6 +294,6 @@ async def test_what_is_asynchronous_in_ros_runs_in_the_loop_which_is_said(made, 
     logged = [each for each in logged("INFO") if "is_async" in each]
     assert (
         logged[0]
-        == "hardware 'arm' requests is_async, which is not supported, so it is read and written in the control loop"
+        == "hardware 'arm': is_async is not supported, so the hardware is read and written in the control loop"
     )
     assert len(logged) == (1 if distribution == "humble" else 2)

@@ -64,8 +64,8 @@ def test_truth_values_and_texts_that_look_like_numbers():
         ("position[0] > %1", "there is no parameter %1"),
         ("(position[0] > 1", "'\\)' is missing before 'its end'"),
         ("position[0] BETWEEN 1 OR 2", "'AND' is missing before 'OR'"),
-        ("position[0] > 1 1", "'1' is one too many"),
-        ("position[0] ! 1", "'! 1' cannot be understood"),
+        ("position[0] > 1 1", "unexpected '1'"),
+        ("position[0] ! 1", "'! 1' cannot be parsed"),
         ("name[0] MATCH '('", "'\\(' is not a regular expression"),
     ],
 )

@@ -55,7 +55,7 @@ def test_they_are_kept_and_the_terminal_says_where(
     assert running.end(number)[0] == 128 + number
     (file,) = kept.iterdir()
     assert [display.name for display in RvizConfig.load(file).walk()] == ["Grid", "Added"]
-    text = f"unsaved changes of '{config}' are stored in '{file}': open that file in the page, or with 'rviz2"
+    text = f"unsaved changes to '{config}' are stored in '{file}': open that file in the page, or with 'rviz2"
     assert text in running.err
     again = start(tmp_path / "a.launch.py")
     again.until("Robot initialized")

@@ -186,7 +186,7 @@ CASES = [
         "no action has the tag 'argg'",
         "did you mean 'arg'?",
     ),
-    ('<launch><arg nam="x"/></launch>', "LAUNCH117", (1, 9), "'arg' needs an attribute 'name'", "it has 'nam'"),
+    ('<launch><arg nam="x"/></launch>', "LAUNCH117", (1, 9), "'arg' needs an attribute 'name'", "instead of 'nam'"),
     ('<launch><arg name="x" defalt="2"/></launch>', "LAUNCH116", (1, 23), "no attribute 'defalt'", "mean 'default'?"),
     ('<launch><let name="a" value="b$(vr x)"/></launch>', "LAUNCH119", (1, 31), "substitution 'vr'", "mean 'var'?"),
     ('<launch><group scoped="maybe"/></launch>', "LAUNCH118", (1, 24), "'maybe', which is not a boolean", None),
@@ -194,7 +194,7 @@ CASES = [
     ('<launch><log level="lod" message="a"/></launch>', "LAUNCH150", (1, 21), "no log level 'lod'", None),
     ("<lunch/>", "LAUNCH109", (1, 1), "must be 'launch', not 'lunch'", None),
     ('<launch>\n<arg name="x">\n</launch>', "XML", (3, 1), "", None),
-    ("launch:\n- arg: {nam: x}\n", "LAUNCH117", (2, 3), "'arg' needs an attribute 'name'", "it has 'nam'"),
+    ("launch:\n- arg: {nam: x}\n", "LAUNCH117", (2, 3), "'arg' needs an attribute 'name'", "instead of 'nam'"),
     ("launch:\n- arg: {name: x, defalt: y}\n", "LAUNCH116", (2, 18), "'arg' has no key 'defalt'", "'default'?"),
     ("launch:\n- arg:\n    name: x\n   default: 3\n", "LAUNCH108", (4, 4), "is not valid YAML", None),
     (

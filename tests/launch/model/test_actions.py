@@ -291,7 +291,7 @@ class TestIncludeLaunchDescription:
         done = await launch(IncludeLaunchDescription(str(inner), launch_arguments=[("sped", "1")]))
         text = f"the included launch file '{inner}' requires argument 'speed', which is not given"
         assert f"error[LAUNCH114]: {text}" in done.err
-        assert "'sped' was passed; is its name misspelt?" in done.err
+        assert "did you mean 'speed' instead of 'sped'?" in done.err
         assert done.messages == []
 
     @pytest.mark.parametrize(

@@ -205,7 +205,7 @@ class TestProcessNodes:
             ("amr", "tell", "package 'amr' of node executable 'tell' was not found", "did you mean 'arm'?"),
             ("robot_state_publishr", "x", "package 'robot_state_publishr'", "did you mean 'robot_state_publisher'"),
             ("rviz2", "rviz", "package 'rviz2' has no executable 'rviz'", "did you mean 'rviz2'?"),
-            ("my_robot_description", "x", "has no executable 'x'", "name it in entry_points of setup.py"),
+            ("my_robot_description", "x", "has no executable 'x'", "add it to entry_points in setup.py"),
         ],
     )
     async def test_unknown_executables(

@@ -230,7 +230,7 @@ def test_mistakes_are_told(tmp_path):
     assert outcomes(output) == {"failed": 2, "errors": 4, "skipped": 1, "warning": 1}, output
     for text in (
         "launch fixture 'nothing': its value must be either a launch description or",
-        "launch fixture 'two': only one ReadyToTest action",
+        "launch fixture 'two': it may contain only one ReadyToTest action",
         "launch fixture 'never': the launch ended before it was ready to test",
         "must stop iteration after yielding once",
         "must not be marked with shutdown=True",

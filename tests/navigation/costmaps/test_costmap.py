@@ -32,7 +32,7 @@ def empty(rows: int = 40, columns: int = 60, resolution: float = 0.1) -> Costmap
 def test_a_costmap_has_unturned_bytes():
     with pytest.raises(ValueError, match="int8"):
         Costmap(Grid(cells=np.zeros((2, 2), np.int8), resolution=0.1))
-    with pytest.raises(ValueError, match="turned by"):
+    with pytest.raises(ValueError, match="yaw 0, not"):
         Costmap(Grid(cells=np.zeros((2, 2), np.uint8), resolution=0.1, yaw=0.5))
 
 

@@ -215,7 +215,7 @@ async def test_the_threshold_is_that_of_the_node_that_detects(name):
 
 @pytest.mark.parametrize(
     ("parameters", "level", "words"),
-    [({}, "ok", "has no parameter 'threshold'"), ({"threshold": "much"}, "warn", "refuses 'threshold'")],
+    [({}, "ok", "has no parameter 'threshold'"), ({"threshold": "much"}, "warn", "rejects 'threshold'")],
 )
 async def test_other_nodes_detections_are_filtered_in_the_page_and_that_is_told(parameters, level, words):
     async with world(config("linkwright/Detections", ", Detections Topic: {Value: /found}")) as w:
@@ -233,7 +233,7 @@ async def test_a_threshold_that_the_node_refuses_and_one_without_a_node():
         node = detecting(w, threshold=0.5)
         node.add_on_set_parameters_callback(lambda _: SetParametersResult(False, "never"))
         display.set_property(("Threshold",), 0.6)
-        await eventually(lambda: "refuses 'threshold': never" in w.status("Detections")["Threshold"][1])
+        await eventually(lambda: "rejects 'threshold': never" in w.status("Detections")["Threshold"][1])
         assert node.get_parameter("threshold").value == 0.5
 
 

@@ -203,7 +203,7 @@ LOST = "<link name='l'><pose relative_to='x'/></link>"
     [
         ("<sdf", "<world>:1:1: this tag has no closing '>'"),
         ("<robot name='r'/>", "the root element is <robot>, not <sdf>"),
-        ("<sdf version='1.6'/>", "<sdf> has neither a world nor a model in it"),
+        ("<sdf version='1.6'/>", "<sdf> contains neither a world nor a model"),
         (f"<sdf version='1.6'><model name='m'>{LOST}</model></sdf>", "'x' cannot be determined"),
     ],
 )

@@ -111,7 +111,7 @@ def test_a_size_is_that_of_collision_visual_and_inertia():
 
 @pytest.mark.parametrize("size", [(1, 1), (1, 1, 0), (1, 1, -1), (1, 1, float("nan")), ()])
 def test_what_is_no_size_is_refused(size):
-    with pytest.raises(EditError, match="is not a valid size of a box"):
+    with pytest.raises(EditError, match="is not a valid size for a box"):
         change(world_text(PLAIN), [Change("box", size=size)])
 
 

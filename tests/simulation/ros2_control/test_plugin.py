@@ -264,7 +264,7 @@ async def test_a_vendors_copy_of_the_plugin_is_told_of_once(file):
         logged = [each.text for each in log if "is simulated as" in each.text]
     assert logged == [
         (
-            "'libvendor_ros2_control.so' is simulated as 'ign_ros2_control-system', because its plugin name "
-            "is a class of that library"
+            "'libvendor_ros2_control.so' is simulated as 'ign_ros2_control-system', because its plugin class "
+            "belongs to 'ign_ros2_control-system'"
         )
     ]

@@ -67,7 +67,7 @@ async def test_nobody_says_anything_and_it_stops(stage, talk):
     assert robot.speed == (0.2, 0.0, 0.0)
     await stage.clock.advance(0.2)
     assert robot.speed == (0.0, 0.0, 0.0)
-    assert robot.said["response"][-1] == "I hear nothing, so I stop"
+    assert robot.said["response"][-1] == "I hear nothing, so I am stopping"
 
 
 def travelled(robot):
@@ -127,7 +127,7 @@ async def test_who_is_stuck_stops_and_says_so(stage, talk):
     await robot.type("forward one metre")
     await stage.clock.advance(30.0)
     assert robot.speed == (0.0, 0.0, 0.0)
-    assert robot.said["response"][-1] == "I am stuck, so I stop"
+    assert robot.said["response"][-1] == "I am stuck, so I am stopping"
 
 
 async def test_faster_slower_and_a_speed(talk):
@@ -310,7 +310,7 @@ async def test_it_stops_when_the_microphone_is_gone(engine, stage, talk):
     robot.mouth.destroy_node()
     await stage.clock.advance(1.0)
     assert robot.speed == (0.0, 0.0, 0.0)
-    assert robot.said["response"][-1] == "the audio source stopped, so I stop"
+    assert robot.said["response"][-1] == "the audio source is gone, so I am stopping"
 
 
 async def test_an_engine_that_is_not_there_ends_the_node(engine, talk, logged):
@@ -438,7 +438,7 @@ async def test_goals_are_canceled(stage, talk, tmp_path, text):
 
 async def test_without_a_server_it_says_so(talk, tmp_path):
     robot = talk(commands_file=commands(tmp_path, PLACES))
-    assert await robot.type("go to the kitchen") == "I cannot: no node serves 'navigate_to_pose'"
+    assert await robot.type("go to the kitchen") == "I cannot do it: no node serves 'navigate_to_pose'"
 
 
 async def test_what_a_service_answers_is_said(stage, talk):
@@ -458,7 +458,7 @@ async def test_a_service_that_only_some_commands_need_is_not_waited_for(stage, t
     robot = talk()
     await stage.graph.settle()
     assert [client for client in clients(stage) if "/_action/" not in client] == []
-    assert await robot.type("what do you see") == "I cannot: no node serves '/vision/describe/en'"
+    assert await robot.type("what do you see") == "I cannot do it: no node serves '/vision/describe/en'"
     kind = get_service("std_srvs/srv/Trigger")
     stage.node.create_service(kind, "/vision/describe/en", lambda request, response: kind.Response(True, "a red ball"))
     await robot.type("what do you see")
@@ -468,7 +468,7 @@ async def test_a_service_that_only_some_commands_need_is_not_waited_for(stage, t
 
 async def test_a_service_of_another_type_is_not_called(stage, talk):
     stage.node.create_service("std_srvs/srv/Empty", "/vision/describe/en", lambda request, response: response)
-    assert await talk().type("what do you see") == "I cannot: no node serves '/vision/describe/en'"
+    assert await talk().type("what do you see") == "I cannot do it: no node serves '/vision/describe/en'"
 
 
 LAUNCH = """

@@ -191,7 +191,7 @@ def test_labels_of_a_file_go_before_those_of_the_network(tmp_path, image):
 def test_classes_without_names_are_numbered(tmp_path):
     detector = opened(columns(tmp_path / "v8.onnx"))
     assert detector.names == ("0", "1", "2")
-    assert "give a labels file" in str(detector.notes[0])
+    assert "pass a labels file" in str(detector.notes[0])
 
 
 def test_a_device_that_is_not_there_is_told_of(tmp_path):

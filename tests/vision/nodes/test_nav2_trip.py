@@ -70,7 +70,7 @@ def test_a_stop_cancels_the_goal(tmp_path):
         test.tell_to_stop()
         test.advance(0.5)
         assert navigator.canceled == 1
-        assert test.spoken()[-1] == "I stop."
+        assert test.spoken()[-1] == "I am stopping."
 
 
 def test_without_nav2_it_drives_itself(tmp_path):

@@ -19,7 +19,7 @@ def test_it_goes_to_the_ball(tmp_path, ball):
         assert test.advance_until_said("I am at the ball")
         assert test.spoken() == [
             "I am looking for the ball.",
-            "I see the ball and go there.",
+            "I see the ball and am going to it.",
             "I am at the ball.",
         ]
         assert test.distance() - RADIUS == pytest.approx(0.5, abs=0.08)
@@ -74,7 +74,7 @@ def test_it_follows_a_ball_that_is_moved_until_it_is_told_to_stop(tmp_path):
         assert test.distance() - RADIUS == pytest.approx(0.5, abs=0.1)
         test.tell_to_stop()
         test.advance(0.5)
-        assert test.spoken()[-1] == "I stop."
+        assert test.spoken()[-1] == "I am stopping."
         commands = len(test.commands)
         test.delete("ball")
         test.put_ball(3.5, 0.3)

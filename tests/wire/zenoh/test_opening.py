@@ -91,7 +91,7 @@ def test_a_router_says_whom_it_does_not_reach(router_port, silent_port):
     router.kill()
     router.communicate()
     assert "Zenoh router at" in output[0]
-    assert "Not connected yet; retrying: 'nowhere.pem' cannot be read: No such file" in output[1]
+    assert "Not connected yet; retrying: cannot read 'nowhere.pem': No such file" in output[1]
 
 
 def test_addresses_that_are_none_or_unknown():

@@ -1,20 +1,19 @@
 import { commands, type ExtensionContext, languages, type TextDocument, Uri, window, workspace } from "vscode";
-import { Views } from "../page/views.js";
-import { DOCUMENTS, WATCHED } from "../server/documents.js";
+import { DOCUMENTS, OF_ROBOTS, WATCHED } from "../server/documents.js";
 import { offerInstallation } from "./installation.js";
 import { selectedPythonChanged } from "./python.js";
 import { SHOW_REFERENCES, showReferences } from "./references.js";
 import { showRobot } from "./robot.js";
+import { hasRosPackage } from "./ros.js";
 import { Server } from "./server.js";
 import { INTERPRETER } from "./settings.js";
 
 let server: Server | undefined;
 
-/** Called by VS Code with the first document in XML, or the first command. */
+/** Called by VS Code with the first description, in a workspace with a package, or with the first command. */
 export function activate(context: ExtensionContext): void {
   const output = window.createOutputChannel("Linkwright", { log: true });
   const watcher = workspace.createFileSystemWatcher(WATCHED);
-  const views = new Views((line) => output.info(line));
   const running = new Server({ output, watcher }, (search) => {
     void offerInstallation(search, () => void running.restart());
   });
@@ -22,9 +21,8 @@ export function activate(context: ExtensionContext): void {
   context.subscriptions.push(
     output,
     watcher,
-    views,
     commands.registerCommand("linkwright.openInPage", (uri?: Uri | string) =>
-      showRobot(running, views, typeof uri === "string" ? Uri.parse(uri, true) : uri), // a code lens passes a text
+      showRobot(running, typeof uri === "string" ? Uri.parse(uri, true) : uri), // a code lens passes a text
     ),
     commands.registerCommand(SHOW_REFERENCES, showReferences),
     commands.registerCommand("linkwright.restartServer", () => running.restart()),
@@ -38,16 +36,24 @@ export function deactivate(): Promise<void> | undefined {
   return server?.stop();
 }
 
-/** Start the server with the first document that it can read: other documents in XML activate the extension, too. */
+/**
+ * Start the server with the first description, or with the first other file of a ROS package. Without this distinction,
+ * every YAML file of a web program would ask its author to install Linkwright.
+ */
 function startWithFirstDocument(running: Server, context: ExtensionContext): void {
   let isStarted = false;
-  const opened = (document: TextDocument): void => {
-    if (isStarted || languages.match(DOCUMENTS, document) === 0) return;
+  const start = async (): Promise<void> => {
+    if (isStarted) return;
     isStarted = true;
-    void running.start().then(() => followPython(running, context));
+    await running.start();
+    await followPython(running, context);
   };
-  context.subscriptions.push(workspace.onDidOpenTextDocument(opened));
-  workspace.textDocuments.forEach(opened);
+  const opened = async (document: TextDocument): Promise<void> => {
+    if (isStarted || languages.match(DOCUMENTS, document) === 0) return;
+    if (languages.match(OF_ROBOTS, document) > 0 || (await hasRosPackage())) await start();
+  };
+  context.subscriptions.push(workspace.onDidOpenTextDocument((document) => void opened(document)));
+  workspace.textDocuments.forEach((document) => void opened(document));
 }
 
 /** Use another Linkwright when the user chooses another Python. */

@@ -1,20 +1,17 @@
-import { commands, env, ProgressLocation, Uri, window, workspace } from "vscode";
-import type { Views } from "../page/views.js";
+import { commands, env, ProgressLocation, Uri, window } from "vscode";
 import type { Server } from "./server.js";
 
 /** The command of VS Code's integrated browser (1.109 and newer), which is not documented as an interface. */
 const INTEGRATED_BROWSER = "workbench.action.browser.open";
 
 /** Show the robot of a file, by default that of the active editor. */
-export async function showRobot(server: Server, views: Views, chosen: Uri | undefined): Promise<void> {
+export async function showRobot(server: Server, chosen: Uri | undefined): Promise<void> {
   const uri = chosen ?? window.activeTextEditor?.document.uri;
   if (uri?.scheme !== "file") return;
-  const candidate = await server.start();
-  if (candidate === undefined) return; // the user has been told
-  const cwd = workspace.getWorkspaceFolder(uri)?.uri.fsPath;
   const progress = { location: ProgressLocation.Window, title: "Linkwright: loading the robot" };
   try {
-    await open(await window.withProgress(progress, () => views.address(candidate.command, uri.fsPath, cwd)));
+    const address = await window.withProgress(progress, () => server.robotAddress(uri.toString()));
+    if (address !== undefined) await open(address);
   } catch (error) {
     const reason = error instanceof Error ? error.message : String(error);
     const answer = await window.showErrorMessage(`The robot cannot be shown: ${reason}.`, "Show the Output");

@@ -1,10 +1,13 @@
-import type { LanguageClient } from "vscode-languageclient/node";
+import { ExecuteCommandRequest, type LanguageClient } from "vscode-languageclient/node";
 import type { Candidate } from "../server/candidates.js";
 import { extended, shown } from "../server/command.js";
 import { findServer, type Search } from "../server/finder.js";
 import { probe } from "../server/probe.js";
 import { makeClient, type Shared } from "./client.js";
 import { folders, places } from "./places.js";
+
+/** The command of the language server that serves the page of a robot. */
+const SHOW_ROBOT = "linkwright.showRobot";
 
 /** The language server of this window. */
 export class Server {
@@ -24,6 +27,18 @@ export class Server {
       if (this.candidate === undefined) await this.startFound(await this.search(this.notFound));
       return this.candidate;
     });
+  }
+
+  /**
+   * Return the address of the page of a robot, which follows the texts and the cursor of VS Code.
+   *
+   * @returns undefined if there is no server, which the user has been told.
+   */
+  async robotAddress(uri: string): Promise<string | undefined> {
+    await this.start();
+    return this.client?.sendRequest(ExecuteCommandRequest.type, { command: SHOW_ROBOT, arguments: [uri, false] }) as
+      | Promise<string>
+      | undefined;
   }
 
   /** Search for Linkwright again, and start its server anew. */

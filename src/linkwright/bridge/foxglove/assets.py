@@ -17,7 +17,10 @@ _MAX_SIZE = 256 << 20
 
 
 class AssetRefusedError(Exception):
-    """Raised when an asset is refused. The message gives the reason."""
+    """Raised when an asset is refused.
+
+    The message gives the reason.
+    """
 
 
 class Assets:
@@ -54,7 +57,7 @@ class Assets:
                 self._finder = PackageFinder()
             share = self._finder.find(match[1])
             if share is None:
-                raise AssetRefusedError(phrase("there is no package '{found}'", found=match[1]))
+                raise AssetRefusedError(phrase("there is no package '{package}'", package=match[1]))
             return _content(match[1], share, relative)
         except LinkwrightError as error:
             raise AssetRefusedError(error.diagnostics[0].message) from None

@@ -1,4 +1,4 @@
-"""The node foxglove_bridge, which serves the graph to Foxglove and Lichtblick over a WebSocket."""
+"""The node foxglove_bridge: serves the graph to Foxglove and Lichtblick by WebSocket."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _MATCH_ALL = [".*"]
 _MAX_CLIENTS = 32
 _MAX_MESSAGE_SIZE = 16 << 20
 _UPDATE_DELAY_S = 0.1
-"""Seconds for which changes of the graph are collected before clients are notified."""
+"""Seconds for which changes to the graph are collected before clients are notified."""
 
 
 class FoxgloveBridge(SingleNode):

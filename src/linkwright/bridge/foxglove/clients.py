@@ -40,7 +40,10 @@ class Client:
         self._has_messages.set()
 
     def send_data(self, frame: bytes) -> None:
-        """Queue a message of a topic. It is dropped if the client is too slow."""
+        """Queue a message of a topic.
+
+        The oldest messages are dropped if the client is too slow.
+        """
         self._data.append(frame)
         self._queued_bytes += len(frame)
         while self._queued_bytes > self._max_bytes and len(self._data) > 1:

@@ -26,7 +26,7 @@ def connections(node: Node) -> Connections:
 
 
 def update(previous: Connections | None, current: Connections) -> dict[str, Any]:
-    """Return the message with the changes of the connection graph.
+    """Return the message with the changes to the connection graph.
 
     `previous` is None for a client that has no connection graph yet; the message then contains the entire graph.
     """

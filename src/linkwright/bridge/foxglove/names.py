@@ -12,9 +12,9 @@ _MAX_CACHED = 10_000
 
 
 class NameFilter:
-    """A filter of names. One of its regular expressions must match the full name.
+    """A filter of names.
 
-    An expression that takes too long is not used again.
+    One of its regular expressions must match the full name. An expression that takes too long is not used again.
 
     Args:
         parameter: the name of the parameter with the expressions, for log messages.

@@ -50,7 +50,10 @@ class Parameters:
         ]
 
     async def set(self, parameters: Sequence[Mapping[str, Any]]) -> None:
-        """Set parameters. A parameter keeps its value if its node refuses the new one."""
+        """Set parameters.
+
+        A parameter keeps its value if its node refuses the new one.
+        """
         for entry in parameters:
             name = str(entry.get("name", ""))
             node, _, parameter = name.partition(".")

@@ -19,7 +19,10 @@ _PATIENCE = 10.0
 
 
 class CallFailedError(Exception):
-    """Raised when a service call fails. The message gives the reason."""
+    """Raised when a service call fails.
+
+    The message gives the reason.
+    """
 
 
 @dataclass(frozen=True, slots=True)

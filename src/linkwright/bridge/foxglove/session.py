@@ -52,7 +52,7 @@ class Session:
     """Handles the requests of one client.
 
     Attributes:
-        watches_connections: whether the client is notified of changes of the connection graph.
+        watches_connections: whether the client is notified of changes to the connection graph.
         parameters: the names of the parameters whose changes are sent to the client; empty for all parameters, None for
             none.
     """
@@ -67,7 +67,10 @@ class Session:
     _tasks: set[asyncio.Task[None]] = field(default_factory=set)
 
     def receive(self, message: str | bytes) -> None:
-        """Handle a message of the client. An error is sent back to the client."""
+        """Handle a message of the client.
+
+        An error is sent back to the client.
+        """
         try:
             if isinstance(message, bytes):
                 self._frame(read_frame(message))
@@ -81,14 +84,14 @@ class Session:
             self._send_status(f"the message does not follow the protocol: {type(error).__name__}: {str(error)[:200]}")
 
     def graph_changed(self, removed_channels: list[int]) -> None:
-        """Remove the subscriptions to channels that no longer exist, and update the connection graph."""
+        """Remove subscriptions to channels that no longer exist, and update the connection graph."""
         for number, forwarding in list(self._forwardings.items()):
             if forwarding.channel.number in removed_channels:
                 self._forwardings.pop(number).close()
         self.send_connections()
 
     def send_connections(self) -> None:
-        """Send the changes of the connection graph, if the client subscribed to it."""
+        """Send the latest changes to the connection graph, if the client subscribed to it."""
         if self.watches_connections:
             current = connections(self.offer.node)
             if current != self._sent_connections:

@@ -163,5 +163,8 @@ class Publication:
 
 
 def _full_type(name: str) -> str:
-    """Return the full name of a message type. The short form ``std_msgs/String`` is accepted, too."""
+    """Return the full name of a message type.
+
+    The short form ``std_msgs/String`` is accepted, too.
+    """
     return name.replace("/", "/msg/", 1) if name.count("/") == 1 else name

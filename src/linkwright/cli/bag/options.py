@@ -32,7 +32,7 @@ def add_overrides_argument(parser: argparse.ArgumentParser) -> None:
 
 
 def read_overrides(arguments: argparse.Namespace) -> dict[str, QoSProfile]:
-    """Return the QoS profiles by topic from the overrides file, or an empty dict if none is given.
+    """Return the QoS profiles by topic from the overrides file, or an empty dict without one.
 
     Raises:
         LinkwrightError: BAG106, the file cannot be read or is not a valid overrides file.

@@ -150,7 +150,7 @@ def run_record(arguments: argparse.Namespace) -> int:
 
     selection = _selection(arguments)
     if selection.is_empty:
-        print("linkwright bag record: name topics, or -a for all, or --regex", file=sys.stderr)
+        print("linkwright bag record: pass topics, -a for all topics, or --regex", file=sys.stderr)
         return _USAGE_ERROR
     if arguments.storage != "mcap" and arguments.compression_mode == "storage":
         print("linkwright bag record: only MCAP files have chunks to be compressed", file=sys.stderr)

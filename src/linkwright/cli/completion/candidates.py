@@ -33,7 +33,10 @@ def split_line(line: str) -> list[str]:
 
 
 def complete(words: Sequence[str]) -> list[str]:
-    """Return the completions of the last word. The completion `scripts.FILES` represents all file names."""
+    """Return the completions of the last word.
+
+    The completion `scripts.FILES` represents all file names.
+    """
     program, *arguments = words
     *preceding, current = arguments or [""]
     current = current.lstrip("'\"")  # the opening quotation mark of an unfinished string

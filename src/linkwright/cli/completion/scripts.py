@@ -1,4 +1,7 @@
-"""Completion scripts for bash, zsh and fish, which call ``python -m linkwright.cli.completion``."""
+"""Completion scripts for bash, zsh and fish.
+
+They call ``python -m linkwright.cli.completion``.
+"""
 
 from __future__ import annotations
 

@@ -25,7 +25,7 @@ _TOPICS = Kind(
     lambda session: session.node.get_topic_names_and_types(),
     "CLI411",
     lambda topic_name: phrase("Unknown topic '{topic_name}'", topic_name=topic_name),
-    phrase("`linkwright topic list` lists the topics"),
+    phrase("run `linkwright topic list` to list the topics"),
 )
 
 _INFINITE_DURATION_NS = 0x7FFFFFFF_FFFFFFFF

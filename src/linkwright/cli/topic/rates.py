@@ -43,7 +43,7 @@ class Spread:
         return NANOSECONDS_PER_SECOND / self.mean if self.mean > 0 else 0.0
 
     def bounds(self) -> str:
-        """Return the output line of ``topic hz`` and ``topic delay`` with the minimum, maximum and deviation."""
+        """Return the line of ``topic hz`` and ``topic delay`` with minimum, maximum and deviation."""
         return (
             f"\tmin: {self.minimum / NANOSECONDS_PER_SECOND:.3f}s max: {self.maximum / NANOSECONDS_PER_SECOND:.3f}s "
             f"std dev: {self.deviation / NANOSECONDS_PER_SECOND:.5f}s window: {self.count}"

@@ -1,8 +1,8 @@
 """``joint_trajectory_controller/JointTrajectoryController``: motion along trajectories.
 
 Source: ros2_controllers (parameters, topics, action, service, times of commands, tolerances, messages). The controller
-commands the state of the trajectory at the next update, and checks the tolerances against its state at the current
-time.
+commands the point that the trajectory reaches at the next update. It checks the tolerances between the measured state
+and the trajectory's point for the current time.
 """
 
 from __future__ import annotations

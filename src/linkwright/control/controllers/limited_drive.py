@@ -1,6 +1,6 @@
-"""The base class of drives that follow ``~/cmd_vel`` within limits.
+"""The base class of drive controllers that follow ``~/cmd_vel`` within limits.
 
-Source: diff_drive_controller of ros2_controllers, which is also the model of Husarion's mecanum controller.
+Source: diff_drive_controller of ros2_controllers, on which Husarion's mecanum controller is also based.
 """
 
 from __future__ import annotations

@@ -48,7 +48,7 @@ def controller_class(type_name: str) -> type[Controller[Any]]:
     except Exception as error:
         message = phrase("the controller '{name}' cannot be imported", name=type_name)
         hint = phrase(
-            "the Python package '{place}' provides it, but its import fails: {problem}",
+            "fix the Python package '{place}', whose import fails: {problem}",
             place=entry.distribution,
             problem=foreign(error),
         )

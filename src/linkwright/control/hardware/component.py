@@ -133,7 +133,7 @@ def hardware_class(plugin: str) -> type[Hardware] | None:
     except Exception as error:
         message = phrase("the hardware '{name}' cannot be imported", name=plugin)
         hint = phrase(
-            "the Python package '{place}' provides it, but its import fails: {problem}",
+            "fix the Python package '{place}', whose import fails: {problem}",
             place=entry.distribution,
             problem=foreign(error),
         )

@@ -17,7 +17,7 @@ from linkwright.graph.lifecycle.states import ACTIVE, FINALIZED, INACTIVE, UNCON
 from linkwright.graph.log.logger import Logger
 
 HardwareFactory = Callable[[HardwareDescription, Logger], "Hardware | None"]
-"""Creates the hardware of a description; returns None if the type is not supported."""
+"""Creates the hardware of a description, and returns None if the type is not supported."""
 
 N = TypeVar("N", bound=Interface)
 
@@ -81,8 +81,8 @@ class Resources:
             if description.is_async:
                 self._logger.info(
                     phrase(
-                        "hardware '{name}' requests is_async, which is not supported, so it is read and "
-                        "written in the control loop",
+                        "hardware '{name}': is_async is not supported, so the hardware is read and written in "
+                        "the control loop",
                         name=description.name,
                     )
                 )

@@ -151,9 +151,10 @@ class ControllerManager:
         return True
 
     def reload(self, *, force: bool) -> bool:
-        """Unload all controllers, and return whether that succeeded.
+        """Unload all controllers, and return whether that was permitted.
 
-        Nothing is unloaded if a controller is active, unless `force` is set.
+        If a controller is active, nothing is unloaded unless `force` is set. With `force`, active controllers are
+        stopped first.
         """
         active = [controller.name for controller in self._active]
         if active and not force:

@@ -142,7 +142,7 @@ class ManagerProgram(SingleNode):
 
 
 def _drop_empty_arguments(parser: argparse.ArgumentParser, words: Sequence[str]) -> list[str]:
-    """Return command-line arguments without the empty ones that launch files can produce.
+    """Return command-line arguments without the empty arguments of launch files.
 
     Empty values of options are kept.
     """

@@ -40,8 +40,8 @@ def _create_hardware(description: HardwareDescription, logger: Logger) -> Hardwa
     """
     if description.plugin.rpartition("/")[2] in _SIMULATOR_TYPES:
         message = phrase(
-            "hardware '{name}': '{plugin}' only runs in a simulator, where a plugin is the controller manager; "
-            "remove ros2_control_node from the launch file",
+            "hardware '{name}': '{plugin}' only runs in a simulator, which has its own controller "
+            "manager; remove ros2_control_node from the launch file",
             name=description.name,
             plugin=description.plugin,
         )

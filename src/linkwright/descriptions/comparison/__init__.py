@@ -1,6 +1,6 @@
 """The comparison of robot descriptions.
 
-Changes of links, joints, origins, masses and other parts are reported with their locations in both descriptions.
+Changes to links, joints, origins, masses and other parts are reported with their locations in both descriptions.
 """
 
 from linkwright.descriptions.comparison.compare import Comparison, Difference, Kind, Place, Side, Subject, compare

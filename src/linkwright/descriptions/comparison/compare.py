@@ -347,7 +347,7 @@ def _named_differences(
     matches: Mapping[str, str],
     compare_pair: Callable[[_Part, _Part], Iterator[Difference]],
 ) -> Iterator[Difference]:
-    """Yield the differences of links or joints: added, renamed, changed and removed ones."""
+    """Yield the added, renamed, changed and removed links or joints."""
     names = {new_name: old_name for old_name, new_name in matches.items()}
     for name, item in new.items():
         if name not in names:

@@ -74,7 +74,7 @@ class Fact:
 
 @dataclass(slots=True)
 class Block:
-    """Properties that are added or removed together, such as the properties of an ``<inertial>``.
+    """Properties that are added or removed together, such as those in an ``<inertial>``.
 
     Attributes:
         name: the tag; empty for the properties that every joint has.
@@ -228,7 +228,7 @@ def _geometry_fact(geometry: Geometry, shape_element: Element | None) -> Fact:
 def match_blocks(
     old: Sequence[Block], new: Sequence[Block], is_same: Callable[[Block, Block], bool]
 ) -> list[tuple[int | None, int | None]]:
-    """Match visuals or collisions: first equal ones, then by name, then by order.
+    """Match visuals or collisions by equality, then by name, then by order.
 
     Returns:
         Pairs of an index in `old` and an index in `new`. An entry without a match is paired with None.

@@ -43,7 +43,7 @@ class Definitions:
                 self._collect(element)
 
     def of_names(self, text: str, innermost: Frame | None) -> Iterator[Place]:
-        """Yield the texts that may define the names in a text, starting with the texts of enclosing calls.
+        """Yield the texts that may define the names in a text, beginning with enclosing calls.
 
         Args:
             text: a text that contains expressions.

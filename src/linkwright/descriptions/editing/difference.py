@@ -54,7 +54,7 @@ def other_differences(before: Element, after: Element, target: Target) -> Iterat
     Args:
         before: the root of the first document.
         after: the root of the second document.
-        target: the attribute that may differ, and may be new, also with its element.
+        target: the attribute that may differ; the attribute and its element may be new.
 
     Yields:
         The elements of the first document on the path from its root (exclusive) to an element that differs; empty if

@@ -94,7 +94,11 @@ class _Planner:
         path = None if owner is None else path_to(self._now.root, owner)
         if owner is None or path is None or description.name.startswith("<"):
             message = phrase("'{name}' has no {part} to edit", part=request.part, name=request.name)
-            raise EditRefusedError(Diagnostic("EDIT101", message, hint=phrase("the description may have changed")))
+            raise EditRefusedError(
+                Diagnostic(
+                    "EDIT101", message, hint=phrase("select the part again, because the description may have changed")
+                )
+            )
         self._path, self._owner = path, owner
         self._also_changed: dict[str, None] = {}
 
@@ -104,11 +108,11 @@ class _Planner:
         for numbers in (request.xyz, request.rpy):
             if numbers is not None and not all(isfinite(value) and abs(value) <= _MAX_VALUE for value in numbers):
                 raise EditRefusedError(
-                    Diagnostic("EDIT102", phrase("these numbers are not finite, or too large for a robot"))
+                    Diagnostic("EDIT102", phrase("each number must be finite, and at most 1e6 in magnitude"))
                 )
         if request.xyz is not None:
             if request.tag == "axis" and not any(abs(value) > EXACT for value in request.xyz):
-                message = phrase("an axis needs a direction: 0 0 0 has none")
+                message = phrase("an axis cannot be 0 0 0, which has no direction")
                 raise EditRefusedError(Diagnostic("EDIT102", message))
             yield "xyz", list(request.xyz)
         element = self._owner.first(request.tag)
@@ -185,9 +189,9 @@ class _Planner:
     def _try_candidate(
         self, candidate: Candidate, target: Target, index: int, requested: float, attempts: list[Attempt]
     ) -> _EditedDescription | None:
-        """Return the description edited through a candidate, or None if the edit is not suitable.
+        """Try a candidate, and return the edited description, or None if the candidate fails.
 
-        The reason for a failure is appended to `attempts`.
+        The reason is appended to `attempts`, unless the text does not affect the requested number.
         """
         refusal_reason = self._allowed(os.path.realpath(candidate.text_range.source.name))
         if refusal_reason is not None:

@@ -1,6 +1,6 @@
-"""The format with one line per diagnostic: ``FILE:LINE:COLUMN: SEVERITY[CODE] message (hint)``.
+"""The format with one line per diagnostic.
 
-Editors and ``grep`` expect lines that begin in this way.
+A line is ``FILE:LINE:COLUMN: SEVERITY[CODE] message (hint)``. Editors and ``grep`` expect lines that begin in this way.
 """
 
 from __future__ import annotations

@@ -14,7 +14,9 @@ if TYPE_CHECKING:
 
 
 class ActionEndpoint(ABC):
-    """The server or client side of an action. Leaving its ``with`` block destroys it.
+    """The server or client side of an action.
+
+    Leaving its ``with`` block destroys it.
 
     Args:
         node: the node that owns the endpoint.
@@ -48,7 +50,10 @@ class ActionEndpoint(ABC):
 
     @abstractmethod
     def destroy(self) -> None:
-        """Remove the endpoint from the graph. A second call does nothing."""
+        """Remove the endpoint from the graph.
+
+        A second call does nothing.
+        """
 
     def __enter__(self) -> Self:
         return self

@@ -235,9 +235,9 @@ class ActionClient(ActionEndpoint):
         return result_future
 
     def destroy(self) -> None:
-        """Remove the client from the graph. A second call does nothing.
+        """Remove the client from the graph.
 
-        Pending futures stay pending.
+        A second call does nothing. Pending futures stay pending.
         """
         if self._destroyed:
             return

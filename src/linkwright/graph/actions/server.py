@@ -140,7 +140,10 @@ class ActionServer(ActionEndpoint):
         self._execute_callback = execute_callback
 
     def register_goal_callback(self, goal_callback: Callable[[Any], Any] | None) -> None:
-        """Set the callback that decides which goals are accepted. None accepts all goals."""
+        """Set the callback that decides which goals are accepted.
+
+        None accepts all goals.
+        """
         self._goal_callback = goal_callback or default_goal_callback
 
     def register_handle_accepted_callback(
@@ -153,11 +156,17 @@ class ActionServer(ActionEndpoint):
         self._handle_accepted_callback = handle_accepted_callback or default_handle_accepted_callback
 
     def register_cancel_callback(self, cancel_callback: Callable[[ServerGoalHandle], Any] | None) -> None:
-        """Set the callback that decides which goals may be canceled. None refuses all requests."""
+        """Set the callback that decides which goals may be canceled.
+
+        None refuses all requests.
+        """
         self._cancel_callback = cancel_callback or default_cancel_callback
 
     def destroy(self) -> None:
-        """Remove the server from the graph, and drop unfinished goals. A second call does nothing."""
+        """Remove the server from the graph, and drop unfinished goals.
+
+        A second call does nothing.
+        """
         with self._lock:
             if self._destroyed:
                 return

@@ -212,7 +212,7 @@ _FLAGS = {
 def _split_assignment(rule: str, description: Phrase, form: Phrase) -> tuple[str, str]:
     name, separator, value = rule.partition(":=")
     if not separator or not name:
-        raise _error(phrase("'{rule}' is not {what}", rule=rule, what=description), phrase("write {form}", form=form))
+        raise _error(phrase("'{rule}' is not {what}", rule=rule, what=description), phrase("write {text}", text=form))
     return name, value
 
 

@@ -241,7 +241,7 @@ class TopicEndpoint(Endpoint, Generic[M]):
     """A publisher or a subscription.
 
     Attributes:
-        callback_group: the group that decides which callbacks may run at the same time as those of this endpoint.
+        callback_group: the group that decides which other callbacks may run at the same time.
         events: the endpoint's QoS events; None if there is no callback for them.
         is_alive: for a publisher, whether its liveliness has not been lost.
     """

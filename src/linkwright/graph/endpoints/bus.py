@@ -97,7 +97,7 @@ class Transport(Protocol):
         """
 
     def watch(self, callback: Callable[[], None]) -> None:
-        """Register a callback for changes of nodes and endpoints outside.
+        """Register a callback for changes to nodes and endpoints outside.
 
         The transport may call `callback` from any thread.
         """
@@ -118,7 +118,10 @@ E = TypeVar("E", bound=Endpoint)
 
 
 class _Directory(Generic[E]):
-    """The endpoints of one kind by name. Endpoints that share a name are in order of creation."""
+    """The endpoints of one kind by name.
+
+    Endpoints that share a name are in order of creation.
+    """
 
     def __init__(self) -> None:
         self._by_name: dict[str, dict[E, None]] = {}

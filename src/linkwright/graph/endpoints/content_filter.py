@@ -105,7 +105,7 @@ class _Parser:
     def parse(self) -> Condition:
         condition = self._disjunction()
         if self._tokens[0] is not _END:
-            raise self._error(f"'{self._tokens[0].text}' is one too many")
+            raise self._error(f"unexpected '{self._tokens[0].text}'")
         return condition
 
     def _tokenize(self) -> list[_Token]:
@@ -114,7 +114,7 @@ class _Parser:
         while self._text[index:].strip():
             match = _TOKEN.match(self._text, index)
             if match is None or match.lastgroup is None:
-                raise self._error(f"'{self._text[index:].strip()[:10]}' cannot be understood")
+                raise self._error(f"'{self._text[index:].strip()[:10]}' cannot be parsed")
             tokens.append(_Token(match.lastgroup, match[match.lastgroup]))
             index = match.end()
         return [*tokens, _END]
@@ -221,7 +221,7 @@ class _Parser:
             _field_value(self._class(), steps)
         except AttributeError:
             raise self._error(
-                phrase("{type_name} has no field '{path}'", type_name=self._class.TYPE_NAME, path=path)
+                phrase("{type_name} has no field '{name}'", type_name=self._class.TYPE_NAME, name=path)
             ) from None
         except (IndexError, TypeError):
             pass  # An array element: a received message may have a longer sequence.

@@ -84,7 +84,10 @@ class KnownEndpoints(Protocol):
         """Return all known endpoints."""
 
     def identities(self) -> Collection[NodeIdentity]:
-        """Return all known nodes. If several nodes have the same name, each is included."""
+        """Return all known nodes.
+
+        If several nodes have the same name, each is included.
+        """
 
 
 class CommandedNode(Protocol):
@@ -125,7 +128,10 @@ class DriverWatch:
         return cls(node.get_logger(), node.graph, node.get_clock().now_ns)
 
     def note_command(self, message: Any, info: MessageInfo) -> None:
-        """Record a command message. Of a stamped message only the twist is compared."""
+        """Record a command message.
+
+        Of a stamped message only the twist is compared.
+        """
         command = getattr(message, "twist", message)
         if self._dispute.note_command(info.publisher_gid, command, self._now_ns() / NANOSECONDS_PER_SECOND):
             self._warn()

@@ -31,9 +31,9 @@ from linkwright.graph.time.clock import Alarm
 
 
 class _Watchdog:
-    """A watchdog that calls a function each time a time limit passes without a sign of life.
+    """A watchdog that calls a function each time a time limit passes without activity.
 
-    The first sign of life starts the watchdog.
+    The first activity starts the watchdog.
     """
 
     def __init__(self, owner: EndpointEvents, limit: int, on_missed: Callable[[], None]) -> None:
@@ -45,13 +45,16 @@ class _Watchdog:
         self._lock = threading.Lock()
 
     def restart(self) -> None:
-        """Restart the time limit after a sign of life. Callable from any thread."""
+        """Restart the time limit after activity of the endpoint.
+
+        Callable from any thread.
+        """
         with self._lock:
             self._last_ns = self._owner.node.timebase.steady_ns()
             self._arm()
 
     def resume(self) -> None:
-        """Continue with the owner's current dispatcher, if there has been a sign of life."""
+        """Rearm the watchdog on the owner's current dispatcher, if it was started before."""
         with self._lock:
             self._arm()
 
@@ -249,7 +252,7 @@ class PublisherEvents(EndpointEvents):
     def set_dispatcher(self, dispatcher: Dispatcher | None) -> None:
         """Set the dispatcher that runs the callbacks and monitors the time limits.
 
-        Setting a dispatcher counts as a sign of life.
+        Setting a dispatcher counts as activity.
         """
         super().set_dispatcher(dispatcher)
         if self._lease_watchdog is not None:

@@ -1,4 +1,4 @@
-"""Publishers. They pass messages to subscriptions of this process and to the transport."""
+"""Publishers, which pass messages to subscriptions of this process and to the transport."""
 
 from __future__ import annotations
 
@@ -52,9 +52,9 @@ class Publisher(TopicEndpoint[M]):
         self.event_callbacks = event_callbacks
         self.events: PublisherEvents | None = None
         self.outside: Callable[[Any], None] | None = None
-        """Sends messages to other processes; None while no subscription there matches. See `set_outside`."""
+        """The function that sends messages to other processes, or None if there is no match. See `set_outside`."""
         self.assert_outside: Callable[[], None] | None = None
-        """Asserts the publisher's liveliness in other processes; set by the transport."""
+        """Asserts the publisher's liveliness in other processes, set by the transport."""
         self.lifespan_ns = limit_ns(qos_profile.lifespan)
         self._wait_until_acknowledged: Callable[[float | None], bool] | None = None
         self._accepted_type: Any = None
@@ -186,11 +186,11 @@ class Publisher(TopicEndpoint[M]):
         return tuple(self._receivers_by_subscription)
 
     def hold_for_outside(self, wait_until_sent: Callable[[float | None], bool]) -> None:
-        """Hold messages until `set_outside` is called. The transport calls both, in this order.
+        """Hold messages until `set_outside` is called.
 
-        In ROS 2, a discovered subscription receives all messages of a publisher, including the first. The transport
-        creates the writer in its own thread, shortly after the publisher is created. Messages that are published before
-        are therefore held.
+        The transport calls both, in this order. In ROS 2, a discovered subscription receives all messages of a
+        publisher, including the first. The transport creates the writer in its own thread, shortly after the publisher
+        is created. Messages that are published before are therefore held.
 
         Args:
             wait_until_sent: waits until `set_outside` was called, for at most the given seconds (None for no limit);
@@ -253,7 +253,7 @@ class Publisher(TopicEndpoint[M]):
                 subscription.events.liveliness(change, -change)
 
     def _unexpired_messages(self) -> list[Any]:
-        """Remove expired messages from those stored for late joiners, and return the remaining ones."""
+        """Remove the expired messages that are stored for late joiners, and return the others."""
         if not self._late_joiner_messages:
             return []
         if self.lifespan_ns is not None:

@@ -30,7 +30,7 @@ EVENT_TOPIC_SUFFIX = "/_service_event"
 
 
 class ServiceIntrospectionState(IntEnum):
-    """The parts of requests that are published for introspection, with rclpy's numbers and names."""
+    """The parts of requests to publish for introspection, with rclpy's numbers and names."""
 
     OFF = 0
     METADATA = 1
@@ -147,7 +147,7 @@ Request = TypeVar("Request")
 Response = TypeVar("Response")
 
 Reply = Callable[[Any], None]
-"""Sends the response to the client; called once, from any thread."""
+"""Sends the response to the client, called once, from any thread."""
 
 _NO_REQUESTS: deque[Any] = deque(maxlen=0)
 
@@ -317,7 +317,7 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
         self.unblockable = not node.strict_callback_groups  # see `linkwright.graph.loop.future` for the reason
         self.raw = raw
         self.outside: OutsideService | None = None
-        """The server in another process; None while there is none. See `set_outside`."""
+        """The server in another process, or None while there is none. See `set_outside`."""
         self._server: Service[Request, Response] | None = None
         self._numbers = itertools.count(1)
         self._lock = threading.RLock()
@@ -402,7 +402,7 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
         return future.result()
 
     def remove_pending_request(self, future: Future[Any]) -> None:
-        """Cancel a request. Its future will not receive a response."""
+        """Cancel a request, whose future will not receive a response."""
         with self._lock:
             cancel = self._pending.pop(future, None)
             self._unsent = deque(

@@ -1,4 +1,4 @@
-"""Subscriptions. Their messages are queued until a dispatcher runs the callback."""
+"""Subscriptions, which queue their messages until a dispatcher runs the callback."""
 
 from __future__ import annotations
 
@@ -364,7 +364,10 @@ class Subscription(TopicEndpoint[M], Entity):
         return content_filter.accepts(payload)
 
     def _read(self, data: bytes | bytearray | memoryview) -> Any:
-        """Decode a message. If that fails, log the error once and return None."""
+        """Decode a message.
+
+        If that fails, log the error once and return None.
+        """
         try:
             return deserialize(data, self.msg_type)
         except LinkwrightError as error:

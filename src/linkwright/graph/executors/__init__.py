@@ -1,4 +1,4 @@
-"""Executors. They decide which thread runs which callback, as in rclpy."""
+"""Executors, which decide which thread runs which callback, as in rclpy."""
 
 from linkwright.graph.executors.base import Context, Executor
 from linkwright.graph.executors.multi_threaded import MultiThreadedExecutor

@@ -35,7 +35,7 @@ _MAX_POSTPONEMENTS = 2
 
 
 class Context(Protocol):
-    """A context. Its shutdown ends spinning (rclpy ``Context``)."""
+    """A context, whose shutdown ends spinning (rclpy ``Context``)."""
 
     def ok(self) -> bool:
         """Return whether the context is initialized and not shut down."""
@@ -55,7 +55,7 @@ class SpunNode(Protocol):
 def deadline_after(timeout_sec: float | None) -> int | None:
     """Return the value of ``time.monotonic_ns`` at which a timeout, in seconds, ends.
 
-    Returns None, which means no limit, if the timeout is None or negative.
+    Returns None (no limit) if the timeout is None or negative.
     """
     if timeout_sec is None or timeout_sec < 0:
         return None
@@ -334,11 +334,11 @@ class Executor:
         return False
 
     def _postpone(self, client: Entity) -> bool:
-        """Move a client's response behind the ready work. Return whether the response was moved.
+        """Move a client's response behind the ready work.
 
-        rclpy runs tasks and messages before responses: when a client learns that its goal was accepted, it has already
-        received the feedback if the goal was executed in the meantime. A response is postponed a limited number of
-        times.
+        Return whether the response was moved. rclpy runs tasks and messages before responses: when a client learns that
+        its goal was accepted, it has already received the feedback if the goal was executed in the meantime. A response
+        is postponed a limited number of times.
         """
         if client.postponed >= _MAX_POSTPONEMENTS or not self._work.has_ready():
             client.postponed = 0

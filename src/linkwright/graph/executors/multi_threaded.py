@@ -147,7 +147,10 @@ class Workers:
         return self._unfinished_count < self._limit
 
     def submit(self, job: Callable[[], None]) -> None:
-        """Run a job in a thread of the pool. The job must not raise an exception."""
+        """Run a job in a thread of the pool.
+
+        The job must not raise an exception.
+        """
         with self._lock:
             self._unfinished_count += 1
             if self._unfinished_count > len(self._threads) and len(self._threads) < self._limit:

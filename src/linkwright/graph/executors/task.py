@@ -77,7 +77,10 @@ class Task(Future[T]):
         return self._run_lock.locked()
 
     def cancel(self) -> None:
-        """Cancel the task. A coroutine is closed at its current await, unless it is running now."""
+        """Cancel the task.
+
+        A coroutine is closed at its current await, unless it is running now.
+        """
         super().cancel()
         if self.cancelled() and self._run_lock.acquire(blocking=False):
             try:

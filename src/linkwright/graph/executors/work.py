@@ -94,11 +94,17 @@ class WorkQueue:
         self._sleep(deadline_ns, until_wake=False)
 
     def wait_for_wake(self, deadline_ns: int | None) -> None:
-        """Wait for a call of `wake`, or `deadline_ns`. Ready items stay in the queue."""
+        """Wait for a call of `wake`, or `deadline_ns`.
+
+        Ready items stay in the queue.
+        """
         self._sleep(deadline_ns, until_wake=True)
 
     def wake(self) -> None:
-        """End the wait of all waiting threads. If no thread is waiting, end the next wait."""
+        """End the wait of all waiting threads.
+
+        If no thread is waiting, end the next wait.
+        """
         self._is_wake_requested = True
         self._wake_sleepers()
 
@@ -117,7 +123,10 @@ class WorkQueue:
         return call
 
     def note_cancelled(self) -> None:
-        """Count a cancelled alarm. If there are many, remove them all."""
+        """Count a cancelled alarm.
+
+        If there are many, remove them all.
+        """
         self._cancelled += 1
         if self._cancelled > _MAX_CANCELLED:
             with self._alarms_lock:

@@ -173,7 +173,10 @@ _SERVICE, _CLIENT = EndpointKind.SERVICE, EndpointKind.CLIENT
 
 
 class GraphQueries:
-    """The queries that a graph answers, named as in rclpy. This is the base class of `Graph`."""
+    """The queries that a graph answers, named as in rclpy.
+
+    This is the base class of `Graph`.
+    """
 
     bus: Bus
     _nodes: dict[NodeHandle, None]
@@ -309,7 +312,7 @@ class GraphQueries:
     # --- waiting -----------------------------------------------------------------------------------------------------
 
     def notify_change(self) -> None:
-        """Wake the threads that are blocked in `wait_until`. They check their conditions again.
+        """Wake the threads in `wait_until`, so that they check their conditions again.
 
         Any thread may call this.
         """
@@ -319,7 +322,7 @@ class GraphQueries:
             run_logged(self._logger, "a callback for changes of the graph", watcher)
 
     def watch(self, callback: Callable[[], object]) -> None:
-        """Register a callback for changes of nodes and endpoints.
+        """Register a callback for changes to nodes and endpoints.
 
         The callback runs in the thread in which the change happens. Exceptions that the callback raises are logged.
         """

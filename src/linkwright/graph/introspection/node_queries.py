@@ -116,9 +116,9 @@ R = TypeVar("R")
 
 
 class NodeQueries:
-    """A node's queries to the graph. This is the base class of `Node`.
+    """A node's queries to the graph.
 
-    Names in queries are expanded relative to the node, and remapped.
+    This is the base class of `Node`. Names in queries are expanded relative to the node, and remapped.
     """
 
     def __init__(self, graph: GraphQueries, handle: NodeHandle) -> None:
@@ -128,7 +128,10 @@ class NodeQueries:
 
     @staticmethod
     def _graph_query(query: Callable[Concatenate[GraphQueries, P], R]) -> Callable[Concatenate[NodeQueries, P], R]:
-        """Wrap a graph query as a method of the node. Used only in the class body."""
+        """Wrap a graph query as a method of the node.
+
+        Used only in the class body.
+        """
 
         @wraps(query)
         def ask(node: NodeQueries, /, *args: P.args, **kwargs: P.kwargs) -> R:
@@ -204,7 +207,9 @@ class NodeQueries:
 
 
 def _resolve_for_query(resolve: Callable[[str], str], name: str) -> str:
-    """Return the absolute name for a query. Errors have rclpy's wording.
+    """Return the absolute name for a query.
+
+    Errors have rclpy's wording.
 
     Raises:
         TypeError: the name is not a string.

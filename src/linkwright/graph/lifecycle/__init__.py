@@ -1,1 +1,1 @@
-"""Managed nodes. They have lifecycle states."""
+"""Managed nodes: nodes with lifecycle states."""

@@ -57,11 +57,12 @@ class LifecycleTransitionError(LinkwrightError, RclError):
 
 
 class LifecycleNodeMixin(ManagedEntity):
-    """Turns a node class into a managed node class. It must be initialized after the node.
+    """A mixin that turns a node class into a managed node class.
 
-    The callbacks ``on_configure``, ``on_activate``, ``on_deactivate``, ``on_cleanup``, ``on_shutdown`` and ``on_error``
-    receive the state in which the transition starts, and return a `TransitionCallbackReturn`. Unless overridden, each
-    callback calls the callback of the same name of every managed entity.
+    Initialize the mixin after the node. The callbacks ``on_configure``, ``on_activate``, ``on_deactivate``,
+    ``on_cleanup``, ``on_shutdown`` and ``on_error`` receive the state in which the transition starts, and return a
+    `TransitionCallbackReturn`. Unless overridden, each callback calls the callback of the same name of every managed
+    entity.
 
     Args:
         enable_communication_interface: whether other nodes can control the node through services, and receive its

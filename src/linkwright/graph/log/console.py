@@ -98,11 +98,11 @@ _COLOURS = {
 
 
 def print_to_console(record: LogRecord) -> None:
-    """Write a record to standard error, or to standard output if RCUTILS_LOGGING_USE_STDOUT is 1.
+    """Write a record to standard error, or to standard output on request.
 
-    Records are coloured on terminals. RCUTILS_COLORIZED_OUTPUT (0 or 1) overrides this; if it is not set, NO_COLOR
-    turns colours off. Each record is flushed immediately, regardless of RCUTILS_LOGGING_BUFFERED_STREAM, so that no
-    record is lost if the process dies. Errors of the stream are ignored.
+    RCUTILS_LOGGING_USE_STDOUT=1 selects standard output. Records are coloured on terminals. RCUTILS_COLORIZED_OUTPUT (0
+    or 1) overrides this; if it is not set, NO_COLOR turns colours off. Each record is flushed immediately, regardless
+    of RCUTILS_LOGGING_BUFFERED_STREAM, so that no record is lost if the process dies. Errors of the stream are ignored.
     """
     stream: TextIO | None = sys.stdout if os.environ.get("RCUTILS_LOGGING_USE_STDOUT") == "1" else sys.stderr
     if stream is None:  # A program without a console has no stream.
@@ -155,7 +155,10 @@ class Rosout:
         logger.rosout = self.publish
 
     def publish(self, record: LogRecord) -> None:
-        """Publish a record. Records that are logged while one is being published are not published."""
+        """Publish a record.
+
+        Records that are logged while one is being published are not published.
+        """
         if self._is_publishing:
             return
         self._is_publishing = True
@@ -165,7 +168,10 @@ class Rosout:
             self._is_publishing = False
 
     def close(self) -> None:
-        """Stop publishing. The node, not this object, destroys the publisher."""
+        """Stop publishing.
+
+        The node, not this object, destroys the publisher.
+        """
         self._logger.rosout = None
 
     def _message(self, record: LogRecord) -> Any:

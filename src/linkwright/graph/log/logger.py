@@ -40,7 +40,7 @@ class LogLevels:
     The default level is the root of this tree.
 
     Attributes:
-        revision: a counter that increases with every change of a level.
+        revision: a counter that increases with every change to a level.
     """
 
     def __init__(self, default: LogLevel = LogLevel.INFO) -> None:
@@ -49,9 +49,9 @@ class LogLevels:
         self.revision = 0
 
     def set(self, name: str, level: LogLevel) -> None:
-        """Set the level of a logger. UNSET removes the level.
+        """Set the level of a logger.
 
-        With an empty name, set the default level.
+        UNSET removes the level. With an empty name, set the default level.
         """
         if not name:
             self._default = level or LogLevel.INFO
@@ -150,7 +150,10 @@ class Logger:
 
     @property
     def level(self) -> LogLevel:
-        """The level in force for this logger. Assignment calls `set_level`."""
+        """The level in force for this logger.
+
+        Assignment calls `set_level`.
+        """
         return self.get_effective_level()
 
     @level.setter
@@ -158,7 +161,7 @@ class Logger:
         self.set_level(level)
 
     def set_level(self, level: int) -> None:
-        """Set the level of the logger. Its children inherit the level.
+        """Set the level of the logger, which its children inherit.
 
         With UNSET the logger inherits its level again.
         """

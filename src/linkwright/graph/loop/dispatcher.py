@@ -27,7 +27,7 @@ T = TypeVar("T")
 
 
 class Entity(Part, ABC):
-    """A source of callbacks. A dispatcher takes calls from it.
+    """A source of callbacks, whose calls a dispatcher runs.
 
     Attributes:
         callback_group: decides which entities may run at the same time; the node's default group unless another is
@@ -209,7 +209,10 @@ class LoopDispatcher:
         return threading.get_ident() == self._thread
 
     def ready(self, entity: Entity) -> None:
-        """Queue an entity. Its next call then runs in the loop. Callable from any thread."""
+        """Queue an entity, so that its next call runs in the loop.
+
+        Callable from any thread.
+        """
         self._ready.append(entity)
         if self._is_scheduled:
             return

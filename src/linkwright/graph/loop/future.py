@@ -116,7 +116,9 @@ class StepsByExecutor:
 
 
 class Future(Generic[T]):
-    """A future result. Coroutines of asyncio and of an executor can await it.
+    """A future result.
+
+    Coroutines of asyncio and of an executor can await it.
 
     Args:
         executor: runs the done callbacks (through ``create_task(callback, future)``). Without an executor they are
@@ -134,7 +136,7 @@ class Future(Generic[T]):
         self._executor = executor
         self._lock = threading.Lock()
         self.source: Any = None
-        """The client whose response the future waits for; None for any other future."""
+        """The client whose response the future waits for, or None for any other future."""
 
     def __del__(self) -> None:
         if self._exception is not None and not self._exception_fetched:

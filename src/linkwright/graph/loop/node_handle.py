@@ -23,10 +23,11 @@ if TYPE_CHECKING:
 
 
 class CallbackGroup:
-    """Decides which of its entities may run. This is the base class for users' own groups.
+    """Decides which of its entities may run.
 
-    An executor calls `can_execute`, then `beginning_execution`, which may still refuse, and finally `ending_execution`.
-    When a callback has ended, the executor calls `can_execute` again for the entities that were refused.
+    This is the base class for users' own groups. An executor calls `can_execute`, then `beginning_execution`, which may
+    still refuse, and finally `ending_execution`. When a callback has ended, the executor calls `can_execute` again for
+    the entities that were refused.
 
     As in rclpy the class is not abstract: programs may instantiate it, and methods that are not overridden raise an
     error.
@@ -38,7 +39,10 @@ class CallbackGroup:
         self._forget = self.entities.discard
 
     def add_entity(self, entity: Any) -> None:
-        """Add an entity to the group. The group then decides when the entity's callbacks run."""
+        """Add an entity to the group.
+
+        The group then decides when the entity's callbacks run.
+        """
         self.entities.add(weakref.ref(entity, self._forget))
 
     def has_entity(self, entity: Any) -> bool:
@@ -105,7 +109,7 @@ class MutuallyExclusiveCallbackGroup(CallbackGroup):
 
 
 class _FreeGroup(ReentrantCallbackGroup):
-    """A reentrant group that all nodes of the process share. It keeps no list of its members."""
+    """A reentrant group that all nodes of the process share, without a list of its members."""
 
     def add_entity(self, entity: Any) -> None:
         """Do nothing, because the group keeps no list of its members."""
@@ -197,7 +201,7 @@ class HomeGraph(Protocol):
         """Remove a node that was destroyed."""
 
     def notify_change(self) -> None:
-        """Wake the threads that are blocked in `wait_until`. They check their conditions again."""
+        """Wake the threads in `wait_until`, so that they check their conditions again."""
 
     def wait_until(self, condition: Callable[[], bool], timeout_sec: float | None = None) -> bool:
         """Block the calling thread until a condition of the graph holds.
@@ -210,7 +214,9 @@ class HomeGraph(Protocol):
 
 
 class Part(HasHandle):
-    """A part of a node, such as an endpoint or a timer. Leaving its ``with`` block destroys it.
+    """A part of a node, such as an endpoint or a timer.
+
+    Leaving its ``with`` block destroys it.
 
     Attributes:
         node: the node that owns the part.
@@ -234,7 +240,7 @@ class Part(HasHandle):
         """Set the dispatcher that runs the part's callbacks."""
 
     def destroy(self) -> None:
-        """Remove the part from the graph and the node. Its callbacks are not called again."""
+        """Remove the part from the graph and the node, and end the calls of its callbacks."""
         self.node.remove(self)
 
     def check_alive(self) -> None:

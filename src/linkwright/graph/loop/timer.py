@@ -1,4 +1,7 @@
-"""Timers call back at a fixed period. Rates sleep until the next tick."""
+"""Timers call back at a fixed period.
+
+Rates sleep until the next tick.
+"""
 
 from __future__ import annotations
 
@@ -42,10 +45,10 @@ class TimerInfo:
 
 
 class Timer(Entity):
-    """Calls back at a fixed period. A late call does not shift the next one.
+    """Calls back at a fixed period.
 
-    As in rcl, calls that were missed entirely are skipped. The period is measured on the timer's clock, which may be a
-    ROS clock that follows simulated time.
+    A late call does not shift the next one. As in rcl, calls that were missed entirely are skipped. The period is
+    measured on the timer's clock, which may be a ROS clock that follows simulated time.
 
     Args:
         node: the node that owns the timer.
@@ -85,7 +88,10 @@ class Timer(Entity):
 
     @property
     def timer_period_ns(self) -> int:
-        """The period in nanoseconds. A new period takes effect with the next `reset` or call."""
+        """The period in nanoseconds.
+
+        A new period takes effect with the next `reset` or call.
+        """
         return self._period_ns
 
     @timer_period_ns.setter
@@ -119,7 +125,10 @@ class Timer(Entity):
         return self._running and self.clock.timer_ns() >= self._due_ns
 
     def cancel(self) -> None:
-        """Stop the timer. `reset` starts it again."""
+        """Stop the timer.
+
+        `reset` starts it again.
+        """
         self._running = False
         self._disarm()
 
@@ -146,9 +155,9 @@ class Timer(Entity):
         return self.clock.timer_ns() - self._last_ns
 
     def time_until_next_call(self) -> int | None:
-        """Return the nanoseconds until the next call. The number is negative if the call is late.
+        """Return the nanoseconds until the next call.
 
-        Returns None if the timer is stopped.
+        The number is negative if the call is late. Returns None if the timer is stopped.
         """
         return self._due_ns - self.clock.timer_ns() if self._running else None
 

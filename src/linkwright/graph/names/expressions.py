@@ -19,7 +19,10 @@ _MAX_CHARACTERS = 2000
 
 
 class ExpressionError(ValueError):
-    """Raised when a text is not a valid regular expression. The message is the reason."""
+    """Raised when a text is not a valid regular expression.
+
+    The message is the reason.
+    """
 
 
 class TooCostlyError(ExpressionError):
@@ -30,8 +33,9 @@ class Expression:
     """A regular expression for names (decision 0020).
 
     Args:
-        text: the expression, in the syntax of the library ``regex``. This is the syntax of Python's `re`, which
-            includes everything that `re` has in common with ECMAScript.
+            text: the expression, in the syntax of the library ``regex``, an extension of Python's `re`. Expressions
+                that `re`
+                and ECMAScript have in common work unchanged.
 
     Raises:
         ExpressionError: the text is too long, or is not a valid expression.
@@ -56,7 +60,7 @@ class Expression:
         try:
             return self._pattern.fullmatch(text, timeout=_TIME_LIMIT_S) is not None
         except TimeoutError:
-            raise TooCostlyError("it takes too long to find") from None
+            raise TooCostlyError("the search takes too long") from None
 
     def found_in(self, names: Iterable[str]) -> set[str]:
         """Return the names that contain a match of the expression, as by C++'s `regex_search`.
@@ -72,4 +76,4 @@ class Expression:
                 if self._pattern.search(name, timeout=max(deadline_s - time.monotonic(), _MIN_TIME_S))
             }
         except TimeoutError:
-            raise TooCostlyError("it takes too long to find") from None
+            raise TooCostlyError("the search takes too long") from None

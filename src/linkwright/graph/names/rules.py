@@ -300,7 +300,9 @@ class _Rule:
 
 
 class Remappings:
-    """A node's remapping rules. The first rule that matches a name is applied.
+    """A node's remapping rules.
+
+    The first rule that matches a name is applied.
 
     ``__node`` (or ``__name``) and ``__ns`` rename the node itself. A rule may start with the name of the node that it
     applies to (``talker:chatter``). The prefix ``rostopic://`` or ``rosservice://`` restricts it to topics or services.

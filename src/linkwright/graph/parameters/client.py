@@ -106,7 +106,10 @@ class AsyncParameterClient:
         return self._send_request("describe_parameters", callback, names=names)
 
     def set_parameters(self, parameters: Sequence[Any], callback: Done | None = None) -> Future[Any]:
-        """Set parameters one by one. Each is a `Parameter` or an rcl_interfaces/msg/Parameter."""
+        """Set parameters one by one.
+
+        Each is a `Parameter` or an rcl_interfaces/msg/Parameter.
+        """
         return self._send_request("set_parameters", callback, parameters=_messages(parameters))
 
     def set_parameters_atomically(self, parameters: Sequence[Any], callback: Done | None = None) -> Future[Any]:
@@ -114,7 +117,7 @@ class AsyncParameterClient:
         return self._send_request("set_parameters_atomically", callback, parameters=_messages(parameters))
 
     def delete_parameters(self, names: list[str], callback: Done | None = None) -> Future[Any]:
-        """Undeclare parameters. Their descriptors must allow dynamic typing."""
+        """Undeclare parameters whose descriptors allow dynamic typing."""
         return self.set_parameters([Parameter(name) for name in names], callback)
 
     def load_parameter_file(
@@ -133,7 +136,7 @@ class AsyncParameterClient:
     def on_parameter_event(
         self, callback: Callable[..., Any], qos_profile: QoSProfile = PARAMETER_EVENTS_QOS, **options: Any
     ) -> Any:
-        """Subscribe to parameter changes of all nodes."""
+        """Subscribe to changes to the parameters of all nodes."""
         event_type = _message_type("ParameterEvent")
         return self.node.create_subscription(event_type, "/parameter_events", callback, qos_profile, **options)
 

@@ -1,4 +1,4 @@
-"""Callbacks for parameter changes of any node, as in ``rclpy.parameter_event_handler``."""
+"""Callbacks for changes to any node's parameters, as in ``rclpy.parameter_event_handler``."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ H = TypeVar("H")
 
 @dataclass(eq=False)
 class ParameterCallbackHandle:
-    """The handle of a callback for one parameter of one node. It is used to remove the callback."""
+    """The handle with which a callback for one parameter of one node is removed."""
 
     parameter_name: str
     node_name: str
@@ -24,7 +24,7 @@ class ParameterCallbackHandle:
 
 @dataclass(eq=False)
 class ParameterEventCallbackHandle:
-    """The handle of a callback for all events. It is used to remove the callback."""
+    """The handle with which a callback for all events is removed."""
 
     callback: Callable[[Any], object]
 
@@ -52,7 +52,10 @@ class _Callbacks:
         return handle
 
     def remove_parameter_callback(self, handle: ParameterCallbackHandle) -> None:
-        """Remove a callback for one parameter. Raise RuntimeError if it is not registered."""
+        """Remove a callback for one parameter.
+
+        Raise RuntimeError if it is not registered.
+        """
         key = (handle.parameter_name, handle.node_name)
         with self._lock:
             _remove(handle, self.parameter_callbacks.get(key, []))
@@ -67,7 +70,10 @@ class _Callbacks:
         return handle
 
     def remove_parameter_event_callback(self, handle: ParameterEventCallbackHandle) -> None:
-        """Remove a callback for all events. Raise RuntimeError if it is not registered."""
+        """Remove a callback for all events.
+
+        Raise RuntimeError if it is not registered.
+        """
         with self._lock:
             _remove(handle, self.event_callbacks)
 

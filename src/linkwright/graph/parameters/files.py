@@ -54,14 +54,14 @@ def read_parameter_file(path: str | Path) -> ParameterRules:
         candidates = [str(file) for file in path.parent.glob("*.y*ml")] if path.parent.is_dir() else []
         hint = did_you_mean(str(path), candidates)
         raise ParameterFileNotFoundError(
-            Diagnostic("GRAPH211", phrase("parameter file '{shown}' does not exist", shown=shown), hint=hint)
+            Diagnostic("GRAPH211", phrase("parameter file '{path}' does not exist", path=shown), hint=hint)
         ) from None
     except (OSError, UnicodeDecodeError) as error:
         reason = getattr(error, "strerror", None) or error
         raise LinkwrightError(
             Diagnostic(
                 "GRAPH211",
-                phrase("parameter file '{shown}' cannot be read: {reason}", shown=shown, reason=foreign(reason)),
+                phrase("parameter file '{path}' cannot be read: {reason}", path=shown, reason=foreign(reason)),
             )
         ) from error
     rules = parse_parameters(SourceText(str(path), text))
@@ -98,7 +98,10 @@ class _NestedListError(LinkwrightError):
 
 
 class _Reader:
-    """Reads the YAML events of a parameter file. `_event` is the current event."""
+    """Reads the YAML events of a parameter file.
+
+    `_event` is the current event.
+    """
 
     def __init__(self, source: SourceText) -> None:
         self._source = source
@@ -189,7 +192,10 @@ class _Reader:
             self._advance()
 
     def _read_parameters(self, prefix: str, pattern: str) -> None:
-        """Read a mapping of parameter names. The current event is the start of the mapping."""
+        """Read a mapping of parameter names.
+
+        The current event is the start of the mapping.
+        """
         self._advance()
         while not self._is_event("MappingEnd"):
             name = prefix + self._read_key()
@@ -217,7 +223,10 @@ class _Reader:
             self._skip_rest_of_list()
 
     def _skip_rest_of_list(self) -> None:
-        """Advance to the end of a list. The current event is the start of a nested list or mapping."""
+        """Advance to the end of a list.
+
+        The current event is the start of a nested list or mapping.
+        """
         depth = 2
         while depth:
             self._advance()
@@ -226,7 +235,7 @@ class _Reader:
 
     def _read_key(self) -> str:
         if not self._is_event("Scalar"):
-            raise self._error(phrase("a name must be text, not a list or a mapping"))
+            raise self._error(phrase("a name must be a string, not a list or a mapping"))
         key = str(self._event.value)
         if not key:
             raise self._error(phrase("a name must not be empty"))

@@ -30,10 +30,10 @@ from linkwright.graph.time.clock import Clock
 
 
 class NodeParameters:
-    """The parameter methods of a node. This is the base class of `Node`.
+    """The parameter methods of a node.
 
-    Descriptors, results and parameter values are accepted as Linkwright's own small classes and as messages of
-    rcl_interfaces. Return values are messages, as in rclpy.
+    This is the base class of `Node`. Descriptors, results and parameter values are accepted as Linkwright's own small
+    classes and as messages of rcl_interfaces. Return values are messages, as in rclpy.
     """
 
     def __init__(self, parameters: ParameterStore) -> None:
@@ -127,7 +127,9 @@ class NodeParameters:
         return self.__parameters.post_set
 
     def undeclare_parameter(self, name: str) -> None:
-        """Undeclare a parameter. No callback is called, and no event is published.
+        """Undeclare a parameter.
+
+        No callback is called, and no event is published.
 
         Raises:
             ParameterNotDeclaredException: the parameter is not declared.
@@ -432,7 +434,7 @@ class ParameterServices:
 
 
 class ParameterEvents:
-    """Publishes the changes of a node's parameters.
+    """Publishes changes to a node's parameters.
 
     Args:
         publisher: the publisher of ``/parameter_events``.

@@ -1,4 +1,4 @@
-"""The types, values and exceptions of ``rclpy.parameter``, and parameter values by node name."""
+"""The types, values and exceptions of ``rclpy.parameter``, and values by node name."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ class ParameterRules:
         return self._values.setdefault(pattern if pattern.startswith("/") else f"/{pattern}", {})
 
     def add(self, other: ParameterRules) -> None:
-        """Add the values of other rules. They override earlier values for the same pattern."""
+        """Add other rules, whose values override earlier values for the same pattern."""
         for pattern, values in other:
             self.section(pattern).update(values)
         self.files += other.files
@@ -153,7 +153,7 @@ class InvalidParameterTypeException(ParameterException):
     def __init__(self, desired_parameter: Parameter, expected_type: object) -> None:
         name, value = desired_parameter.name, desired_parameter.value
         expected_name = getattr(expected_type, "name", expected_type)
-        hint = phrase("write {value}.0", value=value) if expected_name == "DOUBLE" and type(value) is int else None
+        hint = phrase("write {text}.0", text=value) if expected_name == "DOUBLE" and type(value) is int else None
         super().__init__(
             phrase(
                 "Trying to set parameter '{name}' to '{value}' of type '{type_name}', expecting type '{expected}'",
@@ -230,7 +230,9 @@ class ParameterType(Enum):
 
     @classmethod
     def from_parameter_value(cls, parameter_value: Any) -> ParameterType:
-        """Return the type of a Python value. An empty list counts as a byte array, as in rclpy.
+        """Return the type of a Python value.
+
+        An empty list counts as a byte array, as in rclpy.
 
         Raises:
             TypeError: the value is not a valid parameter value.

@@ -40,7 +40,7 @@ def refusal_reason(parameter: Parameter, descriptor: Any, *, declared: bool, che
         parameter: the name and the new value.
         descriptor: a `ParameterDescriptor`, or the rcl_interfaces message of the same name.
         declared: whether the parameter is declared already.
-        check_read_only: whether to refuse a change of a read-only parameter; False while the parameter is being
+        check_read_only: whether to refuse a change to a read-only parameter; False while the parameter is being
             declared.
     """
     descriptor.name = parameter.name

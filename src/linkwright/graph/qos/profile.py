@@ -351,7 +351,7 @@ BEST_AVAILABLE_QOS = QoSProfile(
 """The strictest policies that match the endpoints known at creation (rmw ``rmw_qos_profile_best_available``)."""
 
 SENSOR_DATA_QOS = QoSProfile(depth=5, reliability=ReliabilityPolicy.BEST_EFFORT)
-"""Best effort, with the last 5 messages; robot_state_publisher subscribes to joint states with it."""
+"""Best effort, with the last 5 messages. The node robot_state_publisher uses it for joint states."""
 
 SERVICES_QOS = QoSProfile(depth=10)
 """For services and clients."""

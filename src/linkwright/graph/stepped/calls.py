@@ -41,7 +41,7 @@ class Calls:
         self.number = self._count
         try:
             function()
-        except Exception as error:  # noqa: BLE001 - whatever a plugin throws must not end the others
+        except Exception as error:  # noqa: BLE001 - an error of a plugin must not end the others
             self.fail(error)
         finally:
             self.number = previous_number

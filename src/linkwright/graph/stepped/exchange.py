@@ -23,7 +23,7 @@ class Outlet(Protocol):
 
 
 _MAX_PENDING_BATCHES = 4
-"""The maximum number of batches that wait for the event loop; a simulation that sends more is blocked."""
+"""The maximum number of batches that wait for the event loop. A simulation that sends more is blocked."""
 
 
 class Exchange:
@@ -46,7 +46,10 @@ class Exchange:
         self._closed = False
 
     def send(self, publisher: Outlet, message: Any) -> None:
-        """Add a message to the next batch. The message must not change afterwards."""
+        """Add a message to the next batch.
+
+        The message must not change afterwards.
+        """
         self._outgoing.append((publisher, message))
 
     def deliver(self, dispatcher: LoopDispatcher | None = None) -> None:

@@ -52,7 +52,7 @@ class _Outlet:
                 publisher.publish(outgoing_message)
         except InvalidHandleError:
             raise  # the publisher's model was removed
-        except Exception as error:  # noqa: BLE001 - of a message that a plugin made
+        except Exception as error:  # noqa: BLE001 - a plugin's message may cause any error
             output.exchange.post(partial(output.calls.fail, error))
 
 
@@ -74,10 +74,10 @@ class Output:
 
     @property
     def is_wanted(self) -> bool:
-        """Whether a subscription exists. Without one, a plugin need not create a costly message.
+        """Whether a subscription exists.
 
-        Subscriptions may change at any time in another thread, but within one call of a plugin this value stays the
-        same.
+        Without one, a plugin need not create a costly message. Subscriptions may change at any time in another thread,
+        but within one call of a plugin this value stays the same.
         """
         call_number = self.calls.number
         if not call_number:
@@ -87,13 +87,16 @@ class Output:
         return self._is_wanted
 
     def _has_readers(self) -> bool:
-        for publisher in self.publishers:  # noqa: SIM110 - `any` takes twice as long, and this is asked all the time
+        for publisher in self.publishers:  # noqa: SIM110 - `any` takes twice as long, and calls are frequent
             if publisher.get_subscription_count():
                 return True
         return False
 
     def publish(self, message: Any) -> None:
-        """Publish a message. The message must not change afterwards."""
+        """Publish a message.
+
+        The message must not change afterwards.
+        """
         self.exchange.send(self._outlet, message)
 
     def deferred_publisher(self, make: Callable[..., Any]) -> Callable[..., None]:
@@ -233,7 +236,9 @@ class SteppedNode:
         self._exchange.post(partial(self.calls.call, command))
 
     def parameter(self, name: str, default: Any) -> Any:
-        """Return the value of a parameter of the node. The parameter is declared if necessary.
+        """Return the value of a parameter of the node.
+
+        The parameter is declared if necessary.
 
         Args:
             name: the parameter's name.
@@ -292,7 +297,7 @@ class SteppedNode:
             self._listen(self._node.handle.resolve_topic_name(name), listen)
 
     def _listen(self, topic: str, listen: Callable[[str], Endpoint]) -> None:
-        """Call `listen`. It subscribes to the topic with the given name."""
+        """Call `listen`, which subscribes to the topic with the given name."""
         listen(topic)
 
     def _profile(self, topic: str, side: str, qos: QoSProfile | int) -> QoSProfile:

@@ -126,7 +126,7 @@ class JumpClock(Timebase):
         return alarm
 
     def attach(self, dispatcher: SettlingDispatcher) -> None:
-        """Add a dispatcher. It finishes its work before each step of the clock."""
+        """Add a dispatcher, which finishes its work before each step of the clock."""
         self._dispatchers.append(dispatcher)
 
     async def advance(self, seconds: float, *, is_settled: bool = False) -> None:
@@ -259,7 +259,9 @@ class JumpHandle:
 
 
 class Clock:
-    """A clock (rclpy ``Clock``). A clock of type ROS_TIME is a `ROSClock`.
+    """A clock (rclpy ``Clock``).
+
+    A clock of type ROS_TIME is a `ROSClock`.
 
     Args:
         clock_type: system, steady or ROS time.
@@ -277,7 +279,7 @@ class Clock:
         return object.__new__(clock_class)  # type: ignore[no-any-return]  # a ROSClock is a Clock
 
     context: Any = None
-    """The context whose shutdown ends a sleep without a context argument; None for no context."""
+    """The context whose shutdown ends a sleep without a context argument, or None for no context."""
 
     def __init__(self, *, clock_type: ClockType = ClockType.SYSTEM_TIME, timebase: Timebase | None = None) -> None:
         self.clock_type = clock_type
@@ -332,7 +334,10 @@ class Clock:
         return self.timebase.steady_ns()
 
     def call_at(self, dispatcher: AlarmSetter, timer_ns: int, callback: Callable[[], None]) -> Alarm:
-        """Schedule a call for a value of `timer_ns`. The callback must be short."""
+        """Schedule a call for a value of `timer_ns`.
+
+        The callback must be short.
+        """
         return dispatcher.call_at(timer_ns, callback)
 
     def add_timer(self, timer: ClockFollower) -> None:
@@ -498,7 +503,7 @@ class ROSClock(Clock):
     """rclpy's name of this method."""
 
     def set_ros_time_override(self, time: Time) -> None:
-        """Set simulated time. It takes effect once simulated time is active.
+        """Set simulated time, which takes effect once simulated time is active.
 
         Raises:
             TypeError: `time` is not a Time.

@@ -67,7 +67,9 @@ def _create_alarms(loop: AbstractEventLoop) -> FineAlarms | None:
 
 @dataclass(slots=True, order=True)
 class ScheduledAlarm:
-    """A scheduled call. Alarms are ordered by their times.
+    """A scheduled call.
+
+    Alarms are ordered by their times.
 
     Attributes:
         steady_ns: when the call is due, in nanoseconds.

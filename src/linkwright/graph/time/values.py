@@ -28,7 +28,7 @@ class Duration:
     """A duration in nanoseconds, as a 64-bit integer (rclpy ``Duration``).
 
     Args:
-        seconds: the seconds, which may have a fraction.
+        seconds: the seconds, possibly fractional.
         nanoseconds: the nanoseconds to add; a fraction is dropped.
 
     Raises:
@@ -112,16 +112,16 @@ class Duration:
 
 
 INFINITE = Duration(nanoseconds=_LIMIT - 1)
-"""The longest duration; in a QoS profile, no limit."""
+"""The longest duration, which means no limit in a QoS profile."""
 
 
 class Time:
-    """A point in time of one type of clock, in nanoseconds since its epoch (rclpy ``Time``).
+    """A time on a ROS, system or steady clock, in nanoseconds since its epoch (rclpy ``Time``).
 
-    Points in time of different types of clocks cannot be compared or subtracted.
+    Times on different types of clocks cannot be compared or subtracted.
 
     Args:
-        seconds: the seconds since the epoch, which may have a fraction.
+        seconds: the seconds since the epoch, possibly fractional.
         nanoseconds: the nanoseconds to add; a fraction is dropped.
         clock_type: the type of clock.
 

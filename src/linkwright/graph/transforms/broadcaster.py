@@ -1,4 +1,4 @@
-"""Transform broadcasters, as in ``tf2_ros``. They publish to ``/tf`` and ``/tf_static``."""
+"""Transform broadcasters for ``/tf`` and ``/tf_static``, as in ``tf2_ros``."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A tf buffer without history. It stores only the latest transform of each frame.
+"""A tf buffer without history, which stores only the latest transform of each frame.
 
 A robot may be a chain of hundreds of links, so composing poses level by level would take hundreds of small steps.
 Instead, each round composes the pose of every frame with the pose of its current reference frame. This doubles the

@@ -59,7 +59,10 @@ class FrameCache(ABC):
 
     @abstractmethod
     def add(self, stamp_ns: int, sample: Sample) -> bool:
-        """Store a transform. Return False if it is too old to be stored."""
+        """Store a transform.
+
+        Return False if it is too old to be stored.
+        """
 
     @abstractmethod
     def at(self, time_ns: int) -> tuple[int, Transform]:
@@ -119,11 +122,14 @@ class StaticCache(FrameCache):
         return True
 
     def at(self, time_ns: int) -> tuple[int, Transform]:
-        """Return the number of the parent and the pose. Both are the same at all times."""
+        """Return the number of the parent and the pose.
+
+        Both are the same at all times.
+        """
         return self.parent_at(time_ns), cast("Sample", self._sample).pose()
 
     def parent_at(self, time_ns: int) -> int:
-        """Return the number of the parent. It is the same at all times."""
+        """Return the number of the parent, which is the same at all times."""
         if self._sample is None:
             raise NoDataError
         return self._sample.parent
@@ -159,9 +165,9 @@ class MovingCache(FrameCache):
         self._first = 0
 
     def add(self, stamp_ns: int, sample: Sample) -> bool:
-        """Insert a transform by its stamp. Return False if it is too old.
+        """Insert a transform by its stamp.
 
-        A transform that equals a stored one with the same stamp is not stored again.
+        Return False if it is too old. A transform that equals a stored one with the same stamp is not stored again.
         """
         stamps = self._stamps
         if len(stamps) == self._first:

@@ -1,7 +1,7 @@
-"""The tf buffer with history. It allows lookups at any time in the last seconds.
+"""The tf buffer with history, for lookups at any time in the last seconds.
 
-The methods are those of ``tf2_py.BufferCore``. Behaviour and messages are those of tf2. Displays, which need the
-current poses of all frames, use `TransformBuffer` instead.
+The methods are those of ``tf2_py.BufferCore``. Behaviour and messages follow tf2. Displays, which need the current
+poses of all frames, use `TransformBuffer` instead.
 """
 
 from __future__ import annotations
@@ -49,9 +49,10 @@ _NOT_DEFINED = "Source or target frame is not yet defined"
 
 
 class BufferCore:
-    """Stores transforms for a limited time. Any thread may use the buffer.
+    """Stores transforms for a limited time.
 
-    Times are ``Time`` objects or messages of builtin_interfaces; zero requests the latest transform.
+    Any thread may use the buffer. Times are ``Time`` objects or messages of builtin_interfaces; zero requests the
+    latest transform.
 
     Args:
         cache_time: how long transforms are stored, counted back from the latest one of each frame.
@@ -276,7 +277,10 @@ class BufferCore:
         return chain_names
 
     def all_frames_as_dot(self, time: Any = None) -> str:
-        """Return all frames as a Graphviz graph. If `time` is given, the graph includes ages."""
+        """Return all frames as a Graphviz graph.
+
+        If `time` is given, the graph includes ages.
+        """
         with self._lock:
             return frames_as_dot(self._frame_facts(), to_nanoseconds(time) if time is not None else 0)
 

@@ -31,7 +31,10 @@ def do_transform_point(point: Any, transform: Any) -> Any:
 
 
 def do_transform_vector3(vector3: Any, transform: Any) -> Any:
-    """Return a Vector3Stamped in the target frame. The vector is rotated but not translated."""
+    """Return a Vector3Stamped in the target frame.
+
+    The vector is rotated but not translated.
+    """
     result = _new_message("Vector3Stamped", transform)
     _set_vector(result.vector, _rotate_vector(transform, vector3.vector))
     return result
@@ -63,7 +66,10 @@ def do_transform_pose_stamped(pose: Any, transform: Any) -> Any:
 
 
 def do_transform_pose_with_covariance_stamped(pose: Any, transform: Any) -> Any:
-    """Return a PoseWithCovarianceStamped in the target frame. The covariance is rotated, too."""
+    """Return a PoseWithCovarianceStamped in the target frame.
+
+    The covariance is rotated, too.
+    """
     result = _new_message("PoseWithCovarianceStamped", transform)
     result.pose.pose = do_transform_pose(pose.pose.pose, transform)
     result.pose.covariance = transform_covariance(pose.pose.covariance, transform)

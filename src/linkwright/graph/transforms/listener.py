@@ -1,4 +1,4 @@
-"""Transform listeners. They fill a tf buffer from ``/tf`` and ``/tf_static``."""
+"""Transform listeners, which fill a tf buffer from ``/tf`` and ``/tf_static``."""
 
 from __future__ import annotations
 
@@ -63,7 +63,10 @@ class TransformListener:
             subscription.deliver_in_batches()
 
     def unregister(self) -> None:
-        """Destroy the subscriptions. The buffer keeps its transforms."""
+        """Destroy the subscriptions.
+
+        The buffer keeps its transforms.
+        """
         for subscription in self._subscriptions:
             self.node.destroy_subscription(subscription)
         self._subscriptions = []

@@ -15,7 +15,7 @@ from linkwright.graph.transforms.cache import FrameCache, NoDataError
 from linkwright.graph.transforms.errors import ExtrapolationException, LookupException, loop, not_connected_error
 
 MAX_DEPTH = 1000
-"""The maximum number of frames in a path; a longer path counts as a loop (tf2 ``MAX_GRAPH_DEPTH``)."""
+"""The maximum number of frames in a path. A longer path counts as a loop (tf2 ``MAX_GRAPH_DEPTH``)."""
 
 
 @dataclass(slots=True)
@@ -132,7 +132,7 @@ class Walker:
         raise self._loop()
 
     def _climb_from_source(self, path: FramePath, source: int, target: int, poses: bool) -> str | None:
-        """Climb from the source to the target or the root, and store this half of the path in `path`.
+        """Climb from the source to the target or the root, and store this half in `path`.
 
         Returns the reason if missing data ended the climb early, otherwise None.
         """

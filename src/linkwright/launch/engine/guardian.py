@@ -1,4 +1,4 @@
-"""The guardian: a helper program that ends the processes of a launch if its launcher is killed.
+"""The guardian: a helper that ends a launch's processes if its launcher is killed.
 
 A launcher that is killed with SIGKILL cannot end its processes. A small helper program, the guardian, is therefore
 started together with the first process. The guardian reads the process groups of the launch from a pipe that the

@@ -103,7 +103,7 @@ class LaunchSession:
 
     @property
     def is_blocking(self) -> bool:
-        """Whether code of the launch file is running. It blocks the event loop."""
+        """Whether code of the launch file is running, which blocks the event loop."""
         return self._is_visiting
 
     @property

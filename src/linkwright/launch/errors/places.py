@@ -63,7 +63,7 @@ class Place(ABC):
 
     @abstractmethod
     def span(self, source: SourceText | None = None) -> Span:
-        """Return the lines and columns of the place. They are computed on request."""
+        """Return the lines and columns of the place, computed on request."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -170,7 +170,7 @@ class CodePlace(Place):
         return read_source(self.file)
 
     def span(self, source: SourceText | None = None) -> Span:
-        """Return the range of the expression at the place, or of its entire line before Python 3.11."""
+        """Return the range of the expression at the location, or of its entire line before Python 3.11."""
         positions = getattr(self.code, "co_positions", None)
         if positions is not None:
             positions_of_instruction = next(islice(positions(), self.instruction // 2, None), None)

@@ -77,8 +77,7 @@ def endless_nesting_error(place: Place | None) -> LinkwrightError:
     """Return the error for launch actions that are nested more deeply than the limit."""
     message = phrase("launch actions are nested more than {count} levels deep, probably without end", count=DEEPEST)
     hint = phrase(
-        "a launch file that includes itself, or a function that returns itself, needs a condition that ends "
-        "the recursion"
+        "add a condition that ends the recursion, if a launch file includes itself or a function returns itself"
     )
     return error_at(place, "LAUNCH156", message, hint)
 

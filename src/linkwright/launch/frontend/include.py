@@ -50,7 +50,7 @@ _FOLDER_LOCAL = "current_launch_file_directory"
 class IncludeLaunchDescription(Action):
     """Visits the description of another launch file.
 
-    As in ROS, the including and the included file share their launch configurations. To keep the changes of the
+    As in ROS, the including and the included file share their launch configurations. To keep the changes to the
     included file out of the including file, put this action into a `GroupAction`.
 
     Args:
@@ -159,7 +159,7 @@ class IncludeLaunchDescription(Action):
         ]
 
     def explain_inside(self, error: LinkwrightError) -> LinkwrightError:
-        """Add a note with the place of the include to an error in the included description.
+        """Add a note with the location of the include to an error in the included description.
 
         Returns:
             The same error.
@@ -196,7 +196,11 @@ class IncludeLaunchDescription(Action):
             unknown_names = [name for name in given_names if name not in names]
             similar_names = nearest(argument.name, unknown_names)
             hint = (
-                phrase("{near} was passed; is its name misspelt?", near=quoted_names(similar_names, " or "))
+                phrase(
+                    "did you mean '{name}' instead of {names}?",
+                    name=argument.name,
+                    names=quoted_names(similar_names, " or "),
+                )
                 if similar_names
                 else self._argument_hint(argument.name)
             )
@@ -247,7 +251,7 @@ def _normalize_if_possible(value: Any) -> Any:
 class IncludeScopedLaunchDescription(IncludeLaunchDescription):
     """Includes another launch file in a separate scope.
 
-    The changes of launch configurations and environment variables end with the included file.
+    The changes to launch configurations and environment variables end with the included file.
     """
 
     def execute(self, context: LaunchContext) -> list[LaunchDescriptionEntity]:

@@ -80,7 +80,7 @@ class MarkupEntity(Entity):
         unread_names = [candidate for candidate in present if candidate not in self._read_names]
         similar_names = nearest(name, unread_names)
         hint = (
-            phrase(("it has {names}; is that a misspelling?"), names=quoted_names(similar_names, " or "))
+            phrase("did you mean '{name}' instead of {names}?", name=name, names=quoted_names(similar_names, " or "))
             if similar_names
             else None
         )

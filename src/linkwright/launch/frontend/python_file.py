@@ -45,7 +45,9 @@ def load_python_launch_file(path: Path) -> LaunchDescription:
         module = _run(source, path)
         function = getattr(module, _FUNCTION, None)
         if not callable(function):
-            hint = did_you_mean(_FUNCTION, vars(module)) or phrase("define {function}() in it", function=_FUNCTION)
+            hint = did_you_mean(_FUNCTION, vars(module)) or phrase(
+                "define {function}(), which returns a LaunchDescription", function=_FUNCTION
+            )
             message = phrase(
                 "launch file '{path}' has no function '{function}'", path=display_path(source.name), function=_FUNCTION
             )
@@ -62,7 +64,7 @@ def load_python_launch_file(path: Path) -> LaunchDescription:
         message = phrase(
             "'{function}' returned {kind}, not a LaunchDescription", function=_FUNCTION, kind=_type_phrase(description)
         )
-        hint = phrase("end it with: return LaunchDescription([...])")
+        hint = phrase("end the function with: return LaunchDescription([...])")
         ros_error = InvalidPythonLaunchFileError(message)
         raise error_at(_definition(function, source), "LAUNCH106", message, hint, ros_error=ros_error)
     return description
@@ -92,7 +94,7 @@ def load_python_module(path: Path) -> ModuleType:
 def _run(source: SourceText, path: Path) -> ModuleType:
     """Run a launch file, and return its module with ``__file__`` set to the path.
 
-    Messages name the user's original file, even if the path is that of a copy.
+    Messages name the user's original file, even if the path leads to a copy.
     """
     try:
         code = compile(source.text, source.name, "exec", dont_inherit=True)

@@ -85,7 +85,7 @@ class Action(LaunchDescriptionEntity):
         return None
 
     def get_sub_entities(self) -> Sequence[LaunchDescriptionEntity]:
-        """Return the child entities. They are also searched for declared arguments."""
+        """Return the child entities, which are also searched for declared arguments."""
         return []
 
 

@@ -44,7 +44,7 @@ class _Declarations:
 
     Attributes:
         arguments: maps names to declarations, for arguments that can be set from outside.
-        names: all declared names, including those that an including file sets.
+        names: all declared names, including names that an including file sets.
         is_incomplete: whether some entities could not be searched.
     """
 

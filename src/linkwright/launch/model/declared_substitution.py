@@ -96,16 +96,22 @@ class OptionalTexts(Texts):
             ...
 
     def __set__(self, owner: Any, value: SomeSubstitutionsType | Path | None) -> None:
-        """Normalize a value to substitutions, and store it. None is stored unchanged."""
+        """Normalize a value to substitutions, and store it.
+
+        None is stored unchanged.
+        """
         owner.__dict__[self.name] = None if value is None else self.read(value)
 
     def describe(self, value: Any) -> str:
-        """Return the text of a value in listings. The text for None is empty."""
+        """Return the text of a value in listings.
+
+        The text for None is empty.
+        """
         return describe(value or [])
 
 
 class AnyTexts(Texts):
-    """A `Texts` argument that also accepts other values. They are converted with `read`."""
+    """A `Texts` argument that also accepts other values, and converts them with `read`."""
 
     def __set__(self, owner: Any, value: Any) -> None:
         """Convert a value to substitutions, and store it."""
@@ -116,7 +122,10 @@ class AnyOptionalTexts(OptionalTexts):
     """An `AnyTexts` argument that may be None."""
 
     def __set__(self, owner: Any, value: Any) -> None:
-        """Convert a value to substitutions, and store it. None is stored unchanged."""
+        """Convert a value to substitutions, and store it.
+
+        None is stored unchanged.
+        """
         super().__set__(owner, value)
 
 
@@ -217,7 +226,7 @@ def _create_constructor(cls: type[DeclaredSubstitution]) -> Callable[..., None]:
         namespace[f"_default_{argument.name}"] = argument.default
     lines = [f"    self.{argument.name} = {argument.name}" for argument in cls._arguments]
     code = f"def __init__({', '.join(parameters)}):\n" + "\n".join(lines)
-    exec(compile(code, __file__, "exec"), namespace)  # noqa: S102 - made of the names of the class's own attributes
+    exec(compile(code, __file__, "exec"), namespace)  # noqa: S102 - the text contains only the class's attribute names
     constructor: Callable[..., None] = namespace["__init__"]
     constructor.__qualname__ = f"{cls.__qualname__}.__init__"
     constructor.__module__ = cls.__module__

@@ -119,7 +119,10 @@ class _ReactionHandler(BaseEventHandler):
 
     @property
     def entities(self) -> list[LaunchDescriptionEntity]:
-        """The given entities to visit. The list is empty if a function returns the entities."""
+        """The given entities to visit.
+
+        The list is empty if a function returns the entities.
+        """
         return self._entities
 
     @property
@@ -202,7 +205,7 @@ def _as_iterable(entities: Any) -> Iterable[Any]:
 class OnExecutionComplete(OnActionEventBase):
     """Reacts when an action has completed.
 
-    A process has completed when it has ended. If no target is given, the handler accepts all actions except those that
+    A process has completed when it has ended. If no target is given, it accepts all actions except actions that
     it returned itself, because they would cause an endless loop.
     """
 

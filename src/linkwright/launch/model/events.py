@@ -84,8 +84,8 @@ class RunningProcessEvent(Event):
         action: the action that started the process.
         process_name: the name of the process in the log, such as ``talker-1``.
         cmd: the command as a list of arguments.
-        cwd: the working directory; None if it is that of the launcher.
-        env: the environment; None if it is that of the launcher.
+        cwd: the working directory; None for the launcher's.
+        env: the environment; None for the launcher's.
         pid: the process ID.
     """
 

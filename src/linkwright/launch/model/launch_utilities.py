@@ -18,7 +18,10 @@ FilePath = str | bytes | os.PathLike[Any]
 
 
 def isclassinstance(obj: object) -> bool:
-    """Return whether an object has a class. In Python 3, the result is always true."""
+    """Return whether an object has a class.
+
+    In Python 3, the result is always true.
+    """
     return hasattr(obj, "__class__")
 
 

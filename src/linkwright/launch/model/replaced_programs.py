@@ -49,7 +49,7 @@ def replacing_node(words: Sequence[str], environment: Mapping[str, str]) -> Node
     except Exception as error:
         message = phrase("the node that replaces '{program}' cannot be imported", program=entry_point.name)
         hint = phrase(
-            "the Python package '{place}' provides it, but its import fails: {problem}",
+            "fix the Python package '{place}', whose import fails: {problem}",
             place=entry_point.distribution,
             problem=foreign(error),
         )

@@ -29,7 +29,7 @@ class Scheduled(Protocol):
 
 
 Schedule = Callable[[float, Callable[[], None]], Scheduled]
-"""Calls a function once, after a number of seconds; returns the scheduled call."""
+"""Calls a function once, after a number of seconds, and returns the scheduled call."""
 
 
 class NodeHosting(Protocol):

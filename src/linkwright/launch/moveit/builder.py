@@ -132,7 +132,7 @@ class MoveItConfigsBuilder(ParameterBuilder):
         return self
 
     def joint_limits(self, file_path: _Path = None) -> MoveItConfigsBuilder:
-        """Read the joint limits. They replace the limits in the URDF."""
+        """Read the joint limits, which replace the limits in the URDF."""
         self.__moveit_configs.joint_limits = self.__below("_planning", file_path, "joint_limits.yaml")
         return self
 
@@ -330,7 +330,7 @@ class MoveItConfigsBuilder(ParameterBuilder):
 
 
 def _warn_about_missing_urdf(error: LookupError) -> None:
-    message = phrase("MoveIt's parameters have no URDF; nodes read it from the topic /robot_description")
+    message = phrase("MoveIt's parameters contain no URDF, so nodes read it from the topic /robot_description")
     for diagnostic in getattr(error, "diagnostics", ()):
         warning = diagnostic.with_changes(severity=Severity.WARNING, notes=(*diagnostic.notes, Note(message)))
         print_diagnostics([warning], sys.stderr)

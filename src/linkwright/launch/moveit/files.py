@@ -45,7 +45,9 @@ def load_file(file_path: str | Path, mappings: Mapping[str, Any] | None = None) 
 
 
 def load_yaml(file_path: str | Path, mappings: Mapping[str, Any] | None = None) -> Any:
-    """Return the content of a YAML file. The file may be a jinja2 template.
+    """Return the content of a YAML file.
+
+    The file may be a jinja2 template.
 
     Raises:
         ParameterBuilderFileNotFoundError: LAUNCH153, the file does not exist.

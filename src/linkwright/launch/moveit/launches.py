@@ -179,7 +179,7 @@ def generate_demo_launch(moveit_config: MoveItConfigs, launch_package_path: Path
     description = LaunchDescription()
     argument_description = "By default, no database is started: it can be large."
     description.add_action(DeclareBooleanLaunchArg("db", default_value=False, description=argument_description))
-    argument_description = "Whether nodes run inside of a debugger."
+    argument_description = "Whether to run nodes in a debugger."
     description.add_action(DeclareBooleanLaunchArg("debug", default_value=False, description=argument_description))
     description.add_action(DeclareBooleanLaunchArg("use_rviz", default_value=True))
     virtual_joints = "static_virtual_joint_tfs.launch.py"

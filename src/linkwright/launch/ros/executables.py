@@ -235,7 +235,7 @@ def _check_module(executable: Executable, entry_point: EntryPoint, root: Path) -
 
 
 _NO_EXECUTABLES = phrase(
-    "it installs no executables: check entry_points in its setup.py, or install(TARGETS ...) in CMakeLists.txt"
+    "check entry_points in setup.py, or install(TARGETS ...) in CMakeLists.txt: the package installs no executables"
 )
 
 # --- missing executables ----------------------------------------------------------------------------------------
@@ -278,7 +278,7 @@ def _missing_executable_error(
             ),
         )
     if hint is None:
-        hint = phrase("the package has {present}", present=joined(present)) if present else _NO_EXECUTABLES
+        hint = phrase("the package has {names}", names=joined(present)) if present else _NO_EXECUTABLES
     error = _lookup_error(message, notes, hint)
     return mark_unavailable(error) if runs_without_ros and not is_misspelt(name, present) else error
 
@@ -306,7 +306,7 @@ def _missing_in_sources_error(package: str, name: str, share: Path) -> Linkwrigh
     if hint is None and programs.names():
         hint = phrase("the package has {names}", names=joined(programs.names()))
     if hint is None:
-        hint = phrase("name it in entry_points of setup.py, or in install(PROGRAMS ...) of CMakeLists.txt")
+        hint = phrase("add it to entry_points in setup.py, or to install(PROGRAMS ...) in CMakeLists.txt")
     return _lookup_error(
         phrase("package '{package}' has no executable '{name}'", package=package, name=name), notes, hint
     )
@@ -315,7 +315,7 @@ def _missing_in_sources_error(package: str, name: str, share: Path) -> Linkwrigh
 def _unknown_program_error(package: str, name: str, share: Path) -> LinkwrightError:
     """Return the error for a program that the package may build, but not visibly in its sources."""
     message = phrase("executable '{name}' of package '{package}' is not available", name=name, package=package)
-    note = Note(phrase("the files in {share} do not show which programs it builds", share=display_path(share)))
+    note = Note(phrase("the files in {share} do not show which programs the package builds", share=display_path(share)))
     build_hint = phrase(
         "build it with 'colcon build --packages-select {package}' in a workspace with all of its sources",
         package=package,

@@ -1,4 +1,7 @@
-"""Lifecycle nodes of a launch. The launcher requests and monitors their transitions."""
+"""Lifecycle nodes of a launch.
+
+The launcher requests and monitors their transitions.
+"""
 
 from __future__ import annotations
 

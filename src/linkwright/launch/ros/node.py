@@ -136,7 +136,7 @@ class Node(ExecuteProcess):
     ) -> tuple[type[Action], dict[str, Any]]:
         """Return the class and keyword arguments for the tag.
 
-        They include those of a process, and those of a node, such as ``pkg``, ``exec``, ``param`` and ``remap``.
+        They are the arguments of a process and of a node, such as ``pkg``, ``exec``, ``param`` and ``remap``.
         """
         _, kwargs = super().parse(entity, parser, ignore=["cmd", *(ignore or ())])
         return cls, parse_node(entity, parser, kwargs, cls)
@@ -216,7 +216,7 @@ class Node(ExecuteProcess):
         return None
 
     def __extended(self, context: LaunchContext) -> list[Any]:
-        """Run the extensions. They may change the name and namespace of the node.
+        """Run the extensions, which may change the name and namespace of the node.
 
         Returns:
             The arguments that the extensions add to the command line.
@@ -438,7 +438,10 @@ class _DeferredArgument(Substitution):
 
 
 def _as_list(values: Any) -> list[Any]:
-    """Return an argument or several arguments as a list. None becomes an empty list."""
+    """Return an argument or several arguments as a list.
+
+    None becomes an empty list.
+    """
     if values is None:
         return []
     return [values] if isinstance(values, (str, Substitution)) or not isinstance(values, Iterable) else list(values)

@@ -168,14 +168,14 @@ def _read(path: Path, place: Place | None) -> SourceText:
     try:
         return SourceText(name, read_text(path))
     except FileNotFoundError as error:
-        message, hint = phrase("parameter file '{shown}' does not exist", shown=shown_path), missing_file_hint(path)
+        message, hint = phrase("parameter file '{path}' does not exist", path=shown_path), missing_file_hint(path)
         raise error_at(place, "LAUNCH133", message, hint, ros_error=error) from error
     except (OSError, UnicodeDecodeError) as error:
         reason = getattr(error, "strerror", None) or error
         raise error_at(
             place,
             "LAUNCH133",
-            phrase("parameter file '{shown}' cannot be read: {reason}", shown=shown_path, reason=foreign(reason)),
+            phrase("parameter file '{path}' cannot be read: {reason}", path=shown_path, reason=foreign(reason)),
         ) from error
 
 

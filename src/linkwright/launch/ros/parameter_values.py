@@ -88,7 +88,7 @@ class ParameterValue(Placed):
             expected = getattr(self._value_type, "__name__", None) or str(self._value_type)
             if self._value_type is None:
                 message = phrase(
-                    "{called} has no type, so it is read as YAML, which fails: {error}",
+                    "{called} has no type and is not YAML: {error}",
                     called=subject,
                     error=foreign(error),
                 )

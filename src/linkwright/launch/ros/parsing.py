@@ -17,7 +17,7 @@ Entities = list[Entity]
 
 
 def parse_node(entity: Entity, parser: Parser, kwargs: dict[str, Any], cls: Any) -> dict[str, Any]:
-    """Add the keyword arguments of a node to those of a process, and return all of them.
+    """Add a node's keyword arguments to a process's, and return all of them.
 
     Args:
         entity: the tag.

@@ -129,7 +129,7 @@ class RewrittenYaml(_YamlFileSubstitution):
             for number_type in (int, float):
                 try:
                     return number_type(text)
-                except ValueError:  # noqa: PERF203 - there are two tries
+                except ValueError:  # noqa: PERF203 - there are only two attempts
                     continue
         return text
 

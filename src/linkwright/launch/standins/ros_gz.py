@@ -47,7 +47,10 @@ class _SingleNodeAction(Action, ABC):
 
     @classmethod
     def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
-        """Return the class and keyword arguments for the tag. The attributes are the text options."""
+        """Return the class and keyword arguments for the tag.
+
+        The attributes are the text options.
+        """
         _, kwargs = super().parse(entity, parser)
         for name in cls.TEXTS:
             text = entity.get_attr(name, data_type=str, optional=True)

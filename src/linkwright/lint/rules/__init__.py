@@ -1,1 +1,1 @@
-"""The lint rules of the entry point ``linkwright.lint_rules``, with one module for each topic."""
+"""The lint rules of the entry point ``linkwright.lint_rules``, one module per topic."""

@@ -35,7 +35,7 @@ def kind_of(shape: Visual | Collision) -> str:
 
 
 def sizes_of(geometry: Geometry) -> tuple[tuple[str, float], ...]:
-    """Return the name and length in m of each size of a simple shape, or an empty tuple for a mesh."""
+    """Return the name and length in m of each size of a shape, or an empty tuple for a mesh."""
     if isinstance(geometry, Mesh):
         return ()
     if isinstance(geometry, Box):
@@ -90,7 +90,7 @@ class NonPositiveSize(Rule):
                     ),
                     shape_element(shape),
                     name,
-                    hint=phrase("sizes are in metres and above zero"),
+                    hint=phrase("give a positive size in metres"),
                     severity=Severity.INFO if is_marker else None,
                 )
 

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 _MAX_GAP = 20.0
-"""The maximum gap in m; LW405 reports shapes that are farther away."""
+"""The maximum gap in m. LW405 reports shapes that are farther away."""
 
 
 class MissingCollision(Rule):
@@ -209,7 +209,7 @@ class CollisionSize(Rule):
 
     code = "LW413"
     name = "collision-size-differs"
-    options = (Option("factor", 10.0, "how many times larger or smaller is reported"),)
+    options = (Option("factor", 10.0, "the smallest factor between the sizes that is reported"),)
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         factor = self.option(subject, "factor", float)
@@ -271,7 +271,7 @@ def _comparable_links(subject: Subject) -> Iterator[tuple[Link, Bounds, Bounds]]
 
 
 def _bounds(subject: Subject, shapes: Iterable[Visual | Collision]) -> Bounds | None:
-    """Return the box around shapes in the link frame, or None if one cannot be measured or there are none."""
+    """Return the box around shapes in the link frame, or None if it is unknown."""
     from linkwright.geometry.shapes import union
 
     boxes = [subject.extents.shape_bounds(shape) for shape in shapes]

@@ -105,7 +105,7 @@ class MissingInertial(Rule):
                 element,
                 "name",
                 notes=notes,
-                hint=phrase("`linkwright inertia` computes it from the link's shapes"),
+                hint=phrase("run `linkwright inertia` to compute it from the link's shapes"),
                 severity=None
                 if is_simulated or any(link.visuals or link.collisions for link in links)
                 else Severity.INFO,
@@ -184,7 +184,7 @@ class NegativeMass(Rule):
             phrase("the mass of link '{name}' is negative: {mass:g} kg", name=name, mass=inertial.mass),
             child_or_inertial(inertial, "mass"),
             "value",
-            hint=phrase("masses are in kg and positive"),
+            hint=phrase("give a positive mass in kg"),
         )
 
 
@@ -311,7 +311,7 @@ class RootInertia(Rule):
                 phrase("root link '{root}' has an inertia, which KDL ignores with a warning", root=robot.root),
                 inertial.element,
                 hint=phrase(
-                    "add an empty link above it, such as 'base_footprint', and connect them with a fixed joint"
+                    "add an empty root link, such as 'base_footprint', and connect it to this link with a fixed joint"
                 ),
             )
 
@@ -328,7 +328,7 @@ def _is_frame(subject: Subject, link: Link) -> bool:
 
 
 def _is_scenery(subject: Subject, inertial: Inertial) -> bool:
-    """Return whether the robot has a single link with zero inertia, which Bullet treats as immovable."""
+    """Return whether the robot is a single link with zero inertia, which Bullet keeps fixed."""
     return len(subject.links) == 1 and not any(getattr(inertial, name) for name in (*DIAGONAL, *PRODUCTS))
 
 

@@ -41,7 +41,7 @@ class PlaceholderInertia(Rule):
 
     code = "LW315"
     name = "inertia-placeholder"
-    options = (Option("links", 3, "how many links must share a tensor to be reported"),)
+    options = (Option("links", 3, "the smallest number of links with the same tensor that is reported"),)
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         for group in _shared_tensors(subject, self.option(subject, "links", int)):
@@ -55,7 +55,7 @@ class PlaceholderInertia(Rule):
                 ),
                 child_or_inertial(inertial, "inertia"),
                 notes=[Note(others)],
-                hint=phrase("`linkwright inertia` computes one for each from its shapes"),
+                hint=phrase("run `linkwright inertia` to compute the inertia of each link from its shapes"),
                 severity=Severity.INFO if is_explained(inertial.element, "inertia") else None,
             )
 

@@ -111,7 +111,7 @@ class DensityTooHigh(Rule):
                             )
                         )
                     ],
-                    hint=phrase("masses are in kg and lengths in m"),
+                    hint=phrase("check the units: masses are in kg and lengths in m"),
                     severity=Severity.INFO if is_intended else None,
                 )
 
@@ -176,7 +176,7 @@ class DensityTooLow(Rule):
                     child_or_inertial(inertial, "mass"),
                     "value",
                     notes=[Note(phrase("{mass:g} kg in {volume}", mass=mass, volume=_volume_text(volume)))],
-                    hint=phrase("masses are in kg and lengths in m"),
+                    hint=phrase("check the units: masses are in kg and lengths in m"),
                 )
 
 
@@ -207,7 +207,9 @@ class CenterOutside(Rule):
 
     code = "LW322"
     name = "center-of-mass-outside"
-    options = (Option("margin", 0.25, "how far outside it may be, as a part of the diagonal of the shapes' box"),)
+    options = (
+        Option("margin", 0.25, "the largest distance outside the shapes, as a fraction of the diagonal of their box"),
+    )
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         margin = self.option(subject, "margin", float)
@@ -228,7 +230,7 @@ class CenterOutside(Rule):
                     child_or_inertial(inertial, "origin"),
                     "xyz",
                     notes=[_extent_note(bounds)],
-                    hint=phrase("lengths are in metres; this looks like millimetres")
+                    hint=phrase("write the origin in metres; this looks like millimetres")
                     if fits_in_millimetres and distance > 1
                     else _COMPUTE,
                 )
@@ -313,7 +315,7 @@ class InertiaTooLarge(Rule):
 
     code = "LW324"
     name = "inertia-too-large"
-    options = (Option("factor", 2.0, "how many times the largest possible moment is reported"),)
+    options = (Option("factor", 2.0, "the smallest factor above the largest possible moment that is reported"),)
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         if not subject.extents.measured:
@@ -383,7 +385,7 @@ class InertiaTooSmall(Rule):
 
     code = "LW325"
     name = "inertia-too-small"
-    options = (Option("factor", 200.0, "how many times smaller than that of a solid box is reported"),)
+    options = (Option("factor", 200.0, "the smallest factor below the moment of a solid box that is reported"),)
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         factor = self.option(subject, "factor", float)
@@ -439,7 +441,7 @@ def _is_origin_off_center(bounds: Bounds) -> bool:
     return any(abs(center) - 0.45 * size > _LENGTH_TOLERANCE for center, size in axes)
 
 
-_COMPUTE = phrase("`linkwright inertia` computes it from the link's shapes")
+_COMPUTE = phrase("run `linkwright inertia` to compute it from the link's shapes")
 
 
 def _largest_uniform_moment(bounds: Bounds, mass: float) -> float:

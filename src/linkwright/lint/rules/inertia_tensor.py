@@ -72,7 +72,7 @@ class ZeroInertia(_FlawRule):
             yield self.report(
                 phrase("link '{name}' has a mass of {mass:g} kg and no inertia", name=link.name, mass=inertial.mass),
                 child_or_inertial(inertial, "inertia"),
-                hint=phrase("`linkwright inertia` computes it from the link's shapes")
+                hint=phrase("run `linkwright inertia` to compute it from the link's shapes")
                 if link.visuals or link.collisions
                 else phrase(
                     "give it the inertia of a small solid with this mass, because the link has no shape to "
@@ -113,7 +113,7 @@ class NonPositiveMoment(_TensorRule):
             phrase("'{attribute}' of link '{name}' is {what}", attribute=flaw.attribute, name=name, what=problem),
             child_or_inertial(inertial, "inertia"),
             flaw.attribute,
-            hint=phrase("ixx, iyy and izz are positive, in kg m2; `linkwright inertia` computes them"),
+            hint=phrase("run `linkwright inertia` to compute ixx, iyy and izz, which must be positive, in kg m2"),
         )
 
 
@@ -241,7 +241,8 @@ class TriangleInequality(_TensorRule):
             flaw.attribute if is_diagonal else None,
             notes=notes,
             hint=phrase(
-                "these moments are not physically possible; `linkwright inertia` computes those of the link's shapes"
+                "run `linkwright inertia` to compute the moments of the link's shapes, because these "
+                "are not physically possible"
             ),
         )
 

@@ -118,7 +118,7 @@ class AxisNotUnit(Rule):
                 ),
                 axis,
                 "xyz",
-                hint=phrase("write {unit}", unit=unit_vector),
+                hint=phrase("write {text}", text=unit_vector),
                 fix=replace_value(axis, "xyz", unit_vector),
             )
 
@@ -261,7 +261,7 @@ class AxisTilted(Rule):
                 ),
                 axis,
                 "xyz",
-                hint=phrase("write {straight}", straight=exact_axis),
+                hint=phrase("write {text}", text=exact_axis),
                 fix=replace_value(axis, "xyz", exact_axis, safe=False),
             )
 
@@ -304,7 +304,7 @@ class JointNotPublished(Rule):
                     ),
                     element,
                     "type",
-                    hint=phrase("another node must broadcast this transform"),
+                    hint=phrase("broadcast this transform from another node"),
                 )
             elif joint.type == "planar":
                 yield self.report(

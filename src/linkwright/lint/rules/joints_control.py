@@ -1,4 +1,4 @@
-"""Rules about the parts of joints that controllers read: safety limits, dynamics, calibration."""
+"""Rules about the elements for controllers: safety limits, dynamics, calibration."""
 
 from __future__ import annotations
 
@@ -46,7 +46,10 @@ class SoftLimitsOutside(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every soft limit beyond the limit on its side."""
+        """Report soft limits outside the limits.
+
+        A small excess at one end is accepted if the other soft limit is inside its limit.
+        """
         for joint, _, safety in joint_children(subject, "safety_controller"):
             if joint.type not in ("revolute", "prismatic") or joint.limit is None or joint.safety is None:
                 continue
@@ -85,7 +88,7 @@ class SoftLimitsOutside(Rule):
             safety,
             name,
             hint=phrase(
-                "a soft limit acts before the limit: write a value {side} than {limit}",
+                "write a value {side} than {limit}, so that the soft limit acts before the limit",
                 side=phrase("more") if is_lower else phrase("less"),
                 limit=format_number(limit),
             ),
@@ -180,15 +183,15 @@ class SafetyGainNegative(Rule):
                 if gain is not None and gain < 0:
                     yield self.report(
                         phrase(
-                            "'{name}' of joint '{joint_name}' is negative: {gain}",
+                            "'{name}' of joint '{joint_name}' is negative: {value}",
                             name=name,
                             joint_name=joint.name,
-                            gain=format_number(gain),
+                            value=format_number(gain),
                         ),
                         safety,
                         name,
                         hint=phrase(
-                            "a negative gain drives the joint towards its limit: write {value}",
+                            "write {value}: a negative gain drives the joint towards its limit",
                             value=format_number(-gain),
                         ),
                     )
@@ -228,15 +231,15 @@ class DynamicsNegative(Rule):
                     edit = value_edit(dynamics, name, dynamics.attributes[name].strip().lstrip("-"))
                     yield self.report(
                         phrase(
-                            "'{name}' of joint '{joint_name}' is negative: {size}",
+                            "'{name}' of joint '{joint_name}' is negative: {value}",
                             name=name,
                             joint_name=joint.name,
-                            size=format_number(coefficient),
+                            value=format_number(coefficient),
                         ),
                         dynamics,
                         name,
                         hint=phrase(
-                            "a negative value feeds energy into the joint: write {value}",
+                            "write {value}: a negative value feeds energy into the joint",
                             value=format_number(-coefficient),
                         ),
                         fix=Fix((edit,), safe=False) if edit else None,
@@ -273,7 +276,7 @@ class DynamicsOnFixed(Rule):
         for joint, _, dynamics in joint_children(subject, "dynamics"):
             if joint.type == "fixed":
                 yield self.report(
-                    phrase("fixed joint '{name}' has <dynamics>", name=joint.name),
+                    phrase("<dynamics> of fixed joint '{name}' has no effect", name=joint.name),
                     dynamics,
                     hint=phrase("remove it"),
                     fix=remove_element(dynamics),

@@ -118,9 +118,7 @@ class _NegativeLimitRule(Rule):
                     ),
                     limit,
                     self.attribute,
-                    hint=phrase(
-                        "it applies in both directions: give its magnitude, {value}", value=format_number(-magnitude)
-                    ),
+                    hint=phrase("write {value}: the limit applies in both directions", value=format_number(-magnitude)),
                     fix=Fix((edit,), safe=False) if edit else None,
                 )
 
@@ -206,7 +204,7 @@ class VelocityInDegrees(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every revolute joint whose velocity limit is a round number from 45 to 720.
+        """Report every revolute joint whose velocity limit is a multiple of 15 from 45 to 720.
 
         No motor drives such a joint at this speed in rad/s.
         """

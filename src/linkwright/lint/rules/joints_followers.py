@@ -66,10 +66,10 @@ class MimicOnFixed(Rule):
             if joint.type == "fixed" and joint.element is not None and is_literal(joint.element, "type"):
                 yield self.report(
                     phrase(
-                        "fixed joint '{name}' cannot follow '{joint}'", name=joint.name, joint=mimic.attributes["joint"]
+                        "fixed joint '{name}' cannot mimic '{joint}'", name=joint.name, joint=mimic.attributes["joint"]
                     ),
                     mimic,
-                    hint=phrase("remove <mimic>, or give the joint the type of the joint it follows"),
+                    hint=phrase("remove <mimic>, or give the joint the type of the joint that it mimics"),
                     fix=remove_element(mimic, safe=False),
                 )
 
@@ -96,12 +96,12 @@ class MimicOfFixed(Rule):
     name = "mimic-of-fixed"
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every follower of a joint that does not move."""
+        """Report every movable follower of a fixed joint."""
         for joint, leader, mimic in _followers_with_leaders(subject):
             if leader.type == "fixed" and joint.type != "fixed":
                 yield self.report(
                     phrase(
-                        "joint '{name}' follows '{leader_name}', which is fixed",
+                        "joint '{name}' mimics '{leader_name}', which is fixed",
                         name=joint.name,
                         leader_name=leader.name,
                     ),
@@ -140,7 +140,7 @@ class MimicMultiplierZero(Rule):
             if value(mimic, "multiplier") == 0:
                 yield self.report(
                     phrase(
-                        "joint '{name}' follows '{joint}' with multiplier 0 and never moves",
+                        "joint '{name}' mimics '{joint}' with multiplier 0, so it never moves",
                         name=joint.name,
                         joint=mimic.attributes["joint"],
                     ),
@@ -188,8 +188,8 @@ class MimicBeyondLimits(Rule):
                 continue
             yield self.report(
                 phrase(
-                    "joint '{joint_name}' follows '{name}' from {least} to {most}, beyond its limits {lower} to "
-                    "{upper}",
+                    "joint '{joint_name}' mimics '{name}' from {least} to {most}, but has the limits "
+                    "{lower} to {upper}",
                     name=leader.name,
                     joint_name=joint.name,
                     least=format_number(positions[0]),
@@ -231,7 +231,10 @@ class MimicChain(Rule):
     name = "mimic-chain"
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every follower of a follower, except cycles, which the URDF reader reports."""
+        """Report every joint that follows a follower of a joint without ``<mimic>``.
+
+        A longer chain is thus reported at one of its joints. The URDF reader reports cycles.
+        """
         joints_by_name = {joint.name: joint for joint in subject.joints}
         for joint, leader, mimic in _followers_with_leaders(subject):
             if leader.mimic is None or joint.mimic is None:
@@ -243,7 +246,7 @@ class MimicChain(Rule):
             offset = joint.mimic.multiplier * leader.mimic.offset + joint.mimic.offset
             yield self.report(
                 phrase(
-                    "joint '{name}' follows '{leader_name}', which itself follows '{first_name}'",
+                    "joint '{name}' mimics '{leader_name}', which itself mimics '{first_name}'",
                     name=joint.name,
                     leader_name=leader.name,
                     first_name=first_joint.name,
@@ -298,7 +301,7 @@ class MimicOtherKind(Rule):
                 units = phrase("radian per metre") if is_revolute_follower else phrase("metre per radian")
                 yield self.report(
                     phrase(
-                        "{type} joint '{name}' follows {leader_type} joint '{leader_name}' by one {units}",
+                        "{type} joint '{name}' mimics {leader_type} joint '{leader_name}' at one {units}",
                         type=joint.type,
                         name=joint.name,
                         leader_type=leader.type,
@@ -351,7 +354,7 @@ class MimicDrivenByControl(Rule):
                     continue
                 yield self.report(
                     phrase(
-                        "joint '{name}' follows '{joint}', but <ros2_control> also commands it",
+                        "joint '{name}' mimics '{joint}', but <ros2_control> also commands joint '{name}'",
                         name=joint.name,
                         joint=joint.mimic.joint,
                     ),

@@ -46,7 +46,10 @@ class LimitInverted(Rule):
     severity = Severity.ERROR
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every bounded joint with inverted limits, except in URDF 1.2, where the reader reports them."""
+        """Report every bounded joint with inverted limits.
+
+        In URDF 1.2, the reader reports them.
+        """
         if subject.robot is not None and subject.robot.version >= (1, 2):
             return
         for joint, limit in limits(subject, *BOUNDED):
@@ -152,7 +155,10 @@ class LimitBoundsMissing(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every ``<limit>`` without bounds, except in URDF 1.2, where the reader reports them."""
+        """Report every ``<limit>`` without bounds.
+
+        In URDF 1.2, the reader reports them.
+        """
         if subject.robot is not None and subject.robot.version >= (1, 2):
             return
         for joint, limit in limits(subject, *BOUNDED):
@@ -209,7 +215,7 @@ class LimitOneBound(Rule):
             if len(missing_bounds) == 1:
                 yield self.report(
                     phrase(
-                        "<limit> of {type} joint '{name}' has no '{missing}', which is then 0",
+                        "<limit> of {type} joint '{name}' has no '{missing}', so '{missing}' defaults to 0",
                         type=joint.type,
                         name=joint.name,
                         missing=missing_bounds[0],
@@ -299,7 +305,7 @@ class LimitOnFixed(Rule):
         """Report every fixed joint with a limit."""
         for joint, limit in limits(subject, "fixed"):
             yield self.report(
-                phrase("fixed joint '{name}' has a <limit>", name=joint.name),
+                phrase("<limit> of fixed joint '{name}' has no effect", name=joint.name),
                 limit,
                 hint=phrase("remove it, or change the type of the joint"),
                 fix=remove_element(limit),

@@ -61,7 +61,7 @@ class OriginFar(Rule):
                     ),
                     origin,
                     "xyz",
-                    hint=phrase("if it is in millimetres, write {metres}", metres=metres),
+                    hint=phrase("write {metres} if the value is in millimetres", metres=metres),
                 )
 
 
@@ -92,7 +92,7 @@ class AngleInDegrees(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every origin of a joint, visual, collision or inertia with an implausibly large rotation."""
+        """Report every origin with an implausibly large rotation."""
         for owner, origin in _origins(subject):
             rpy = values(origin, "rpy")
             if len(rpy) == 3 and not looks_like_degrees(*rpy) and 4 * pi < max(map(abs, rpy)) <= 360:
@@ -105,7 +105,8 @@ class AngleInDegrees(Rule):
                     origin,
                     "rpy",
                     hint=phrase(
-                        "if it is in degrees, write {rpy}", rpy=" ".join(format_number(radians(angle)) for angle in rpy)
+                        "write {radians} if the value is in degrees",
+                        radians=" ".join(format_number(radians(angle)) for angle in rpy),
                     ),
                 )
 
@@ -157,7 +158,7 @@ class AngleRounded(Rule):
                     ),
                     origin,
                     "rpy",
-                    hint=phrase("write {better}", better=suggestion),
+                    hint=phrase("write {text}", text=suggestion),
                     fix=Fix((edit,), safe=False) if edit else None,
                 )
 
@@ -198,7 +199,7 @@ class OriginMissing(Rule):
             if element.first("origin") is None and {joint.parent, joint.child} <= visible_links:
                 yield self.report(
                     phrase(
-                        "joint '{name}' has no <origin>: '{child}' is in the same place as '{parent}'",
+                        "joint '{name}' has no <origin>, so '{child}' and '{parent}' have the same pose",
                         name=joint.name,
                         child=joint.child,
                         parent=joint.parent,

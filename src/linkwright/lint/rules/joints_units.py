@@ -42,7 +42,7 @@ class LimitInDegrees(Rule):
     options = (Option("most-turns", 3.0, "the largest number of turns to either side that is considered plausible"),)
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every limit of a revolute joint that is implausible in radians and plausible in degrees."""
+        """Report every limit of a revolute joint that is plausible in degrees, but not in radians."""
         max_angle = self.option(subject, "most-turns", float) * 2 * pi
         for joint, limit in limits(subject, "revolute"):
             range_bounds = bounds(limit)
@@ -60,7 +60,9 @@ class LimitInDegrees(Rule):
                         ),
                         limit,
                         name,
-                        hint=phrase("if it is in degrees, write {radians}", radians=format_number(radians(angle))),
+                        hint=phrase(
+                            "write {radians} if the value is in degrees", radians=format_number(radians(angle))
+                        ),
                     )
 
 
@@ -160,5 +162,7 @@ class LimitInMillimetres(Rule):
                         ),
                         limit,
                         name,
-                        hint=phrase("if it is in millimetres, write {way}", way=format_number(position / 1000)),
+                        hint=phrase(
+                            "write {metres} if the value is in millimetres", metres=format_number(position / 1000)
+                        ),
                     )

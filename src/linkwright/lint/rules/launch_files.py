@@ -241,6 +241,6 @@ def _suggestion(package: PackageContext, shared_file: SharedFile) -> Phrase | No
     name = shared_file.path.rpartition("/")[2]
     same_names = [file for file in package.files if file.rpartition("/")[2] == name]
     if same_names:
-        return phrase("did you mean '{same}'?", same=same_names[0])
+        return phrase("did you mean '{name}'?", name=same_names[0])
     similar_paths = nearest(shared_file.path, package.files, 1)
     return phrase("did you mean {names}?", names=quoted(similar_paths[0])) if similar_paths else None

@@ -85,7 +85,7 @@ class LaunchedPackageUnknown(Rule):
                     None if package_reference is None else _intended_package(package_reference.text, package, subject)
                 )
                 if package_reference is not None and similar_name is not None:
-                    message = phrase("there is no package '{text}'", text=package_reference.text)
+                    message = phrase("there is no package '{package}'", package=package_reference.text)
                     yield self.report(
                         message,
                         span=package_reference.span,
@@ -135,7 +135,7 @@ class LaunchedExecutableUnknown(PackageRule):
                 hint = phrase("did you mean {names}?", names=quoted(similar_name))
             else:
                 hint = (
-                    phrase("use one of {known}", known=joined(sorted(executables)))
+                    phrase("use one of {names}", names=joined(sorted(executables)))
                     if executables
                     else phrase("the package has no executables")
                 )

@@ -1,4 +1,4 @@
-"""Rules about values in launch files: ``robot_description``, arguments, and the RViz configuration."""
+"""Rules about values in launch files, such as ``robot_description`` and arguments."""
 
 from __future__ import annotations
 
@@ -39,11 +39,11 @@ _USUAL_FRAMES = frozenset({"map", "odom", "world", "earth", "base_link", "base_f
 
 
 class CommandWithoutBlank(LaunchRule):
-    """There is no blank between the program and its argument in a ``Command``.
+    """There is no space between the program and its argument in a ``Command``.
 
     ## Why
 
-    `Command` concatenates its parts. Without a blank at the end of `'xacro'`, the program and the path become one word,
+    `Command` concatenates its parts. Without a space at the end of `'xacro'`, the program and the path become one word,
     and the launch fails with "file not found".
 
     ## Example
@@ -88,7 +88,7 @@ class DescriptionNotTyped(Rule):
     ## Why
 
     launch parses the output of a command as YAML. Most descriptions are valid plain text in YAML. However, a colon
-    followed by a blank, usually in a comment, causes the error "Unable to parse the value of parameter
+    followed by a space, usually in a comment, causes the error "Unable to parse the value of parameter
     robot_description as yaml". To detect this error, the rule expands the descriptions that the launch file names.
 
     ## Example
@@ -176,7 +176,7 @@ class LaunchArgumentUndeclared(LaunchRule):
                 continue
             similar_name = next(iter(nearest(name, declared_names, 1)), None)
             if similar_name is not None and _is_typo(name, similar_name):
-                message = phrase("nothing declares the launch argument '{name}'", name=name)
+                message = phrase("the launch argument '{name}' is not declared", name=name)
                 span = python.span(call.args[0])
                 yield self.report(
                     message,
@@ -323,7 +323,7 @@ def _first_invalid_yaml_description(
 ) -> tuple[str, str] | None:
     """Return the path of the first description that is not valid YAML, with the reason, or None.
 
-    The descriptions are those that a launch file names.
+    The launch file names the descriptions.
     """
     for shared_file in file.paths:
         share = package.folder if shared_file.package == package.name else subject.finder.find(shared_file.package)

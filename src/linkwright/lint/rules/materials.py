@@ -339,7 +339,7 @@ def _difference(first: Material, second: Material) -> Phrase:
 
 
 def _looks_alike(first: Material, second: Material) -> bool:
-    """Return whether two colours differ so little that the difference is only visible side by side."""
+    """Return whether two colours can only be distinguished side by side."""
     if first.rgba is None or second.rgba is None or first.texture != second.texture:
         return False
     return all(

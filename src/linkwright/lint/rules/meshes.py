@@ -212,7 +212,7 @@ class MeshInMillimetres(Rule):
                     ),
                     use.element,
                     "filename",
-                    hint=phrase('if the file is in millimetres, write scale="{scale}"', scale=scale),
+                    hint=phrase('write scale="{scale}" if the file is in millimetres', scale=scale),
                     fix=_scale_fix(use, scale),
                 )
 
@@ -260,7 +260,7 @@ class MeshTooSmall(Rule):
                     ),
                     use.element,
                     "scale" if "scale" in use.element.attributes else "filename",
-                    hint=phrase("the file is in metres already: leave 'scale' out")
+                    hint=phrase("leave 'scale' out: the file is in metres already")
                     if is_scaled_down
                     else phrase('write scale="{scale}"', scale=scale),
                     fix=_scale_fix(use, scale),
@@ -315,7 +315,7 @@ class ScalesDiffer(Rule):
                             first_use.element.attribute_span("scale"),
                         )
                     ],
-                    hint=phrase("a file has one unit: give it the same scale everywhere"),
+                    hint=phrase("use the same scale everywhere: a mesh file has one unit"),
                 )
 
 

@@ -1,4 +1,7 @@
-"""Rules about the form of mesh URIs. Other rules check whether the files exist."""
+"""Rules about the form of mesh URIs.
+
+Other rules check whether the files exist.
+"""
 
 from __future__ import annotations
 
@@ -28,7 +31,7 @@ MESH_SUFFIXES = (".stl", ".stlb", ".dae", ".obj", ".glb", ".gltf", ".ply", ".fbx
 
 
 def written(element: Element, attribute: str) -> str:
-    """Return an attribute's value as it is written in the file, with xacro expressions unevaluated."""
+    """Return an attribute's value as written in the file, with unevaluated expressions."""
     source = element.source
     value_range = attribute_value_range(source.text, element.offset, attribute) if source is not None else None
     return source.text[slice(*value_range)] if source is not None and value_range is not None else ""
@@ -72,7 +75,7 @@ class MalformedUri(Rule):
                     phrase("the mesh URI '{uri}' {problem}", uri=uri, problem=problem),
                     use.element,
                     "filename",
-                    hint=phrase("write '{better}'", better=corrected)
+                    hint=phrase("write '{text}'", text=corrected)
                     if corrected
                     else phrase("write package://PACKAGE/PATH"),
                     fix=replace_value(use.element, "filename", corrected) if corrected else None,
@@ -116,7 +119,7 @@ class RelativePath(Rule):
                 phrase("the mesh path '{uri}' is relative, which RViz cannot resolve", uri=uri),
                 use.element,
                 "filename",
-                hint=phrase("write '{better}'", better=corrected or "package://PACKAGE/PATH"),
+                hint=phrase("write '{text}'", text=corrected or "package://PACKAGE/PATH"),
                 fix=replace_value(use.element, "filename", corrected, safe=False) if corrected else None,
                 severity=None if is_for_ros else Severity.INFO,
             )
@@ -180,7 +183,7 @@ class MachineSpecificPath(Rule):
                     message,
                     use.element,
                     "filename",
-                    hint=phrase("write '{better}'", better=corrected or "package://PACKAGE/PATH"),
+                    hint=phrase("write '{text}'", text=corrected or "package://PACKAGE/PATH"),
                     fix=replace_value(use.element, "filename", corrected, safe=False) if corrected else None,
                 )
 
@@ -230,11 +233,11 @@ class UnknownEnding(Rule):
 
 
 class UnportableMeshName(Rule):
-    """A mesh URI with blanks or non-ASCII letters.
+    """A mesh URI with spaces or non-ASCII letters.
 
     ## Why
 
-    RViz fetches meshes through a library for web URLs, which does not allow blanks. Non-ASCII letters are compared byte
+    RViz fetches meshes through a library for web URLs, which does not allow spaces. Non-ASCII letters are compared byte
     by byte, so a name typed on a Mac may not match the same name on Linux. The finding on such letters is only
     informational, because the file is found on the author's computer.
 
@@ -263,7 +266,7 @@ class UnportableMeshName(Rule):
                 yield self.report(
                     phrase("the mesh URI '{uri}' contains a space", uri=uri)
                     if " " in name
-                    else phrase("the mesh URI '{uri}' contains letters outside ASCII", uri=uri),
+                    else phrase("the mesh URI '{uri}' contains non-ASCII letters", uri=uri),
                     use.element,
                     "filename",
                     hint=phrase("rename the file with letters, digits and underscores"),
@@ -340,7 +343,7 @@ def file_hint(path: Path, suffixes: Sequence[str]) -> Phrase:
     try:
         names = sorted(entry.name for entry in path.parent.iterdir() if entry.suffix.lower() in suffixes)
     except OSError:
-        return phrase("there is no folder '{parent}'", parent=display_path(path.parent))
+        return phrase("there is no folder '{folder}'", folder=display_path(path.parent))
     suggestion = did_you_mean(path.name, names)
     if suggestion or not names:
         return suggestion or phrase("put the file there, or correct the URI")

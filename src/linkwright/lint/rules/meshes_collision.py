@@ -33,7 +33,7 @@ class HeavyCollision(Rule):
     code = "LW435"
     name = "collision-mesh-heavy"
     holds_for_parts = True
-    options = (Option("triangles", 20_000, "most triangles of a collision mesh"),)
+    options = (Option("triangles", 20_000, "largest number of triangles of a collision mesh"),)
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         max_triangles = self.option(subject, "triangles", int)

@@ -38,7 +38,10 @@ def file_with_other_case(path: Path) -> Path | None:
 
 
 def _is_listed(folder: Path, name: str) -> bool:
-    """Return whether a folder has an entry with exactly this name, even on a case-insensitive disk."""
+    """Return whether a folder has an entry with this name in the same case.
+
+    A case-insensitive disk finds names in any case.
+    """
     if (folder / name.swapcase()).exists() and name.swapcase() != name:
         try:
             return any(path.name == name for path in folder.iterdir())
@@ -184,7 +187,7 @@ class MissingFile(Rule):
                     continue
                 reported_paths.add(path)
                 yield self.report(
-                    phrase("there is no mesh file '{filename}'", filename=use.mesh.filename),
+                    phrase("there is no mesh file '{path}'", path=use.mesh.filename),
                     use.element,
                     "filename",
                     notes=[Note(phrase("its path would be {path}", path=display_path(path)))],
@@ -237,7 +240,7 @@ class WrongCase(Rule):
                 ),
                 use.element,
                 "filename",
-                hint=phrase("write '{better}'", better=corrected),
+                hint=phrase("write '{text}'", text=corrected),
                 fix=replace_value(use.element, "filename", corrected),
             )
 

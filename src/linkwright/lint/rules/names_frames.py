@@ -321,7 +321,10 @@ class OpticalFrameRotation(Rule):
 
 
 def _is_optical(joint: Joint | None) -> bool:
-    """Return whether a joint has the rotation of an optical frame (REP 103). The name of its child is ignored."""
+    """Return whether a joint has the rotation of an optical frame (REP 103).
+
+    The name of its child is not checked.
+    """
     return joint is not None and angle_between(rotation(joint.origin), _OPTICAL_ROTATION) <= _ANGLE_TOLERANCE
 
 

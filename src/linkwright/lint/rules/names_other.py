@@ -50,7 +50,7 @@ class JointNameIsLinkName(Rule):
 
 
 class RobotNameUnusual(Rule):
-    """The name of the robot has blanks or other characters that ROS names do not allow.
+    """The name of the robot has spaces or other characters that ROS names do not allow.
 
     ## Why
 

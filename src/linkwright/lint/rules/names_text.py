@@ -25,11 +25,11 @@ def named(subject: Subject) -> Iterator[tuple[str, str, Element]]:
 
 
 class NameEdgeBlank(Rule):
-    """The name of a link or joint begins or ends with a blank.
+    """The name of a link or joint begins or ends with a space.
 
     ## Why
 
-    The blank is part of the name. A parent, a transform lookup or a joint state without the blank refers to another
+    The space is part of the name. A parent, a transform lookup or a joint state without the space refers to another
     link or joint, and the difference is invisible.
 
     ## Example
@@ -62,12 +62,12 @@ class NameEdgeBlank(Rule):
 
 
 class NameBlank(Rule):
-    """The name of a link or joint has a blank inside.
+    """The name of a link or joint contains a space.
 
     ## Why
 
     Names of links and joints become names of frames, parameters and topics, and arguments on command lines. There,
-    blanks cause problems or are not allowed.
+    spaces cause problems or are not allowed.
 
     ## Example
 
@@ -90,7 +90,7 @@ class NameBlank(Rule):
         for kind, name, element in named(subject):
             stripped = name.strip()
             if re.search(r"\s", stripped):
-                hint = phrase("write '{sub}' in all places", sub=re.sub(chr(92) + "s+", "_", stripped))
+                hint = phrase("write '{name}' in all places", name=re.sub(chr(92) + "s+", "_", stripped))
                 yield self.report(
                     phrase("the name of the {kind} '{name}' contains a space", kind=term(kind), name=name),
                     element,
@@ -167,7 +167,7 @@ class NameNotAscii(Rule):
             if non_ascii:
                 characters_text = ", ".join(f"'{character}' (U+{ord(character):04X})" for character in non_ascii)
                 message = phrase(
-                    "the name of the {kind} '{name}' contains letters outside ASCII: {listed}",
+                    "the name of the {kind} '{name}' contains non-ASCII letters: {listed}",
                     kind=term(kind),
                     name=name,
                     listed=characters_text,
@@ -250,7 +250,7 @@ class NameUpperCase(Rule):
                     "the name of the {kind} '{name}' is not in lower case with underscores", kind=term(kind), name=name
                 )
                 yield self.report(
-                    message, element, "name", hint=phrase("the usual form is '{snake}'", snake=snake_case)
+                    message, element, "name", hint=phrase("use the usual form '{snake}'", snake=snake_case)
                 )
 
 
@@ -292,7 +292,7 @@ class NamesDifferInCase(Rule):
                     other=first_name,
                     name=name,
                 )
-                note = Note(phrase("'{other}' is defined here", other=first_name), first_element.attribute_span("name"))
+                note = Note(phrase("'{name}' is defined here", name=first_name), first_element.attribute_span("name"))
                 yield self.report(message, element, "name", notes=[note], hint=phrase("give one of them another name"))
 
 
@@ -331,4 +331,4 @@ class NameSuffixDoubled(Rule):
                     match=match[1],
                 )
                 suggestion = name[: -len(match[1]) - 1]
-                yield self.report(message, element, "name", hint=phrase("write '{shorter}'", shorter=suggestion))
+                yield self.report(message, element, "name", hint=phrase("write '{text}'", text=suggestion))

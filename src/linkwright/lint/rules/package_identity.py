@@ -74,7 +74,7 @@ class PackageNameDiffers(PackageRule):
                 other_name=name,
             )
             yield self.report(
-                message, span=setup.name[1], source=setup.source, notes=[note], hint=phrase("write '{name}'", name=name)
+                message, span=setup.name[1], source=setup.source, notes=[note], hint=phrase("write '{text}'", text=name)
             )
         if cmake is not None and cmake.project is not None and cmake.is_ament:
             project = cmake.project
@@ -95,11 +95,11 @@ class PackageNameDiffers(PackageRule):
 
 
 class PackageName(ManifestRule):
-    """The name of a package is not one that colcon accepts, or does not follow REP 144.
+    """The name of a package is one that colcon rejects, or does not follow REP 144.
 
     ## Why
 
-    colcon reads `package.xml` through catkin_pkg, which refuses a name with blanks or dots, so such a name is an error.
+    colcon reads `package.xml` through catkin_pkg, which rejects a name with spaces or dots, so such a name is an error.
     REP 144 requires lower case letters, digits and underscores. Python cannot import a package whose name has a dash,
     and `ros2 pkg create` does not create such a package. A name that only violates REP 144 is informational, because a
     published package cannot easily be renamed.
@@ -173,7 +173,7 @@ class FolderNameDiffers(PackageRule):
 
 
 class MaintainerEmail(ManifestRule):
-    """A maintainer's e-mail address is not one that colcon accepts.
+    """A maintainer's e-mail address is one that colcon rejects.
 
     ## Why
 
@@ -199,7 +199,10 @@ class MaintainerEmail(ManifestRule):
     severity = Severity.ERROR
 
     def check_manifest(self, manifest: Manifest) -> Iterator[Diagnostic]:
-        """Yield a finding for each maintainer with an invalid e-mail address."""
+        """Yield findings about missing and invalid e-mail addresses.
+
+        Every maintainer needs an address. An author's address is optional.
+        """
         for element in manifest.root.elements():
             if element.tag not in ("maintainer", "author"):
                 continue
@@ -213,7 +216,7 @@ class MaintainerEmail(ManifestRule):
                         hint=phrase('add email="..."'),
                     )
             elif not is_email(email):
-                message = phrase("'{email}' is not an e-mail address that colcon accepts", email=email)
+                message = phrase("'{address}' is not an e-mail address that colcon accepts", address=email)
                 hint = phrase("write it as name@example.org, in ASCII letters")
                 yield self.report(message, element, "email", hint=hint)
 

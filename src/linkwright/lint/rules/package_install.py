@@ -31,7 +31,7 @@ _USUAL_FOLDERS = frozenset(
         *("materials", "world", "worlds", "config", "configs", "cfg", "param", "params", "rviz", "map", "maps", "srdf"),
     }
 )
-"""The names of folders with files that are usually installed; other folders may contain templates or sources."""
+"""The names of folders with files that are usually installed. Other folders may contain templates or sources."""
 _SETTINGS_FILE = lazy_pattern(r"(?<!\.launch)\.(rviz|yaml)$", re.IGNORECASE)
 _UNSHARED_FOLDER = lazy_pattern(r"(^|/)(test|tests|docs?|scripts?|\w*_py|src|include|resource|ci|docker)(/|$)")
 
@@ -80,7 +80,7 @@ class PatternMatchesNothing(PackageRule):
                 hint = (
                     phrase("there are other files in '{folder}'", folder=folder)
                     if folder in package.folders
-                    else phrase("'{folder}' is empty", folder=folder)
+                    else phrase("'{name}' is empty", name=folder)
                 )
             else:
                 hint = phrase("there is no folder '{folder}'", folder=folder) if folder else None
@@ -333,7 +333,7 @@ def _top_folder(folder: str) -> str:
 
 
 def nearest_folder(package: PackageContext, folder: str) -> str | None:
-    """Return the folder with the name that is most similar to the name of a missing folder, or None.
+    """Return the folder whose name is most similar to that of a missing folder, or None.
 
     Only folders in the same parent folder are compared. The result is also None if the folder exists.
     """

@@ -29,7 +29,10 @@ _BUILD_FILES = {
 
 
 class PackageRule(Rule, ABC):
-    """The base class of rules about packages. The rules skip descriptions outside a package."""
+    """The base class of rules about packages.
+
+    The rules skip descriptions outside a package.
+    """
 
     scope = Scope.PACKAGE
 
@@ -320,7 +323,7 @@ class BuildTypeDiffers(PackageRule):
             )
         else:
             message = phrase(
-                "the build type is not given, which means catkin, but the package has a {file}", file=existing_file
+                "package.xml has no <build_type>, so it is catkin, but the package has a {file}", file=existing_file
             )
         yield self.report(
             message, element, hint=phrase("write <build_type>{right}</build_type> in <export>", right=expected_type)

@@ -1,4 +1,4 @@
-"""Rules about packages built with setuptools, such as marker, executables and ``setup.cfg``."""
+"""Rules about setuptools packages: the resource marker, the executables, ``setup.cfg``."""
 
 from __future__ import annotations
 
@@ -207,7 +207,7 @@ class EntryPointMissing(PackageRule):
                     function=entry.function,
                     file=file,
                 )
-                hint = phrase("define {function}() in it", function=entry.function)
+                hint = phrase("define {function}() in '{file}'", function=entry.function, file=file)
                 yield self.report(message, span=entry.span, source=setup.source, hint=hint)
 
 

@@ -90,7 +90,7 @@ class WheelsNotLevel(Rule):
 
     code = "LW390"
     name = "wheels-not-level"
-    options = (Option("tolerance", 0.01, "how far above the ground a wheel may be, in m"),)
+    options = (Option("tolerance", 0.01, "largest distance of a wheel from the ground, in m"),)
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         all_contacts = subject.once(contacts)
@@ -158,7 +158,7 @@ class CenterBeyondWheels(Rule):
 
     code = "LW391"
     name = "center-of-mass-beyond-wheels"
-    options = (Option("margin", 0.01, "how far outside it may be, in m"),)
+    options = (Option("margin", 0.01, "largest distance outside the area between the wheels, in m"),)
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         robot = subject.robot
@@ -177,7 +177,7 @@ class CenterBeyondWheels(Rule):
             )
             yield self.report(
                 phrase(
-                    "the centre of mass of the robot is {distance:.3g} cm beyond its wheels, so it tips over",
+                    "the centre of mass of the robot is {distance:.3g} cm beyond its wheels, so the robot tips over",
                     distance=distance * 100,
                 ),
                 heaviest_link.element,
@@ -209,7 +209,7 @@ def _depth(shape: object, upward: float) -> float | None:
 
 
 def _center_of_mass(robot: Robot, frames: Mapping[str, Placement]) -> Point | None:
-    """Return x and y of a robot's centre of mass in the base frame in m, or None if the robot is massless."""
+    """Return x and y in m of a robot's centre of mass in the base frame, or None if massless."""
     base = frames.get("base_link", frames[robot.root])
     total = x = y = 0.0
     for name, link in robot.links.items():

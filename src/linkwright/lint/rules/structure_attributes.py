@@ -43,7 +43,7 @@ class MisspeltAttribute(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every unread attribute whose name is similar to the name of an absent URDF attribute."""
+        """Report every unread attribute that is probably a misspelt URDF attribute."""
         hints = reader_hints(subject)
         for schema_element, attribute in subject.structure.unknown_attributes:
             intended = intended_attribute(schema_element, attribute)
@@ -100,7 +100,7 @@ class UnknownAttribute(Rule):
                 phrase("'{attribute}' in {place} is not read", attribute=attribute, place=schema_element),
                 schema_element.element,
                 span=attribute_name_span(schema_element.element, attribute),
-                hint=phrase("only {known} can be used here", known=allowed)
+                hint=phrase("use only {known} here", known=allowed)
                 if allowed
                 else phrase("<{tag}> has no attributes", tag=schema_element.rule.tag),
             )

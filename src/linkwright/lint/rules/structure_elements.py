@@ -98,7 +98,10 @@ class MisplacedElement(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every unread URDF element that other parents allow, except materials in collisions."""
+        """Report unread URDF elements that other parents allow.
+
+        Elements without an effect, and elements that the URDF reader reports, are left out.
+        """
         reported_spans = reader_hints(subject)
         for schema_element, child in subject.structure.unknown_elements:
             parent_tags = PARENT_TAGS.get(child.tag, ())
@@ -174,7 +177,7 @@ class UnknownElement(Rule):
                 yield self.report(
                     phrase("<{tag}> in {place} is not read", tag=child.tag, place=location_phrase(schema_element)),
                     child,
-                    hint=phrase("only {known} can be used here", known=allowed)
+                    hint=phrase("use only {known} here", known=allowed)
                     if allowed
                     else phrase("<{tag}> has no child elements", tag=schema_element.rule.tag),
                 )

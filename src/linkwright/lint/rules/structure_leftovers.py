@@ -38,7 +38,10 @@ class XacroInUrdf(Rule):
     severity = Severity.ERROR
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every URI with an expression. The URDF reader reports expressions in place of numbers."""
+        """Report every URI with an expression.
+
+        The URDF reader reports expressions in place of numbers.
+        """
         if subject.expansion is not None:
             return
         for schema_element in subject.structure.places:
@@ -48,12 +51,12 @@ class XacroInUrdf(Rule):
                     continue
                 if "${" in value or "$(" in value:
                     yield self.report(
-                        phrase("'{written}' is not evaluated in a file that is not xacro", written=value),
+                        phrase("'{written}' is not evaluated, because this file is plain URDF", written=value),
                         schema_element.element,
                         attribute,
                         hint=phrase(
-                            'declare xmlns:xacro="http://www.ros.org/wiki/xacro" on <robot> and call the file'
-                            " {stem}.urdf.xacro",
+                            'declare xmlns:xacro="http://www.ros.org/wiki/xacro" on <robot>, and rename the file '
+                            "to {stem}.urdf.xacro",
                             stem=PurePath(subject.path).stem,
                         ),
                     )

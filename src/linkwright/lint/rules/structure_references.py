@@ -1,4 +1,4 @@
-"""Rules about links and joints named in ``<gazebo>``, ``<transmission>``, ``<ros2_control>``."""
+"""Rules about references to links and joints from ``<gazebo>`` and similar elements."""
 
 from __future__ import annotations
 
@@ -34,9 +34,10 @@ def _without_siblings(name: str, candidates: Iterable[str]) -> list[str]:
 
 
 def _intended_kind(gazebo: Element, name: str) -> str:
-    """Return the kind of object that a `<gazebo>` probably refers to: ``link``, ``joint``, or empty if unknown.
+    """Return the kind of object that a `<gazebo>` probably refers to.
 
-    The content of the `<gazebo>` decides, or else the name.
+    The kind is ``link`` or ``joint``, or empty if it is unknown. The content of the `<gazebo>` decides, or else the
+    name.
     """
     child_tags = {child.tag for child in gazebo.elements()}
     if child_tags & JOINT_ELEMENTS:
@@ -133,7 +134,7 @@ class TransmissionJointUnknown(Rule):
     name = "transmission-joint-unknown"
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every transmission of a missing joint, including those in ``<ros2_control>``."""
+        """Report every transmission of a missing joint, including transmissions in ``<ros2_control>``."""
         joint_names = _names(subject, "joint")
         transmissions = list(subject.elements("transmission"))
         transmissions += [
@@ -220,7 +221,7 @@ class ControlInterfaceMisspelt(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every interface of a joint whose name is close to a standard name but differs from it."""
+        """Report every joint interface whose name is close to a standard name."""
         for _, joint in _control_joints(subject):
             for interface in joint.elements():
                 if interface.tag not in ("command_interface", "state_interface"):
@@ -333,7 +334,7 @@ class ControlJointRepeated(Rule):
                         joint,
                         "name",
                         hint=phrase("write all its interfaces in one <joint>"),
-                        notes=(Note(phrase("it is first listed here"), first_joint.span()),),
+                        notes=(Note(phrase("first listed here"), first_joint.span()),),
                     )
 
 

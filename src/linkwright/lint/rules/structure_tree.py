@@ -206,7 +206,7 @@ class NewerVersion(Rule):
         if robot is not None and robot.version > (1, 0):
             version = ".".join(map(str, robot.version))
             yield self.report(
-                phrase("URDF version '{written}' is refused by the urdfdom of ROS 2 Jazzy and older", written=version),
+                phrase("urdfdom rejects URDF version '{written}' in ROS 2 Jazzy and older", written=version),
                 subject.root,
                 "version",
                 hint=phrase('write version="1.0" if the file uses nothing newer'),

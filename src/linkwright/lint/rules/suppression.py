@@ -1,4 +1,7 @@
-"""Rules about suppression comments. The engine reports their findings."""
+"""Rules about suppression comments.
+
+The engine reports their findings.
+"""
 
 from __future__ import annotations
 

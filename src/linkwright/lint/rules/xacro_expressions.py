@@ -1,4 +1,4 @@
-"""Rules about xacro expressions: deprecated functions, constant conditions, undeclared arguments."""
+"""Rules about xacro expressions, such as deprecated functions and undeclared arguments."""
 
 from __future__ import annotations
 
@@ -70,9 +70,7 @@ class DeprecatedFunction(XacroRule):
                 if source.text.startswith(name, start):
                     fix = Fix((Edit(source.name, start, start, full_name.removesuffix(name)),))
         message = phrase("calling '{name}' by its bare name is deprecated", name=name)
-        return self.report(
-            message, element, attribute, span=span, hint=phrase("write {better}", better=full_name), fix=fix
-        )
+        return self.report(message, element, attribute, span=span, hint=phrase("write {text}", text=full_name), fix=fix)
 
 
 def _is_called_by(name: str, file: FileFacts) -> bool:
@@ -168,7 +166,8 @@ class UndeclaredArgument(XacroRule):
                 for name in sorted(use.mentions.arguments - declared_names):
                     if f"$(arg {name})" in text:
                         message = phrase(
-                            "nothing declares the argument '{name}', which a branch that is not taken uses", name=name
+                            "the argument '{name}' is not declared, but is used in a branch that is not taken",
+                            name=name,
                         )
                         hint = phrase('declare it: <xacro:arg name="{name}" default="..."/>', name=name)
                         yield self.report(message, use.element, use.attribute, hint=hint)

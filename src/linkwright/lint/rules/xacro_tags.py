@@ -450,7 +450,7 @@ class MacroDefinedTwice(XacroRule):
                     continue
                 first_macro = first_macros.setdefault((macro.name, id(macro.parents[-1])), macro)
                 if first_macro is not macro:
-                    note = Note(phrase("it is first defined here"), first_macro.element.attribute_span("name"))
+                    note = Note(phrase("first defined here"), first_macro.element.attribute_span("name"))
                     message = phrase("the macro '{name}' is defined twice in this file", name=macro.name)
                     yield self.report(
                         message, macro.element, "name", notes=[note], hint=phrase("rename or remove one of them")

@@ -376,14 +376,14 @@ def _is_first(definition: Definition, file: FileFacts) -> bool:
 def _hint(name: str, used_names: frozenset[str], form: str = "${...}") -> Phrase:
     intended = find_misspelt(name, used_names)
     if intended is not None:
-        return phrase("did you mean '{close}', which is used? If not, remove it", close=intended)
+        return phrase("rename it to '{close}', which is used, or remove it", close=intended)
     return phrase("use it with {form}, or remove it", form=form)
 
 
 def _included_paths(facts: XacroFacts) -> dict[int, Path]:
     """Return the path of the file that each include reads, by the `id` of the include's element.
 
-    Only includes with a literal file name are contained.
+    Includes with a namespace, and includes whose file is not unique, are left out.
     """
     paths: dict[int, Path] = {}
     paths_by_name: dict[str, list[Path]] = {}

@@ -1,4 +1,4 @@
-"""Code actions: quick fixes at once, and refactorings whose edits are proved when the user chooses one."""
+"""Code actions: quick fixes, and refactorings that are proved when the user selects one."""
 
 from __future__ import annotations
 
@@ -33,17 +33,17 @@ def _name(kind: types.CodeActionKind | str) -> str:
 
 
 def is_requested(kind: str, only: Sequence[types.CodeActionKind | str] | None) -> bool:
-    """Return whether a kind of action is one that the editor asks for, or below one.
+    """Return whether the editor requests a kind of action or one of its parents.
 
     Args:
         kind: the kind, such as ``refactor.extract``.
-        only: the kinds that the editor asks for; None for all.
+        only: the kinds that the editor requests, or None for all.
     """
     return only is None or any(f"{kind}.".startswith(f"{outer}." if outer else "") for outer in map(_name, only))
 
 
 def _may_be_requested(kinds: Iterable[types.CodeActionKind], only: Sequence[types.CodeActionKind | str] | None) -> bool:
-    """Return whether the editor asks for one of some kinds, or for one below it."""
+    """Return whether the editor requests some kinds, their parents or their subkinds."""
     names = [_name(outer) for outer in only or ()]
     return any(
         is_requested(kind.value, only) or any(name.startswith(f"{kind.value}.") for name in names) for kind in kinds
@@ -95,7 +95,7 @@ def _modified() -> JsonRpcException:
 async def _refactorings(
     server: LinkwrightServer, offers: Iterable[Offer], path: Path, positions: TextPositions, selection: tuple[int, int]
 ) -> list[types.CodeAction]:
-    """Return the actions of refactorings, each with its edit unless the editor resolves edits itself."""
+    """Return the actions of refactorings, with edits unless the editor resolves them later."""
     actions = []
     for offer in offers:
         title, kind = localized(offer.title), offer.action.value
@@ -111,7 +111,7 @@ async def _refactorings(
             continue
         try:
             edit = await _refactoring_edit(server, offer.action, path, *selection, server.texts())
-        except LinkwrightError:  # what is not proved is not offered
+        except LinkwrightError:  # an unproved refactoring is not offered
             continue
         actions.append(types.CodeAction(title, kind, edit=edit))
     return actions

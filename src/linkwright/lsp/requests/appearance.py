@@ -1,4 +1,4 @@
-"""The appearance of a text: the meaning of its names, the expressions in attributes, and colours."""
+"""The appearance of a text: semantic highlighting and colours."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ from linkwright.lsp.server import LinkwrightServer
 _LEGEND = types.SemanticTokensLegend([kind.value for kind in HighlightKind], ["definition"])
 _INDEX = {kind: number for number, kind in enumerate(HighlightKind)}
 _FIELDS = 5
-"""The integers of one token: line and column relative to the token before, length, type, modifiers."""
+"""The number of integers in a token: relative line and column, length, type, modifiers."""
 
 
 def semantic_tokens(positions: TextPositions, highlights: Iterable[Highlight]) -> list[int]:
-    """Return highlights in the encoding of the protocol; those over several lines are left out.
+    """Encode the highlights within one line for the protocol.
 
     Args:
         positions: the text.
-        highlights: the highlights, in the order of the text.
+        highlights: the highlights, in text order.
     """
     data: list[int] = []
     line = column = 0
@@ -47,7 +47,7 @@ def colors(positions: TextPositions) -> list[types.ColorInformation]:
 
 
 def color_edits(positions: TextPositions, place: types.Range, color: types.Color) -> list[types.ColorPresentation]:
-    """Return the text that writes a colour at a place, with alpha if there was one."""
+    """Return the edit that replaces the colour in a range, with alpha if it is needed."""
     written = positions.text[positions.offset(place.start) : positions.offset(place.end)]
     with_alpha = len(written.split()) == 4 or color.alpha != 1
     text = written_color((color.red, color.green, color.blue, color.alpha), with_alpha=with_alpha)

@@ -1,8 +1,8 @@
-"""The expansion of a description as a virtual document, and the way from an element to its expansions and back.
+"""The expansion of a description as a virtual document, with navigation to and from it.
 
 The URI of the document is ``linkwright-expansion:///PATH?NAME:=VALUE...`` with the path of the description. Its content
-is the answer to ``workspace/textDocumentContent`` (protocol 3.18). The implementations of a place in a description are
-the elements to which it expands; the definition of a place in the virtual document is the element in the source.
+is the response to ``workspace/textDocumentContent`` (protocol 3.18). The implementations of an element in a description
+are the elements to which it expands. The definition of an element in the virtual document is its source.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ SCHEME = "linkwright-expansion"
 
 
 def is_expanded(file: Path) -> bool:
-    """Return whether a file is written in xacro or read as a description, so that it has an expansion."""
+    """Return whether a file has the suffix of a description, which can be expanded."""
     return file.name.endswith(DESCRIPTIONS)
 
 
@@ -39,7 +39,7 @@ def expansion_uri(entry: Path, arguments: Mapping[str, str]) -> str:
 
 
 def description_of(uri: str) -> tuple[Path, dict[str, str]] | None:
-    """Return the description and the arguments of the URI of an expansion, or None for other URIs."""
+    """Return the description and arguments in an expansion's URI, or None for other URIs."""
     parts = urlsplit(uri)
     entry = path_of(f"file://{parts.path}") if parts.scheme == SCHEME else None
     if entry is None:
@@ -51,7 +51,10 @@ def description_of(uri: str) -> tuple[Path, dict[str, str]] | None:
 def _expansions(
     project: Workspace, texts: Mapping[Path, str], file: Path
 ) -> Iterator[tuple[Path, Mapping[str, str], ExpandedText]]:
-    """Yield an expansion of each description that includes a file, for its first argument set without an error."""
+    """Yield one expansion of each description that includes a file.
+
+    The expansion uses the first argument set without an error.
+    """
     for entry in project.index.entries(file, texts):
         for arguments, _ in project.calls(entry):
             try:
@@ -84,7 +87,7 @@ def implementations(
 
 
 def source_of(server: LinkwrightServer, uri: str, place: types.Position) -> list[types.Location] | None:
-    """Return the element in the source for a place in the expansion with a URI, or None for other URIs."""
+    """Return the source of the element at a position in an expansion, or None for other URIs."""
     description = description_of(uri)
     if description is None or server.project is None:
         return None

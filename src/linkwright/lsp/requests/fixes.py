@@ -1,4 +1,4 @@
-"""Quick fixes: the fixes of findings, all safe fixes at once, and comments that suppress findings."""
+"""Quick fixes: fixes of findings, all safe fixes, and comments that suppress findings."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from linkwright.lsp.server import LinkwrightServer
 def fixes(
     server: LinkwrightServer, findings: Sequence[Finding], asked: types.CodeActionParams, positions: TextPositions
 ) -> Iterator[types.CodeAction]:
-    """Yield the fixes of the findings that touch a range, and a fix of all safe ones.
+    """Yield a fix for each finding in a range, and one action for all safe fixes.
 
     Args:
         server: the server.
@@ -44,7 +44,7 @@ def fixes(
         )
     edits = _edits([finding.fix for finding in findings if finding.fix is not None and finding.fix.safe])
     if edits:
-        title = localized(phrase("fix everything that is safe to fix in this file"))
+        title = localized(phrase("apply all safe fixes in this file"))
         yield types.CodeAction(title, types.CodeActionKind.SourceFixAll, edit=document_edits(server, edits))
 
 
@@ -55,7 +55,7 @@ def suppressions(
     path: Path,
     positions: TextPositions,
 ) -> Iterator[types.CodeAction]:
-    """Yield the comments that suppress the findings that touch a range, each with a place for the reason.
+    """Yield the comments that suppress the findings in a range, with a placeholder reason.
 
     Args:
         server: the server.
@@ -91,7 +91,7 @@ def _reported(asked: types.CodeActionParams, finding: Diagnostic) -> list[types.
 
 
 def _edits(fixes: Iterable[Fix]) -> list[Edit]:
-    """Return the edits of fixes that do not overlap earlier ones."""
+    """Return the edits of the fixes, except fixes that overlap earlier ones."""
     edits: list[Edit] = []
     for fix in fixes:
         new = [Edit(real(one.source_file), one.start, one.end, one.replacement) for one in fix.edits]

@@ -1,4 +1,4 @@
-"""Hints and lenses beside a text: values of expressions, block parameters of calls, and the number of uses of names."""
+"""Inlay hints with values and block parameters, and code lenses with numbers of uses."""
 
 from __future__ import annotations
 
@@ -18,18 +18,20 @@ from linkwright.language.parameters import block_parameters
 from linkwright.language.renaming import references
 from linkwright.language.values import ValuedText, short_values, whole_texts
 from linkwright.lsp.positions import TextPositions
+from linkwright.lsp.requests.robot_pages import SHOW_ROBOT
 from linkwright.lsp.server import LinkwrightServer
 
 SHOW_REFERENCES = "linkwright.showReferences"
-"""The command of lenses: it shows the locations of references. A client that has it registers it."""
+"""The client's command that shows references, which code lenses use if the client has it."""
 OPEN_IN_PAGE = "linkwright.openInPage"
+"""The command of a client that shows the robot itself; it is asked instead of the server."""
 _COUNTED_KINDS = (NameKind.MACRO, NameKind.PROPERTY, NameKind.ARGUMENT)
 
 
 def value_hints(
     positions: TextPositions, values: Sequence[ValuedText], start: int, end: int
 ) -> Iterator[types.InlayHint]:
-    """Yield the values of the texts with expressions in a range, each after its text.
+    """Yield a hint with the values after each text with expressions in a range.
 
     Args:
         positions: the text.
@@ -47,7 +49,7 @@ def value_hints(
 def block_hints(
     positions: TextPositions, names: Sequence[NameDefinition], start: int, end: int
 ) -> Iterator[types.InlayHint]:
-    """Yield the names of the block parameters in the macro calls of a range, each before its element."""
+    """Yield a hint with the parameter's name before each block in the macro calls of a range."""
     for element in Outline.of(positions.text).all():
         if start <= element.tag.start <= end:
             for block, name in block_parameters(element, names):
@@ -56,17 +58,18 @@ def block_hints(
 
 
 def lenses(server: LinkwrightServer, path: Path, positions: TextPositions) -> list[types.CodeLens]:
-    """Return the lenses of a file: the uses of its macros, properties and arguments, and the page for its robot."""
+    """Return the code lenses of a file: the uses of its names, and its robot in the page."""
     found = []
     for name in occurrences_in(positions.text, real(path)):
         if name.is_definition and name.kind in _COUNTED_KINDS:
             place = positions.range(name.start, name.end)
             found.append(types.CodeLens(place, data={"uri": server.uri_of(path), "offset": name.start}))
     for element in Outline.of(positions.text).elements:
-        if element.tag.name == "robot" and OPEN_IN_PAGE in server.client_commands:
+        if element.tag.name == "robot":
             title = localized(phrase("open in the page"))
             place = positions.range(element.tag.start, element.tag.end)
-            found.append(types.CodeLens(place, types.Command(title, OPEN_IN_PAGE, arguments=[server.uri_of(path)])))
+            command = OPEN_IN_PAGE if OPEN_IN_PAGE in server.client_commands else SHOW_ROBOT
+            found.append(types.CodeLens(place, types.Command(title, command, arguments=[server.uri_of(path)])))
     return found
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from lsprotocol import types
@@ -12,15 +13,16 @@ from linkwright.diagnostics.translation import localized
 from linkwright.language.completion import Completion, ItemKind
 from linkwright.language.definitions import NameDefinition, NameKind
 from linkwright.language.facts import facts_at
-from linkwright.language.format import Document, Target
-from linkwright.language.hover import definitions_at, explain_at
+from linkwright.language.format import Document, NotYetKnownError, Target
+from linkwright.language.formats import format_of
+from linkwright.language.hover import definitions_at
 from linkwright.language.includes import real
 from linkwright.language.links import file_references
 from linkwright.language.renaming import occurrence_at, references
-from linkwright.language.robot_names import PartNames
 from linkwright.language.suppressing import code_at
 from linkwright.language.values import ValuedText, described_values, value_at
 from linkwright.language.xml_completion import complete
+from linkwright.language.xml_hover import explain_at
 from linkwright.lint.explain import find_page
 from linkwright.lsp.positions import TextOf, TextPositions
 from linkwright.lsp.requests.expansions import source_of
@@ -40,10 +42,25 @@ _KINDS = {
 }
 
 
+def completions_at(document: Document, offset: int, names: Sequence[NameDefinition]) -> list[Completion]:
+    """Return the completions at an offset, by the format of the file.
+
+    Args:
+        document: the text.
+        offset: the character offset of the cursor.
+        names: the names that the description of the file defines, if it is one.
+
+    Raises:
+        NotYetKnownError: they need results that no request has found, and the document does not wait.
+    """
+    own = format_of(document.file)
+    return complete(document, offset, names) if own is None else [*own.complete(document, offset)]
+
+
 def items(
     found: Iterable[Completion], positions: TextPositions, place: types.Position, *, takes_snippets: bool
 ) -> list[types.CompletionItem]:
-    """Return completions at a place as the protocol has them; editors keep their order."""
+    """Convert completions to the protocol, with sort texts that keep their order."""
     offset = positions.offset(place)
     listed = [_item(item, positions, offset, takes_snippets=takes_snippets) for item in found]
     for number, item in enumerate(listed):
@@ -53,39 +70,41 @@ def items(
 
 def _item(item: Completion, positions: TextPositions, offset: int, *, takes_snippets: bool) -> types.CompletionItem:
     is_snippet = bool(item.snippet) and takes_snippets
-    edit = types.TextEdit(positions.range(item.start, offset), item.snippet if is_snippet else item.label)
+    opens = item.snippet.startswith("<")
+    plain = f"<{item.label}" if opens else item.label
+    edit = types.TextEdit(positions.range(item.start, offset), item.snippet if is_snippet else plain)
     return types.CompletionItem(
         item.label,
         kind=_KINDS[item.kind],
         detail=item.detail or None,
         documentation=_markdown(item.description) if item.description else None,
         insert_text_format=types.InsertTextFormat.Snippet if is_snippet else types.InsertTextFormat.PlainText,
-        # Neovim offers an item without this text whatever is typed.
-        filter_text=f"<{item.label}" if item.snippet.startswith("<") else item.label,
+        # Without this text, Neovim offers the item regardless of the typed text.
+        filter_text=f"<{item.label}" if opens else item.label,
         text_edit=edit,
     )
 
 
 def hover(
-    path: Path,
+    document: Document,
     names: Sequence[NameDefinition],
     values: Sequence[ValuedText],
     facts: Iterable[str],
     positions: TextPositions,
     place: types.Position,
 ) -> types.Hover | None:
-    """Return what is known about a place, or None if there is nothing to say.
+    """Return the hover at a position, or None if nothing is known.
 
     Args:
-        path: the file.
+        document: the file.
         names: the names that the description defines.
         values: the values of the expressions in the file.
-        facts: the facts about the link, joint, mesh or package at the place.
+        facts: the facts about the link, joint, mesh or package at the position.
         positions: the text of the file.
-        place: the place.
+        place: the position.
     """
     offset = positions.offset(place)
-    found, valued = explain_at(positions.text, offset, path, names), value_at(values, offset)
+    found, valued = explain_at(document, offset, names), value_at(values, offset)
     parts = [] if found is None else [localized(found.text)]
     span = None if found is None else (found.start, found.end)
     if valued is not None:
@@ -98,7 +117,7 @@ def hover(
 
 
 def suppression_hover(server: LinkwrightServer, asked: types.HoverParams) -> types.Hover | None:
-    """Return the page of the rule whose code is at a place in a suppression comment, or None."""
+    """Return the page of the rule in the suppression comment at a position, or None."""
     path = path_of(asked.text_document.uri)
     positions = None if path is None else server.positions(path)
     suppressed = None if positions is None else code_at(positions.text, positions.offset(asked.position))
@@ -116,7 +135,7 @@ def definitions(
     text_of: TextOf,
     uri: Callable[[Path], str],
 ) -> list[types.Location]:
-    """Return where the name at a place is defined."""
+    """Return the definitions of the name at a position."""
     found = definitions_at(positions.text, positions.offset(place), names)
     return [*_locations(found, text_of, uri)]
 
@@ -124,7 +143,7 @@ def definitions(
 async def parameter_definitions(
     server: LinkwrightServer, path: Path, positions: TextPositions, place: types.Position
 ) -> list[types.Location]:
-    """Return where the parameter of a macro at a place is declared; nothing for other names."""
+    """Return the declaration of the macro parameter at a position, or an empty list."""
     project, texts = server.project, server.texts()
     name = occurrence_at(positions.text, real(path), positions.offset(place))
     if project is None or name is None or name.kind is not NameKind.PARAMETER:
@@ -145,20 +164,20 @@ def _locations(
 
 
 def explained(own: FormattedText, place: types.Position) -> types.Hover | None:
-    """Return what a format knows about a place, or None if there is nothing to say."""
+    """Return the hover of a format at a position, or None if nothing is known."""
     found = own.format.explain(own.document, own.positions.offset(place))
     return None if found is None else types.Hover(_markdown(found.text), own.positions.range(found.start, found.end))
 
 
 def targets_at(own: FormattedText, place: types.Position) -> list[Target]:
-    """Return where a format finds the definition of the name at a place."""
+    """Return the definitions that a format finds for the name at a position."""
     return [*own.format.define(own.document, own.positions.offset(place))]
 
 
 def target_locations(
     targets: Iterable[Target], text_of: TextOf, uri: Callable[[Path], str]
 ) -> Iterable[types.Location]:
-    """Yield the places of targets as the protocol has them."""
+    """Convert targets to locations of the protocol."""
     for target in targets:
         text = text_of(target.file)
         start = types.Position(0, 0)
@@ -180,25 +199,22 @@ def add_requests(server: LinkwrightServer) -> None:
         capabilities = server.client_capabilities.text_document
         item = capabilities.completion.completion_item if capabilities and capabilities.completion else None
         takes_snippets = bool(item and item.snippet_support)
-        own = await server.formatted(asked.text_document)
-        if own is not None:
-            await server.when_indexed()
-            server.check_unchanged(own.document.file, own.positions)
-            found = own.format.complete(own.document, own.positions.offset(asked.position))
-            return items(found, own.positions, asked.position, takes_snippets=takes_snippets)
-        path, positions = server.text(asked.text_document)
+        path, positions = server.readable(asked.text_document)
         if positions is None or server.project is None:
             return None
-        known, file = await server.names(path), real(path)
-        document = Document(server.project, server.texts(), file, positions.text)
-        parts = PartNames(server.project, document.texts, file)
-        found = complete(document, positions.offset(asked.position), known, parts)
-        if parts.is_missing:
-            await server.in_thread(parts.read)
+        await server.when_prepared(path)
+        known = await server.names(path) if format_of(path) is None else []
+        server.check_unchanged(path, positions)
+        document = Document(server.project, server.texts(), real(path), positions.text, waits=False)
+        offset = positions.offset(asked.position)
+        try:
+            found = completions_at(document, offset, known)
+        except NotYetKnownError:
+            waiting = replace(document, waits=True)
+            found = await server.in_thread(lambda: completions_at(waiting, offset, known))
             server.check_unchanged(path, positions)
-            found = complete(document, positions.offset(asked.position), known, parts)
-        elif parts.is_stale:
-            server.in_background(parts.read, file)
+        if document.refreshes:
+            server.in_background(document.refreshes, document.file)
         return items(found, positions, asked.position, takes_snippets=takes_snippets)
 
     @server.feature(types.TEXT_DOCUMENT_HOVER)
@@ -217,7 +233,8 @@ def add_requests(server: LinkwrightServer) -> None:
         text, offset = positions.text, positions.offset(asked.position)
         facts = await server.in_thread(lambda: facts_at(project, texts, real(path), text, offset, values))
         server.check_unchanged(path, positions)
-        return hover(path, known, values, facts, positions, asked.position)
+        document = Document(project, texts, real(path), text)
+        return hover(document, known, values, facts, positions, asked.position)
 
     @server.feature(types.TEXT_DOCUMENT_DEFINITION)
     async def definition_request(

@@ -1,4 +1,4 @@
-"""Navigation: links to files, names of the whole workspace, the uses of a name in its file, and macro calls."""
+"""Navigation: links to files, workspace symbols, uses of a name and the call hierarchy."""
 
 from __future__ import annotations
 
@@ -29,11 +29,13 @@ _MAX_SYMBOLS = 500
 
 
 def matching(names: Iterable[NameDefinition], query: str) -> list[NameDefinition]:
-    """Return the names that contain the characters of a query in their order; those that contain the query come first.
+    """Return the names that contain the characters of a query in order, the best first.
+
+    Names that contain the query as a whole come before the others, and short names before long ones.
 
     Args:
         names: the names.
-        query: the query; upper and lower case are equal. An empty query matches all names.
+        query: the query, in upper or lower case. An empty query matches all names.
     """
     query = query.lower()
 
@@ -80,13 +82,13 @@ def _item(server: LinkwrightServer, macro: Occurrence) -> types.CallHierarchyIte
 
 
 def _file_item(server: LinkwrightServer, file: Path, positions: TextPositions) -> types.CallHierarchyItem:
-    """Return the item of a file, which calls macros outside of any macro."""
+    """Return the item of a file, as the caller of macros outside macro definitions."""
     start = positions.range(0, 0)
     return types.CallHierarchyItem(file.name, types.SymbolKind.File, server.uri_of(file), start, start)
 
 
 class _MacroCalls:
-    """The macros of the description of a file, and their calls.
+    """The incoming and outgoing calls of a macro.
 
     Args:
         server: the server.
@@ -197,6 +199,9 @@ def add_requests(server: LinkwrightServer) -> None:
     def document_highlight(
         server: LinkwrightServer, asked: types.DocumentHighlightParams
     ) -> list[types.DocumentHighlight] | None:
+        place = path_of(asked.text_document.uri)
+        if place is not None:  # editors ask when the cursor has moved
+            server.robot_views.cursor_moved(real(place), asked.position.line + 1)
         own = server.document(asked.text_document)
         if own is not None:
             offset = own.positions.offset(asked.position)

@@ -31,12 +31,12 @@ def _unchanged(server: LinkwrightServer, mentions: Iterable[Mention]) -> str:
         line = 0 if positions is None else positions.position(mention.start).line + 1
         places.append(f"{mention.file.name}:{line} ({mention.name})")
     return localized(
-        phrase("not renamed, because the file does not tell what is meant: {places}", places=joined(places))
+        phrase("these texts are not renamed, because their meaning is uncertain: {places}", places=joined(places))
     )
 
 
 def file_edits(server: LinkwrightServer, files: Iterable[types.FileRename]) -> tuple[list[Edit], list[Mention]]:
-    """Return the edits that keep references to renamed files valid, and the mentions that are not certain."""
+    """Return the edits that keep references to renamed files valid, and uncertain mentions."""
     edits: list[Edit] = []
     unchanged: list[Mention] = []
     for file in files:
@@ -112,7 +112,7 @@ def add_requests(server: LinkwrightServer) -> None:
         except LinkwrightError as error:
             message = "\n".join(localized(diagnostic.message) for diagnostic in error.diagnostics)
             raise JsonRpcException(message, code=int(types.LSPErrorCodes.RequestFailed)) from None
-        if server.texts() != texts:  # the offsets of the edits are those of the former texts
+        if server.texts() != texts:  # the offsets of the edits belong to the former texts
             message = localized(phrase("a text has changed meanwhile; rename again"))
             raise JsonRpcException(message, code=int(types.LSPErrorCodes.ContentModified))
         shown = [localized(note) for note in renaming.notes]

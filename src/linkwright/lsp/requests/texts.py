@@ -1,4 +1,4 @@
-"""Requests about the text of one file: its format, symbols, folds, ranges and pairs of tags."""
+"""Requests about one text: formatting, symbols, folding, selection and linked tags."""
 
 from __future__ import annotations
 
@@ -37,12 +37,12 @@ _KINDS = {
 def format_edits(
     positions: TextPositions, path: Path, lines: tuple[int, int] | None = None
 ) -> list[types.TextEdit] | None:
-    """Return the changes that format a text, as `linkwright format` does; None if it is not XML.
+    """Return the edits that format a text like `linkwright format`, or None if it is not XML.
 
     Args:
         positions: the text.
         path: its file, whose settings apply.
-        lines: the first and the last (exclusive) line, from 0, to format; None for all.
+        lines: the first line to format, from 0, and the line after the last, or None for all lines.
     """
     text = positions.text
     try:
@@ -59,7 +59,7 @@ def format_edits(
 
 
 def symbols(positions: TextPositions) -> list[types.DocumentSymbol]:
-    """Return the elements with names, each with those in it."""
+    """Return the named elements of a text as nested symbols."""
     return [*_symbols(Outline.of(positions.text).elements, positions)]
 
 
@@ -86,7 +86,7 @@ def _own_symbol(symbol: Symbol, positions: TextPositions) -> types.DocumentSymbo
 
 
 def folds(positions: TextPositions) -> list[types.FoldingRange]:
-    """Return the elements and comments of several lines."""
+    """Return the folding ranges of elements and comments that span several lines."""
     outline = Outline.of(positions.text)
     found = [
         types.FoldingRange(positions.position(element.tag.start).line, positions.position(closing.start).line - 1)
@@ -105,7 +105,10 @@ def folds(positions: TextPositions) -> list[types.FoldingRange]:
 
 
 def selections(positions: TextPositions, places: Iterable[types.Position]) -> list[types.SelectionRange]:
-    """Return for each place the ranges around it: attribute value, tag, content, element, and those around it."""
+    """Return the nested selection ranges around each position.
+
+    These are the attribute value, attribute, tag, content and element, and those of the enclosing elements.
+    """
     outline = Outline.of(positions.text)
     found = []
     for place in places:
@@ -128,7 +131,7 @@ def selections(positions: TextPositions, places: Iterable[types.Position]) -> li
 
 
 def linked_tags(positions: TextPositions, place: types.Position) -> types.LinkedEditingRanges | None:
-    """Return the names of the start and end tag at a place, which are edited together."""
+    """Return the ranges of the start and end tag names at a position, or None."""
     offset = positions.offset(place)
     for element in reversed(Outline.of(positions.text).around(offset)):
         if element.closing is None:

@@ -85,7 +85,7 @@ class _ReaderCode:
     def __init__(self, place: Place, class_of: ClassOf, order: Order, known: int | None) -> None:
         self.place = place
         self._known_position = known
-        """The position as a number; None once it differs between messages."""
+        """The position as a number, or None once it differs between messages."""
         self._class_of = class_of
         self._order = order
         self._lines: list[str] = []
@@ -321,7 +321,10 @@ class _ReaderCode:
         return "p" if self._known_position is None else str(self._known_position)
 
     def _write_position(self) -> None:
-        """End the run, and store the position in `p`. The following code uses `p`."""
+        """End the run, and store the position in `p`.
+
+        The following code uses `p`.
+        """
         self.end_run()
         if self._known_position is not None:
             self._add_line(f"p = {self._known_position}")

@@ -24,7 +24,7 @@ _MAX_UTF16_UNIT = 0xFFFF
 
 
 READ_FAULTS = (struct.error, IndexError, ValueError)
-"""All errors that a reader raises for bad data; UnicodeDecodeError and DataFaultError are ValueErrors."""
+"""All errors that a reader raises for bad data. UnicodeDecodeError and DataFaultError are ValueErrors."""
 
 
 class DataFaultError(ValueError):
@@ -191,7 +191,7 @@ def write_wide_text(text: str) -> bytes:
 
 def truncated() -> None:
     """Raise a DataFaultError for truncated data, or for an impossible length in the data."""
-    raise DataFaultError(phrase("the data ends in the middle of the message, or a length in it is wrong"))
+    raise DataFaultError(phrase("the data ends in the middle of the message, or contains a wrong length"))
 
 
 def unterminated() -> None:

@@ -61,7 +61,7 @@ def compile_writer(structure: Structure) -> Callable[[Any], bytes]:
 
 
 def _compile_part(structure: Structure) -> Callable[..., int]:
-    """Return the function that serializes a nested structure. It is compiled on first use.
+    """Return the function that serializes a nested structure, compiled on first use.
 
     The function appends the bytes to a list of pieces and returns the position after them.
     """
@@ -278,9 +278,9 @@ class _WriterCode:
             self._advance(padding)
 
     def pack(self, code: str, value: str, place: Place | None = None) -> None:
-        """Add a primitive to the current run. The position must be aligned.
+        """Add a primitive to the current run.
 
-        If `place` is not None, the position does not advance.
+        The position must be aligned. If `place` is not None, the position does not advance.
         """
         self._run.append((code, value))
         if place is None:

@@ -19,7 +19,7 @@ _SEPARATOR_LINES = re.compile(r"^={10,}\s*\n(MSG|IDL): *(\S+) *\n?", re.MULTILIN
 def add_definitions(type_name: str, text: str, origin: str, *, idl: bool = False) -> None:
     """Register the definitions of a message and its nested messages that data contain.
 
-    Interfaces that come with Linkwright and those of the workspace take precedence. If a name is registered twice, the
+    Interfaces of Linkwright and of the workspace take precedence. If a name is registered twice, the
     first definition is kept. A definition is parsed, and its mistakes are reported, when the message is requested.
 
     Args:

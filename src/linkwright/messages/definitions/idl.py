@@ -135,7 +135,7 @@ class _Reader:
             else:
                 self._fail(
                     "MSG120",
-                    phrase("'{text}' cannot be used in the IDL of messages", text=keyword.text),
+                    phrase("'{text}' is not supported in messages", text=keyword.text),
                     keyword.start,
                     len(keyword.text),
                     phrase("write the interface as a .msg, .srv or .action file"),

@@ -116,7 +116,10 @@ class Primitive(NamedTuple):
 
     @property
     def is_integer(self) -> bool:
-        """Whether values are integers. ``byte`` and ``bool`` are not integer types."""
+        """Whether values are integers.
+
+        ``byte`` and ``bool`` are not integer types.
+        """
         return self.python is int
 
     @property
@@ -243,7 +246,10 @@ class Field(NamedTuple):
 
 
 class Constant(NamedTuple):
-    """A named constant. `type` is the name of a primitive."""
+    """A named constant.
+
+    `type` is the name of a primitive.
+    """
 
     name: str
     type: str
@@ -265,12 +271,15 @@ class Structure(NamedTuple):
 
     @property
     def wire_fields(self) -> tuple[Field, ...]:
-        """The serialized fields: those of the structure, or rosidl's filler field if it has none."""
+        """The serialized fields, or rosidl's filler field if the structure has none."""
         return self.fields or (Field(EMPTY_MEMBER, FieldType("uint8")),)
 
     @property
     def references(self) -> Iterator[str]:
-        """The type name of the structure in each field that has one. Names may repeat."""
+        """The type name of the structure in each field that has one.
+
+        Names may repeat.
+        """
         return (field.type.base for field in self.fields if "/" in field.type.base)
 
 

@@ -51,11 +51,11 @@ KIND_NAMES = {"msg": "message", "srv": "service", "action": "action"}
 
 
 class Library:
-    """All available interfaces, read on demand. The methods are thread-safe.
+    """All available interfaces, read on demand.
 
-    Interfaces that come with Linkwright take precedence over interfaces of the workspace with the same name. Interfaces
-    of the workspace are read, without a build, from the interface files of the packages that the current finder
-    finds. For any other name, a definition that was contained in data is used.
+    The methods are thread-safe. Interfaces that come with Linkwright take precedence over interfaces of the workspace
+    with the same name. Interfaces of the workspace are read, without a build, from the interface files of the packages
+    that the current finder finds. For any other name, a definition that was contained in data is used.
     """
 
     def __init__(self) -> None:
@@ -96,7 +96,7 @@ class Library:
     def source(self, name: str) -> SourceText:
         """Return the interface file of a definition, with its name.
 
-        The comments in files that come with Linkwright are not those of ROS.
+        The comments in files that come with Linkwright differ from ROS's.
 
         Raises:
             InterfaceNotFoundError: as in `definition`.
@@ -200,7 +200,7 @@ class Library:
         return share is not None and interface_file(share, *rest.split("/")) is not None
 
     def hint_for(self, type_name: str) -> Phrase | None:
-        """Return a hint with names similar to that of a missing message, or None."""
+        """Return a hint with names that resemble a missing message's name, or None."""
         name = split_name(type_name)
         return None if name is None else self._not_found_diagnostic(name, ("msg",)).hint
 
@@ -275,7 +275,7 @@ class Library:
             ]
             hint = next(
                 (
-                    phrase("did you mean '{other}'?", other=other)
+                    phrase("did you mean '{name}'?", name=other)
                     for other in other_type_names
                     if other.endswith("/" + name.name)
                 ),
@@ -325,7 +325,7 @@ def wrong_kind_diagnostic(definition: Definition, kind: str) -> Diagnostic:
     ]
     return Diagnostic(
         "MSG101",
-        phrase("there is no {kind_names} '{name}'", kind_names=KIND_NAMES[kind], name=name),
+        phrase("there is no {what} '{name}'", what=KIND_NAMES[kind], name=name),
         hint=phrase("'{name}' is {is_a}", name=name, is_a=actual_kind),
     )
 
@@ -344,9 +344,7 @@ def _read(path: Path) -> SourceText:
         ) from None
     except OSError as error:
         raise DefinitionError(
-            Diagnostic(
-                "MSG121", phrase("cannot read '{name}': {strerror}", name=name, strerror=foreign(error.strerror))
-            )
+            Diagnostic("MSG121", phrase("cannot read '{path}': {reason}", path=name, reason=foreign(error.strerror)))
         ) from None
 
 

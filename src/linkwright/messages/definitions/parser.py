@@ -32,7 +32,7 @@ _ESCAPED_CHARACTERS = {"n": "\n", "t": "\t", "r": "\r", "0": "\0", "\\": "\\", '
 
 
 class LiteralFault(Exception):  # noqa: N818 - not an error of the program; the parser turns it into a diagnostic
-    """Raised when a text is not a valid value of a type. The argument is the reason."""
+    """Raised when a text is not valid for a type. The argument is the reason."""
 
 
 def read_default(text: str, kind: FieldType) -> object:
@@ -208,7 +208,7 @@ class KnownMessages(Protocol):
         """Return whether a message with a full name exists."""
 
     def hint_for(self, type_name: str) -> Phrase | None:
-        """Return a hint with names similar to that of a missing message, or None."""
+        """Return a hint with names that resemble a missing message's name, or None."""
 
 
 def parse_interface(source: SourceText, type_name: str, known: KnownMessages) -> Definition:
@@ -372,7 +372,7 @@ class _Reader:
         if self._known.has_message(type_name):
             return type_name
         hint = self._known.hint_for(type_name)
-        self._report("MSG111", phrase("there is no message '{type_name}'", type_name=type_name), start, len(text), hint)
+        self._report("MSG111", phrase("there is no message '{name}'", name=type_name), start, len(text), hint)
         return None
 
     def _number(self, text: str, offset: int, subject: Phrase) -> int | None:
@@ -470,7 +470,10 @@ class _Reader:
 
 
 def _without_comment(line: str) -> str:
-    """Return a line without its comment. A ``#`` inside quotes does not begin a comment."""
+    """Return a line without its comment.
+
+    A ``#`` inside quotes does not begin a comment.
+    """
     if "#" not in line:
         return line
     quote = None

@@ -1,4 +1,7 @@
-"""The classes of rosidl_parser for field types. Programs read them from ``SLOT_TYPES``."""
+"""The classes of rosidl_parser for field types.
+
+Programs read them from ``SLOT_TYPES``.
+"""
 
 from __future__ import annotations
 
@@ -8,7 +11,10 @@ from linkwright.messages.definitions.interfaces import Container, FieldType, Str
 
 
 class AbstractType:
-    """The base class of all field types. Types with the same content are equal."""
+    """The base class of all field types.
+
+    Types with the same content are equal.
+    """
 
     __slots__ = ()
 
@@ -33,7 +39,10 @@ class AbstractNestableType(AbstractType):
 
 
 class BasicType(AbstractNestableType):
-    """A number, bool, byte or character type. `typename` is its name in IDL."""
+    """A number, bool, byte or character type.
+
+    `typename` is its name in IDL.
+    """
 
     __slots__ = ("typename",)
 

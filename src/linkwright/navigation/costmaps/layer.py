@@ -134,7 +134,10 @@ class Layer(ABC):
         """Write costs into the cells of the window."""
 
     def reset(self) -> None:  # noqa: B027  # Most layers store no data.
-        """Reset the layer's data. By default, do nothing."""
+        """Reset the layer's data.
+
+        By default, do nothing.
+        """
 
     def clear(self, window: Window, *, outside: bool) -> None:  # noqa: B027  # Only clearable layers override it.
         """Clear the layer's data in a window, or all data outside the window."""

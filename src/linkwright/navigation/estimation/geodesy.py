@@ -33,7 +33,7 @@ _BACKWARD = (
     4397.0 * _N**4 / 161280.0,
 )
 _ITERATIONS = 6
-"""The number of iterations for the latitude; each reduces the error by a factor of hundreds."""
+"""The number of iterations for the latitude. Each reduces the error by a factor of hundreds."""
 
 
 class Zone(NamedTuple):

@@ -74,7 +74,7 @@ class SamplingParameters:
 
 
 _MAX_FOOTPRINTS = 60
-"""The maximum number of velocities that are checked with the footprint, best first; this check is slow."""
+"""The maximum number of velocities that are checked with the footprint, best first. This check is slow."""
 _LOOK_AHEAD = 0.35
 """The distance from a motion's end to the point ahead on the path that the robot should face, in metres."""
 

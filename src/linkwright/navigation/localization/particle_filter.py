@@ -88,7 +88,10 @@ class ParticleFilter:
         self.begin(np.array(pose) + deviations @ axes.T)
 
     def update_weights(self, likelihoods: NDArray[np.float64]) -> None:
-        """Multiply the weights by the likelihood of each particle, and normalise them."""
+        """Multiply the weights by the likelihoods, normalise them, and update the recovery averages.
+
+        If all products are 0, the particles get equal weights instead.
+        """
         weights = self.weights * likelihoods
         total = float(weights.sum())
         if not total > 0.0:

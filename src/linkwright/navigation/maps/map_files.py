@@ -122,7 +122,7 @@ def _write(path: Path, data: bytes) -> None:
         write_whole_file(path, data)
     except OSError as error:
         reason = foreign(error.strerror or error)
-        message = phrase("'{path}' cannot be written: {reason}", path=display_path(path), reason=reason)
+        message = phrase("cannot write '{path}': {reason}", path=display_path(path), reason=reason)
         raise LinkwrightError(Diagnostic("NAV206", message)) from None
 
 

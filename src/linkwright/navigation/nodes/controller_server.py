@@ -163,7 +163,7 @@ class ControllerNode(ManagedNode):
         self._follower.begin()
 
     def _cycle(self) -> None:
-        """Run one control cycle: end the goal if it was canceled, and drive otherwise."""
+        """Run one control cycle: drive, or stop if there is no goal or it was canceled."""
         goals = self._goals
         if goals is None or goals.current is None:
             self._halt()

@@ -55,7 +55,7 @@ _HEALTH = {
     _State.FINALIZED: Health(Level.WARN, "Managed nodes have been shut down"),
     _State.UNKNOWN: Health(Level.ERROR, "An error has occurred during a node state transition"),
 }
-"""The diagnostics of the states, with Jazzy's texts; Humble reports only active and inactive."""
+"""The diagnostics of the states, with Jazzy's texts. Humble reports only active and inactive."""
 
 
 class _ManagedNodeClient:

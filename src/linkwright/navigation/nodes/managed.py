@@ -200,7 +200,10 @@ class ManagedServer(SingleNode):
             node.autostart()
 
     def prepare(self, graph: Graph, options: NodeOptions) -> None:
-        """Prepare the node before it starts. By default, do nothing."""
+        """Prepare the node before it starts.
+
+        By default, do nothing.
+        """
 
     def close(self) -> None:
         """Close the node and notify its manager."""

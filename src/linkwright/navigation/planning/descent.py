@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from linkwright.navigation.planning.potential import Cell, Floats
 
 Place = tuple[float, float]
-"""A position as row and column, in cells; the middle of cell (0, 0) is (0.5, 0.5)."""
+"""A position as row and column, in cells. The middle of cell (0, 0) is (0.5, 0.5)."""
 
 _STEP_CELLS = 0.5
 _MAX_STEPS_IN_CELL = 4

@@ -146,7 +146,7 @@ class Mapper:
         )
 
     def process(self, scan: PlanarScan, odometry: Floats) -> Steps[Outcome]:
-        """Add a scan to the graph and draw the changes of the map, in steps.
+        """Add a scan to the graph and draw the changes to the map, in steps.
 
         Args:
             scan: the scan.

@@ -118,7 +118,7 @@ class _ExpressionTool(SingleNode, ABC):
     def _receive(self, message: Any) -> None:
         try:
             output = self._convert(message)
-        except Exception as error:  # noqa: BLE001 - whatever the user's expression raises
+        except Exception as error:  # noqa: BLE001 - the user's expression may raise anything
             self._node.get_logger().error(
                 f"{self._arguments.expression}: {type(error).__name__}: {error}", throttle_duration_sec=5.0
             )

@@ -1,6 +1,6 @@
-"""The base class of topic_tools' nodes. Their output topic has the type of the input topic.
+"""The base class of topic_tools' nodes, whose output topic has the input topic's type.
 
-There are three differences from topic_tools 1.3. Changes of the graph are handled immediately instead of within 100 ms.
+There are three differences from topic_tools 1.3. Changes to the graph are handled immediately instead of within 100 ms.
 If a source returns with another type, the node subscribes to it again. If the publisher of the last velocity
 disappears, a stop is sent.
 """

@@ -93,7 +93,7 @@ def plain_cmake_lists(request: PackageRequest) -> str:
 
 
 def config(request: PackageRequest) -> str:
-    """Return ``<name>Config.cmake.in``, the template of the file that ``find_package`` in other projects reads."""
+    """Return ``<name>Config.cmake.in``, the template for ``find_package`` in other projects."""
     lines = [
         f"# Found by find_package({request.name}). It defines",
         f"#   {request.name}_INCLUDE_DIRS: folders with headers",

@@ -38,7 +38,11 @@ class Folder:
 
 @dataclass(frozen=True)
 class File:
-    """A file to write, relative to the package's folder. If `announced` is true, its creation is reported."""
+    """A file to write, relative to the package's folder.
+
+    Attributes:
+        announced: whether its creation is reported.
+    """
 
     path: Path
     text: str
@@ -119,7 +123,7 @@ def check_request(request: PackageRequest) -> list[Diagnostic]:
         )
     if request.node != request.node_name:
         message = phrase(
-            "the node cannot have the library's name '{library_name}': it is called '{node}'",
+            "node and library cannot both be named '{library_name}', so the node is named '{node}'",
             library_name=request.library_name,
             node=request.node,
         )
@@ -164,7 +168,7 @@ def summary(request: PackageRequest) -> Iterator[str]:
 
 
 def steps(request: PackageRequest) -> Iterator[Step]:
-    """Yield the files and folders to create in the package's folder, in the order of ``ros2 pkg create``."""
+    """Yield the files and folders to create in a package, in the order of ``ros2 pkg create``."""
     yield File(Path("package.xml"), package_templates.manifest(request))
     if request.build_type == "ament_python":
         yield from _python_steps(request)

@@ -1,4 +1,4 @@
-"""Hints on where to get a missing Python module or name: from a ROS package, PyPI or another module."""
+"""Hints on the source of a missing Python module or name: a ROS package, PyPI, a module."""
 
 from __future__ import annotations
 

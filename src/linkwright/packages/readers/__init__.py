@@ -1,1 +1,1 @@
-"""Readers of a package's files: ``package.xml``, ``setup.py``, ``CMakeLists.txt`` and launch files."""
+"""Readers of a package's files, such as ``setup.py``, ``CMakeLists.txt``, launch files."""

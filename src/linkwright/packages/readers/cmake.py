@@ -138,7 +138,7 @@ class CopyRule:
 
 @dataclass
 class CMakeFile:
-    """The targets and install rules of a ``CMakeLists.txt``, with its subdirectories and included files.
+    """The targets and install rules of a ``CMakeLists.txt`` and the files that it includes.
 
     Attributes:
         project: the name of the project, or None.

@@ -101,7 +101,10 @@ class Command:
 
 
 class _LimitExceededError(Exception):
-    """Raised when a file runs too many commands or a text is too long. The argument names the command or text."""
+    """Raised when a file runs too many commands or a text is too long.
+
+    The argument names the command or text.
+    """
 
 
 @dataclass(slots=True)
@@ -151,7 +154,7 @@ class CMakeProgram:
     _count: int = 0
 
     def run(self, source: SourceText) -> Iterator[Command]:
-        """Yield the commands of a file, including those of called functions and included files."""
+        """Yield the commands of a file, including commands in called functions and included files."""
         try:
             yield from self._run_file(source)
         except _LimitExceededError as error:
@@ -199,7 +202,7 @@ class CMakeProgram:
             yield from self._run_foreach(words, body)
 
     def _run_branches(self, opening: Statement, body: Sequence[Statement]) -> Iterator[Command]:
-        """Yield the commands of the first true branch and of preceding branches with unknown conditions."""
+        """Yield the commands of the first true branch, and of possible branches before it."""
         is_uncertain = False
         for condition, branch in branches(opening, body):
             is_true = True if condition is None else self._evaluate_condition(condition)

@@ -33,7 +33,10 @@ BLOCK_ENDS = {
 
 
 def is_open(text: str) -> bool:
-    """Return whether a text contains a variable or generator expression that only CMake can evaluate."""
+    """Return whether a text contains an expression that only CMake can evaluate.
+
+    This is a variable or a generator expression.
+    """
     return _REFERENCE.search(text) is not None
 
 

@@ -88,7 +88,7 @@ def option_lines(text: str, section: str, option: str) -> list[str]:
 
 
 def text_of(path: Path) -> str:
-    """Return the text of a file, or an empty text if the file cannot be read."""
+    """Return the text of a file, or an empty string if the file cannot be read."""
     try:
         return path.read_text(encoding="utf-8", errors="replace")
     except OSError:

@@ -57,7 +57,7 @@ class Manifest:
 
     @cached_property
     def dependencies(self) -> tuple[Dependency, ...]:
-        """All dependencies in the order of the text, except those in groups."""
+        """All dependencies in the order of the text, except dependencies in groups."""
         return tuple(
             Dependency(element.text().strip(), element.tag, element)
             for element in self.root.elements()

@@ -52,7 +52,7 @@ class Pattern:
     recursive: bool
 
 
-Value = Union[UnknownType, str, int, float, None, SharePath, Pattern, tuple["Value", ...]]  # noqa: UP007 - it names itself
+Value = Union[UnknownType, str, int, float, None, SharePath, Pattern, tuple["Value", ...]]  # noqa: UP007 - recursive
 
 _MAX_DEPTH = 40
 _JOIN_FUNCTIONS = frozenset(
@@ -81,7 +81,7 @@ class PythonFile:
 
     @cached_property
     def _assignments(self) -> dict[str, ast.expr | None]:
-        """Name -> the expression assigned to it, or None for several assignments or a complex target."""
+        """Name -> assigned expression, or None after several assignments or to a complex target."""
         bindings: dict[str, ast.expr | None] = {}
         for node in ast.walk(self.tree):
             _record_bindings(node, bindings)

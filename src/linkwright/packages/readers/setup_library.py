@@ -179,7 +179,7 @@ class PackageLibrary:
         self._checked_path(fixed_prefix)
         if unsupported or ".." in text.split("/"):
             raise NotKnownError
-        names = glob(text, root_dir=self._folder, recursive=bool(recursive))  # noqa: PTH207 - as setup.py has it
+        names = glob(text, root_dir=self._folder, recursive=bool(recursive))  # noqa: PTH207 - as in setup.py
         return sorted(bounded([name.replace("\\", "/") for name in names]))
 
     def _path_glob(self, path: PurePosixPath, pattern: str) -> list[PurePosixPath]:

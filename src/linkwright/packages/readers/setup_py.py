@@ -215,7 +215,7 @@ class _DataFilesReader:
         self._facts.installed.append(DataFile(text, pattern is not None, recursive, destination, span))
 
     def _read_additions(self, name: str) -> None:
-        """Record the entries that ``name.append(...)``, ``name.extend(...)`` and ``name += ...`` add."""
+        """Record the entries added by ``name.append(...)``, ``name.extend(...)``, ``name += ...``."""
         for node in ast.walk(self._python.tree):
             if isinstance(node, ast.Call) and called_name(node) in (f"{name}.append", f"{name}.extend"):
                 if len(node.args) != 1:

@@ -99,7 +99,7 @@ def run_setup(tree: ast.Module, folder: Path) -> list[InstalledFile] | None:
         _Interpreter(library).body(tree.body)
     except _SetupCalledError as called:
         return list(_installed_files(called.data_files, library))
-    except Exception:  # noqa: BLE001 - what the user's expressions may raise
+    except Exception:  # noqa: BLE001 - the user's expressions may raise anything
         return None
     return None
 

@@ -42,7 +42,10 @@ class EditingFeature(PageFeature):
         self._worker: asyncio.Task[None] | None = None
 
     def receive(self, page: Page, message: Any) -> None:
-        """Queue a request. Requests are handled in order."""
+        """Queue a request.
+
+        Requests are handled in order.
+        """
         if isinstance(message, editing.PreviewEdit):
             self._newest_numbers[page] = message.number
         self._editing_pages.add(page)
@@ -105,7 +108,9 @@ class EditingFeature(PageFeature):
         self._send_history()
 
     async def write(self, plan: EditPlan) -> list[str]:
-        """Write the files of an edit, and return their paths. The edit can then be undone.
+        """Write the files of an edit, and return their paths.
+
+        The edit can then be undone.
 
         Raises:
             EditRefusedError: see `EditHistory.apply`.
@@ -126,9 +131,7 @@ class EditingFeature(PageFeature):
             raise EditRefusedError(Diagnostic("EDIT101", refusal_reason or phrase("there is no robot")))
         for values in (message.xyz, message.rpy):
             if values is not None and len(values) != len(_AXIS_NAMES):
-                raise EditRefusedError(
-                    Diagnostic("EDIT102", phrase("these numbers are not finite, or too large for a robot"))
-                )
+                raise EditRefusedError(Diagnostic("EDIT102", phrase("xyz and rpy must have three numbers each")))
         unsaved: dict[str | os.PathLike[str], str] = {
             path: unsaved.text for path, unsaved in self.context.library.unsaved.texts.items()
         }

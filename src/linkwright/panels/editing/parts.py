@@ -80,7 +80,7 @@ def _xyz_and_rpy(origin: Pose) -> tuple[list[float], list[float]]:
 def _origin_text(owner: Element | None, tag: str) -> tuple[str, str, int]:
     """Return ``xyz`` and ``rpy`` of a child element as text, and the element's file and line.
 
-    If the child is missing, the text is empty, and file and line are those of the owner. If the position is unknown,
+    If the child is missing, the text is empty, and the owner determines file and line. If the position is unknown,
     the file name is empty and the line is 0.
     """
     element = None if owner is None else owner.first(tag)

@@ -34,7 +34,7 @@ _REPEAT, _LINEAR, _LINEAR_MIPMAPS = 10497, 9729, 9987
 
 
 class GltfFile:
-    """A glTF file under construction. Its entries are identified by indices.
+    """A glTF file under construction, whose entries are identified by indices.
 
     Args:
         generator: the name of the program that creates the file.
@@ -55,7 +55,7 @@ class GltfFile:
         return len(entries) - 1
 
     def entry(self, kind: str, index: int) -> dict[str, Any]:
-        """Return an entry of a list. Changes of the returned dict change the document."""
+        """Return an entry of a list. Changes to the returned dict change the document."""
         return self._lists[kind][index]
 
     def vertices(self, values: NDArray[Any], *, bounded: bool = False) -> int:

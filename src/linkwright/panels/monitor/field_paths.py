@@ -1,4 +1,4 @@
-"""Paths to a number in a message: ``position[2]``, ``position[elbow]``, ``twist.twist.linear.x``.
+"""Paths to numbers in a message: ``position[2]``, ``position[elbow]``, ``linear.x``.
 
 Names select fields of nested messages. Brackets select an element of an array by its index or name. The names of
 elements are the items of a list of names in the same or an enclosing message (``name`` of a JointState,
@@ -86,7 +86,9 @@ class FieldPath:
             kinds = {field.name: field.type for field in definition_of(cls).fields}
             field_type = kinds.get(step.name)
             if field_type is None:
-                suggestion = did_you_mean(step.name, kinds) or phrase("its fields are {kinds}", kinds=", ".join(kinds))
+                suggestion = did_you_mean(step.name, kinds) or phrase(
+                    "its fields are {fields}", fields=", ".join(kinds)
+                )
                 raise FieldPathError(f"{cls.TYPE_NAME} has no field '{step.name}'; {suggestion}")
             self._check_keys(step, field_type)
             cls = None if field_type.primitive is not None else get_message(field_type.base)

@@ -290,7 +290,7 @@ class ParametersFeature(PageFeature):
             page.send(watched_node.parameters)
 
     def _update_subscriptions(self) -> None:
-        """Open the clients and subscriptions that pages need, and close all others."""
+        """Close the clients that no page needs, and update the subscriptions."""
         requests = self._requests.values()
         names = {request.node for request in requests if request.node is not None}
         for name in self._nodes.keys() - names:

@@ -36,7 +36,7 @@ class Paced:
         self._timer: asyncio.TimerHandle | None = None
 
     def request(self) -> None:
-        """Request a call. It follows as soon as the period since the last call has passed."""
+        """Request a call as soon as the period since the last call has passed."""
         if self._timer is None:
             self._timer = self._loop.call_at(max(self._loop.time(), self._last_call_time + self._period), self._call)
 
@@ -81,9 +81,9 @@ class TopicTap:
     ) -> None:
         self.topic = topic
         self.error: str | None = None
-        """The reason why no messages can be received; None if there is no error, or no publisher yet."""
+        """The reason why no messages can be received, or None if there is no error, or no publisher yet."""
         self.message_class: Any = None
-        """The class of the messages; None while it is not known."""
+        """The class of the messages, or None while it is not known."""
         self._node = context.node
         self._changes = context.graph_changes
         self._take = take

@@ -114,7 +114,7 @@ class SourceFiles:
         """
         real = Path(os.path.realpath(path))
         if not real.is_relative_to(self.folder) or _is_hidden(real, self.folder):
-            why_not = phrase("new files are created in '{folder}' only", folder=str(self.folder))
+            why_not = phrase("new files can only be created in '{folder}'", folder=str(self.folder))
             raise EditRefusedError(Diagnostic("EDIT106", why_not))
         existing = next(folder for folder in real.parents if folder.is_dir())
         refusal = self._workspace.refusal(str(existing))
@@ -124,7 +124,7 @@ class SourceFiles:
             real.parent.mkdir(parents=True, exist_ok=True)
             real.open("x").close()
         except FileExistsError:
-            message = phrase("'{path}' exists already", path=display_path(real))
+            message = phrase("'{path}' already exists", path=display_path(real))
             raise EditRefusedError(Diagnostic("EDIT108", message)) from None
         except OSError as error:
             reason = foreign(error.strerror or error)

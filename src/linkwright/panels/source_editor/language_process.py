@@ -51,7 +51,7 @@ class LanguageProcess:
         self._waiting.put(content)
 
     def close(self) -> None:
-        """End the server. It has no unsaved data."""
+        """End the server, which has no unsaved data."""
         self._is_closed = True
         self._process.kill()
         self._waiting.put(None)

@@ -17,7 +17,7 @@ _CHANNELS = {"rgb8": 3, "bgr8": 3, "mono8": 1}
 
 
 def compressed(image: Any) -> Any | None:
-    """Compress an image to ``sensor_msgs/msg/CompressedImage``, or return None if JPEG has no such pixels.
+    """Compress an image to a CompressedImage, or return None if JPEG has no such pixels.
 
     Supported are non-empty images with the encodings rgb8, bgr8 and mono8.
 

@@ -1,4 +1,6 @@
-"""republish of image_transport: converts images between the transports raw, compressed and compressedDepth.
+"""republish of image_transport: converts images between transports.
+
+The transports are raw, compressed and compressedDepth.
 
 Sources: image_transport 3.1 (ROS 2 Humble) and later, compressed_image_transport, compressed_depth_image_transport. The
 transport of the input is the first argument or the parameter ``in_transport``, by default raw. The transport of the
@@ -116,7 +118,7 @@ class ImageRepublisher(SingleNode):
 
 
 def transport_topic(node: Node, base: str, transport: str) -> str:
-    """Return the topic of a transport: the base name, after remapping, with the transport appended."""
+    """Return a transport's topic: the remapped base name with the transport appended."""
     if transport == "raw":
         return base
     resolved = node.resolve_topic_name(base)

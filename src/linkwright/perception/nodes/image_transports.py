@@ -1,4 +1,4 @@
-"""The conversion of images to and from messages of the transports ``compressed`` and ``compressedDepth``.
+"""The conversion of images to and from ``compressed`` and ``compressedDepth`` messages.
 
 Sources: compressed_image_transport (the format text), compressed_depth_image_transport (the header, and the
 quantization of depths in metres with ``depth_max`` 10 and ``depth_quantization`` 100).
@@ -28,7 +28,7 @@ __all__ = ["BadImageError", "compressed_depth", "compressed_image", "plain_depth
 
 
 def plain_image(message: Any) -> Any:
-    """Decode a sensor_msgs/msg/CompressedImage of the transport ``compressed`` to a sensor_msgs/msg/Image.
+    """Decode a CompressedImage of the transport ``compressed`` to an Image.
 
     Raises:
         BadImageError: the data is neither a JPEG nor a PNG.
@@ -42,7 +42,7 @@ def plain_image(message: Any) -> Any:
 
 
 def compressed_depth(image: Any) -> Any | None:
-    """Encode a depth image for the transport ``compressedDepth``, or return None for other images.
+    """Encode a depth image for the transport ``compressedDepth``, or return None for others.
 
     Raises:
         BadImageError: the image has too little data.

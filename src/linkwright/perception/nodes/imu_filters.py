@@ -1,4 +1,4 @@
-"""imu_filter_madgwick_node and complementary_filter_node of imu_tools: orientation from inertial measurements.
+"""imu_filter_madgwick_node and complementary_filter_node: orientation from IMU data.
 
 Sources: imu_filter_madgwick and imu_complementary_filter 2.1 (ROS 2 Humble): topics, parameters, defaults. Each IMU
 message is paired with the latest magnetometer message; the originals match stamps.

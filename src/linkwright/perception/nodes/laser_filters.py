@@ -102,7 +102,7 @@ def to_scan(message: Any) -> Scan:
 
 
 def to_message(scan: Scan, scan_time: float) -> Any:
-    """Convert a scan to a sensor_msgs/msg/LaserScan, given the time between two scans in seconds."""
+    """Convert a scan to a LaserScan message, given the time between two scans in seconds."""
     message = get_message("sensor_msgs/msg/LaserScan")()
     message.header.stamp, message.header.frame_id = Time.from_nanoseconds(scan.stamp_ns), scan.frame
     message.angle_min, message.angle_max, message.angle_increment = scan.angle_min, scan.angle_max, scan.angle_increment

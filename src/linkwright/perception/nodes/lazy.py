@@ -40,7 +40,10 @@ class LazySubscriptions:
         return bool(self._open)
 
     def close(self) -> None:
-        """Stop watching the graph. The subscriptions are destroyed with their node."""
+        """Stop watching the graph.
+
+        The subscriptions are destroyed with their node.
+        """
         self._graph.unwatch(self._graph_condition.trigger)
 
     def _update_subscriptions(self) -> None:

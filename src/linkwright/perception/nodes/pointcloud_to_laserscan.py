@@ -1,4 +1,4 @@
-"""pointcloud_to_laserscan_node and laserscan_to_pointcloud_node: convert point clouds to laser scans and back.
+"""The nodes of pointcloud_to_laserscan: convert point clouds to laser scans and back.
 
 Source: pointcloud_to_laserscan 2.0 (ROS 2 Humble). A message whose transform to the target frame is unknown is dropped
 without waiting.
@@ -193,7 +193,7 @@ def read_points(cloud: Any) -> NDArray[np.float64] | None:
 
 
 def _make_cloud(columns: list[tuple[str, NDArray[Any]]], indices: NDArray[np.int32], frame: str, stamp: Any) -> Any:
-    """Return a point cloud with float32 fields and the ``index`` of each ray, as laser_geometry creates it."""
+    """Return a point cloud with float32 fields and each ray's ``index``, as laser_geometry does."""
     field_class = get_message("sensor_msgs/msg/PointField")
     message = get_message("sensor_msgs/msg/PointCloud2")()
     message.header.stamp, message.header.frame_id = stamp, frame

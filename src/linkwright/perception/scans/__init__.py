@@ -1,1 +1,1 @@
-"""Filters of laser scans, with the names and parameters of laser_filters, independent of ROS."""
+"""Filters of laser scans, independent of ROS, with laser_filters' names and parameters."""

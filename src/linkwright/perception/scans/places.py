@@ -40,7 +40,10 @@ class AngularBoundsFilter(ScanFilter):
 
 @dataclass(slots=True)
 class AngularBoundsInPlaceFilter(ScanFilter):
-    """``LaserScanAngularBoundsFilterInPlace``: removes the ranges between two angles, and keeps the scan's length."""
+    """``LaserScanAngularBoundsFilterInPlace``: removes the ranges between two angles.
+
+    The scan keeps its length.
+    """
 
     lower_angle: float = 0.0
     upper_angle: float = 0.0
@@ -52,7 +55,10 @@ class AngularBoundsInPlaceFilter(ScanFilter):
 
 @dataclass(slots=True)
 class SectorFilter(ScanFilter):
-    """``LaserScanSectorFilter``: removes the ranges between two angles and two distances, or all other ranges."""
+    """``LaserScanSectorFilter``: removes the ranges in a sector, or all others.
+
+    Two angles and two distances bound the sector.
+    """
 
     angle_min: float = 0.0
     angle_max: float = 0.0
@@ -72,7 +78,10 @@ class SectorFilter(ScanFilter):
 
 @dataclass(slots=True)
 class BoxFilter(ScanFilter):
-    """``LaserScanBoxFilter``: removes the points in a box in a frame, or with ``invert`` the points outside it."""
+    """``LaserScanBoxFilter``: removes the points in a box, or all others.
+
+    The box is in a frame. With ``invert``, the points outside it are removed.
+    """
 
     box_frame: str
     min_x: float
@@ -97,7 +106,10 @@ class BoxFilter(ScanFilter):
 
 @dataclass(slots=True)
 class FootprintFilter(ScanFilter):
-    """``LaserScanFootprintFilter``: removes the points above a square around the origin of ``base_link``."""
+    """``LaserScanFootprintFilter``: removes the points in a square around ``base_link``.
+
+    The height of the points is ignored.
+    """
 
     inscribed_radius: float
 
@@ -110,7 +122,10 @@ class FootprintFilter(ScanFilter):
 
 @dataclass(slots=True)
 class PolygonFilter(ScanFilter):
-    """``LaserScanPolygonFilter``: removes the points in a polygon seen from above, or with ``invert`` all others."""
+    """``LaserScanPolygonFilter``: removes the points in a polygon, or all others.
+
+    The height of the points is ignored. With ``invert``, the points outside the polygon are removed.
+    """
 
     polygon: str
     polygon_frame: str = "base_link"

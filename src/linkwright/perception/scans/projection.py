@@ -1,4 +1,4 @@
-"""The conversion of depth images and point clouds to laser scans, and of laser scans to points."""
+"""The conversion of depth images and point clouds to scans, and of scans to points."""
 
 from __future__ import annotations
 

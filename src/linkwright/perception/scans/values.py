@@ -1,4 +1,4 @@
-"""Filters of scans by their values: ranges, intensities, indices, and values of previous scans."""
+"""Filters of scans by their values: ranges, intensities, indices, and previous scans."""
 
 from __future__ import annotations
 
@@ -36,7 +36,10 @@ class RangeFilter(ScanFilter):
 
 @dataclass(slots=True)
 class IntensityFilter(ScanFilter):
-    """``LaserScanIntensityFilter``: removes the points with an intensity outside two thresholds, or between them."""
+    """``LaserScanIntensityFilter``: removes points by two thresholds of intensity.
+
+    Points outside the thresholds are removed, or with ``invert`` the points between them.
+    """
 
     lower_threshold: float = 8000.0
     upper_threshold: float = 100000.0
@@ -58,9 +61,10 @@ class IntensityFilter(ScanFilter):
 
 @dataclass(slots=True)
 class InterpolationFilter(ScanFilter):
-    """``InterpolationFilter``: replaces invalid ranges by the mean of the nearest valid ranges on both sides.
+    """``InterpolationFilter``: replaces invalid ranges by the mean of their neighbours.
 
-    If there is no valid range on a side, a range just below ``range_max`` is used.
+    The neighbours are the nearest valid ranges on both sides. If there is no valid range on a side, a range just below
+    ``range_max`` is used.
     """
 
     def apply(self, scan: Scan, lookup: Lookup) -> Scan:
@@ -79,7 +83,7 @@ class InterpolationFilter(ScanFilter):
 
 @dataclass(slots=True)
 class MaskFilter(ScanFilter):
-    """``LaserScanMaskFilter``: removes the ranges at the indices that are listed for the scan's frame."""
+    """``LaserScanMaskFilter``: removes the ranges at the indices listed for the scan's frame."""
 
     masks: Mapping[str, Any]
 
@@ -91,7 +95,10 @@ class MaskFilter(ScanFilter):
 
 @dataclass(slots=True)
 class ArrayFilter(ScanFilter):
-    """``LaserArrayFilter``: replaces ranges and intensities by their median or mean over the last scans."""
+    """``LaserArrayFilter``: replaces values by their median or mean over the last scans.
+
+    The values are ranges and intensities.
+    """
 
     range_filter_chain: Mapping[str, Any] = field(default_factory=dict)
     intensity_filter_chain: Mapping[str, Any] = field(default_factory=dict)
@@ -144,6 +151,6 @@ def _make_windows(chain: Mapping[str, Any]) -> list[_Window]:
                 count=count,
             )
             names = "filters/MultiChannelMedianFilterFloat, filters/MultiChannelMeanFilterFloat"
-            raise LinkwrightError(Diagnostic("NODE451", message, hint=phrase("choose from {known}", known=names)))
+            raise LinkwrightError(Diagnostic("NODE451", message, hint=phrase("choose from {names}", names=names)))
         windows.append(_Window(int(count), median="Median" in type_name))
     return windows

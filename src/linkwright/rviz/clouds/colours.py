@@ -1,4 +1,4 @@
-"""RViz's colour transformers: selection by the fields of a cloud, and colouring of its points."""
+"""RViz's colour transformers: selection by the fields of a cloud, and point colours."""
 
 from __future__ import annotations
 
@@ -30,7 +30,9 @@ Colours = NDArray[np.uint8]
 
 @dataclass(frozen=True, slots=True)
 class ColourSettings:
-    """The settings of the colour transformers. Colours are RGB, 0 to 255.
+    """The settings of the colour transformers.
+
+    Colours are RGB, 0 to 255.
 
     Attributes:
         transformer: one of `TRANSFORMERS`.
@@ -164,7 +166,7 @@ def _colours_from_table(table: NDArray[np.uint32], values: NDArray[Any], minimum
 
 @cache
 def rainbow() -> NDArray[np.uint32]:
-    """Return RViz's rainbow as packed colours: magenta at 0, then blue, cyan, green, yellow, red."""
+    """Return RViz's rainbow as packed colours, from magenta at 0 through blue to red."""
     corners = np.array([(1, 0, 1), (0, 0, 1), (0, 1, 1), (0, 1, 0), (1, 1, 0), (1, 0, 0)]) * 255.0
     return _gradient(corners, _RAINBOW_STEPS)
 

@@ -152,9 +152,9 @@ def recovery_folder() -> Path:
 
 
 def recovery_file(config: RvizConfig) -> Path:
-    """Return the path of the recovery file of a configuration. The file need not exist.
+    """Return the path of the recovery file of a configuration.
 
-    A configuration that was opened from the recovery folder is its own recovery file.
+    The file need not exist. A configuration that was opened from the recovery folder is its own recovery file.
     """
     folder = recovery_folder()
     if config.path is not None:
@@ -199,7 +199,7 @@ def find_unsaved(config: RvizConfig) -> list[Diagnostic]:
     if config.path is None or _real_path(config.path) == _real_path(path) or not path.is_file():
         return []
     message = phrase(
-        "earlier unsaved changes of '{path}' are in '{kept}': {how}",
+        "earlier unsaved changes to '{path}' are in '{kept}': {how}",
         path=config.path,
         kept=path,
         how=_RECOVERY_HINT,
@@ -232,7 +232,7 @@ def _stored_finding(config: RvizConfig, path: Path) -> Diagnostic:
         message = phrase("unsaved displays are stored in '{path}': {how}", path=path, how=_RECOVERY_HINT)
     else:
         message = phrase(
-            "unsaved changes of '{path}' are stored in '{kept}': {how}",
+            "unsaved changes to '{path}' are stored in '{kept}': {how}",
             path=config.path,
             kept=path,
             how=_RECOVERY_HINT,

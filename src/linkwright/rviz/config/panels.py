@@ -58,7 +58,7 @@ _MISSING_IN_RVIZ1 = frozenset({"transformation", "navigation"})
 
 
 class PanelsConfig:
-    """The ``Panels`` list of a file, and the visibility of the panels in its ``Window Geometry``.
+    """The ``Panels`` list of a file, and the panels' visibility in ``Window Geometry``.
 
     Entries of panels that the page does not have stay unchanged.
 
@@ -126,7 +126,7 @@ class PanelsConfig:
                 remove_section(self._document, _PANELS, section)
 
     def _loaded_sections(self) -> list[Section]:
-        """Return the entries that RViz loads, that is, those with a class and a name."""
+        """Return the entries that RViz loads: entries with a class and a name."""
         return [
             section
             for section in self._document.sections(_PANELS)
@@ -140,7 +140,7 @@ class PanelsConfig:
         return is_shown(self._document.text(*_WINDOW_STATE) or "", name) is not False
 
     def _set_shown(self, section: Section, *, is_visible: bool) -> None:
-        """Mark a panel as shown or hidden in the window state, if there is one, and as not collapsed."""
+        """Mark a panel as shown or hidden in an existing window state, and as not collapsed."""
         name = section.text("Name") or ""
         state = self._document.text(*_WINDOW_STATE) or ""
         if is_shown(state, name) not in (None, is_visible):

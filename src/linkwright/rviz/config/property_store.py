@@ -128,7 +128,7 @@ class PropertyStore:
         return [self._values_section().memory(memory.key) for memory in memories]
 
     def recall(self, memories: Iterable[Memory]) -> list[Path]:
-        """Restore previous entries of the file, and return the paths of the properties whose values changed."""
+        """Restore previous entries of the file, and return the paths of changed properties."""
         keys = {memory.key for memory in memories}
         section = self._values_section()
         for memory in memories:

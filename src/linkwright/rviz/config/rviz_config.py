@@ -143,7 +143,10 @@ class DisplayConfig:
 
     @property
     def is_group(self) -> bool:
-        """Whether the display is a group. A group contains displays and draws nothing itself."""
+        """Whether the display is a group.
+
+        A group contains displays and draws nothing itself.
+        """
         return self.cls == GROUP
 
     @property
@@ -163,7 +166,7 @@ class DisplayConfig:
     def checked(self) -> bool:
         """Whether the check box is on.
 
-        The value is that of ``Enabled`` or, if it is missing, of ``Value``. The default is off.
+        ``Enabled`` or, if it is missing, ``Value`` determines the result. The default is off.
         """
         text = self.section.text("Enabled")
         if text is None:

@@ -160,7 +160,7 @@ def from_text(spec: PropertySpec, text: str) -> PropertyValue:
 def fallback_value(spec: PropertySpec) -> PropertyValue:
     """Return the value used for invalid text: true for a ``bool``, otherwise the default.
 
-    Qt, and therefore RViz, reads every text as true except ``false``, ``0`` and an empty text; even ``no`` is true.
+    Qt, and therefore RViz, reads every text as true except ``false``, ``0`` and an empty string; even ``no`` is true.
     """
     return True if spec.kind == "bool" else spec.default
 

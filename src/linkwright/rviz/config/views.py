@@ -220,10 +220,10 @@ Report = Callable[[Diagnostic], None]
 
 
 class ViewEntry:
-    """An entry of ``Views``. Unknown keys of the entry stay in the file.
+    """An entry of ``Views``.
 
-    If `VIEW_SCHEMAS` does not have the class of the view, the view is shown as a similar class or as an Orbit. It
-    stays unchanged in the file until a value is set.
+    Unknown keys of the entry stay in the file. If `VIEW_SCHEMAS` does not have the class of the view, the view is shown
+    as a similar class or as an Orbit. It stays unchanged in the file until a value is set.
 
     Args:
         section: the file, or the view's section of it.

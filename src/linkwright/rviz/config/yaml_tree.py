@@ -1,7 +1,8 @@
-"""YAML as a tree that is edited in place. Values without edits keep their spelling.
+"""YAML as a tree that is edited in place.
 
-RViz's files contain many keys that this program does not use. The tree consists of PyYAML's nodes, which preserve the
-order of keys, the quoting and the spelling of every scalar, and the line number of every value.
+Values without edits keep their spelling. RViz's files contain many keys that this program does not use. The tree
+consists of PyYAML's nodes, which preserve the order of keys, the quoting and the spelling of every scalar, and the line
+number of every value.
 """
 
 from __future__ import annotations
@@ -380,7 +381,7 @@ def _check_depth(text: str, source: SourceText) -> None:
 
 
 def _expand_aliases(root: yaml.Node, source: SourceText) -> None:
-    """Replace each alias with a copy of its node, so that an edit of one copy does not change the others."""
+    """Replace each alias with a copy of its node, so that copies can be edited separately."""
     visited_ids: set[int] = set()
     count = 0
 
@@ -442,7 +443,10 @@ def _text_in_layout(node: yaml.Node, source: str) -> str:
 
 
 def _default_text(node: yaml.Node) -> str:
-    """Return a document as text in libyaml's default layout. The conversion is fast."""
+    """Return a document as text in libyaml's default layout.
+
+    The conversion is fast.
+    """
     return _serialize(node, _PlainDumper)
 
 

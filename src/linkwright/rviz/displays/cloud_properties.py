@@ -117,7 +117,7 @@ COLOUR_PROPERTIES = frozenset(spec.name for spec in TRANSFORMER_SPECS) - {"Color
 
 
 def scalar_specs(channel: str, minimum: float, maximum: float, *, inverted: bool | None = None) -> Schema:
-    """Return the properties of a display whose points are coloured by one number, such as a temperature.
+    """Return the properties of a display that colours points by one number.
 
     Properties with only one possible value are hidden, as in RViz.
 

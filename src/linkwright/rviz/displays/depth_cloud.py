@@ -57,7 +57,7 @@ DEPTH_SCHEMA: Schema = (
         INFO_TOPIC,
         "topic",
         "",
-        "sensor_msgs/msg/CameraInfo of the depths; without one, camera_info beside them.",
+        "sensor_msgs/msg/CameraInfo of the depths. The default is camera_info in the same namespace.",
         messages=("sensor_msgs/msg/CameraInfo",),
     ),
     PropertySpec(

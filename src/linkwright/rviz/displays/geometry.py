@@ -116,8 +116,8 @@ class RangeDisplay(RecentDisplay):
 def _cone_length(message: Any) -> float:
     """Return the length of the cone in metres, as in RViz, according to REP 117.
 
-    A fixed-distance ranger has equal minimum and maximum ranges. It reports -Inf for a detection, which is drawn at the
-    fixed distance.
+    A fixed-distance ranger has equal minimum and maximum ranges. It reports -Inf for a detection. A detection is drawn
+    at the fixed distance.
     """
     distance, minimum, maximum = float(message.range), float(message.min_range), float(message.max_range)
     if minimum <= distance <= maximum and math.isfinite(distance):

@@ -217,7 +217,7 @@ class ImageDisplay(ImageTopicDisplay):
 
     _has_range = False
     _panel: ImageSize | None = None
-    """The size of the largest panel of any page; None before a page has reported its panel."""
+    """The size of the largest panel of any page, or None before a page has reported its panel."""
 
     @property
     def _is_hidden(self) -> bool:
@@ -285,7 +285,7 @@ _INFO_ROW = "Camera Info"
 _MAX_QUEUED = 10
 
 _CAMERA_SPECS: Schema = (
-    topic_spec(description="sensor_msgs/msg/Image; the topic camera_info beside it gives the camera."),
+    topic_spec(description="sensor_msgs/msg/Image. The topic camera_info in the same namespace describes the camera."),
     PropertySpec(
         "Image Rendering",
         "enum",

@@ -243,7 +243,7 @@ class InteractiveMarkersDisplay(DataDisplay):
         self.send(shape, key=f"marker {name}", frame=frame, pose=frame_pose)
 
     def _frame_pose(self, marker: Any, frame: str) -> Pose | None:
-        """Return the pose of the marker's frame at its stamp, or None if pages use the latest transform.
+        """Return the pose of a marker's frame at its stamp, or None for the latest transform.
 
         Raises:
             TransformException: the transform is not available.

@@ -36,8 +36,8 @@ _SCHEMA: Schema = (
     topic_spec(description="nav_msgs/msg/OccupancyGrid", filter_size=10),
     topic_spec(
         _UPDATE_TOPIC,
-        description="map_msgs/msg/OccupancyGridUpdate: the topic with updates of parts of the map; without one, the "
-        "map's topic with '_updates' behind it.",
+        description="map_msgs/msg/OccupancyGridUpdate: the topic with updates to parts of the map. The "
+        "default is the map's topic with the suffix '_updates'.",
         messages=("map_msgs/msg/OccupancyGridUpdate",),
     ),
     alpha("Opacity of the map: 0 is invisible.", 0.7),

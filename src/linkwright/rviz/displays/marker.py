@@ -204,7 +204,7 @@ class MarkerDisplay(StoredMarkersDisplay):
         return pose
 
     def _show(self) -> None:
-        """Send all pending changes of markers together."""
+        """Send all pending changes to markers together."""
         self._frame_poses.clear()
         self.show_markers()
 
@@ -286,7 +286,7 @@ class MessageMarkersDisplay(MarkerArrayDisplay, ABC):
         """
 
     def process_message(self, message: Any, pose: Pose | None) -> None:
-        """Replace the markers of the previous message by those of this message."""
+        """Replace the markers of the previous message with the markers of this message."""
         markers_to_show = list(self.markers(message))
         header = getattr(message, "header", None)
         for marker in markers_to_show:

@@ -161,7 +161,10 @@ class WorldDisplay(TopicDisplay):
         self._rays.forget()
 
     def reset(self) -> None:
-        """Discard the world. The display stays empty until another description arrives."""
+        """Discard the world.
+
+        The display stays empty until another description arrives.
+        """
         self._cancel_reading()
         self._content, self._link_indices, self._last_sent = WorldContent(), {}, ()
         self._page_problems.clear()

@@ -48,7 +48,10 @@ class LidarRays:
             self._on_measurement(message)
 
     def forget(self) -> None:
-        """Discard and hide all rays. No rays are drawn until new measurements arrive."""
+        """Discard and hide all rays.
+
+        No rays are drawn until new measurements arrive.
+        """
         self._last_messages.clear()
         self._hide_except(set())
 

@@ -178,7 +178,10 @@ class FrameAudience(Protocol):
     """The pages that receive frames."""
 
     def __len__(self) -> int:
-        """Return the number of pages. Without pages, frames are not updated regularly."""
+        """Return the number of pages.
+
+        Without pages, frames are not updated regularly.
+        """
 
     def publish(self, message: FrameTable, /) -> None:
         """Send a new frame table, before the transforms that refer to it."""
@@ -248,7 +251,7 @@ class FrameStream:
         self._paused_ns: int | None = None
 
     def start(self) -> None:
-        """Subscribe and start sending."""
+        """Subscribe to ``/tf`` and ``/tf_static``, and start sending frame poses to pages."""
         for topic, static, qos in (("/tf", False, TF_QOS), ("/tf_static", True, STATIC_TF_SUBSCRIPTION_QOS)):
             self._node.create_subscription(
                 TFMessage, topic, partial(self._add_transforms, static=static), qos

@@ -178,7 +178,7 @@ _NO_COLORS = np.empty((0, 4), dtype=np.float32)
 
 
 FramePlacer = Callable[[str, str], Transform]
-"""Returns the current pose of the second frame in the first frame; raises a LinkwrightError if it is unknown."""
+"""Returns the current pose of the second frame in the first frame. Raises a LinkwrightError if it is unknown."""
 
 
 def read_interactive_marker(
@@ -306,7 +306,7 @@ def _axis_color(orientation: list[float]) -> list[float]:
 
 
 def _ring_triangles(mode: InteractionMode) -> tuple[NDArray[np.float32], NDArray[np.float64] | None]:
-    """Return the triangles of a ring about x with inner radius 0.5, and their brightness or None."""
+    """Return the triangles of a ring about x, inner radius 0.5, and their brightness or None."""
     angles = np.arange(_RING_STEPS) * (2 * np.pi / _RING_STEPS)
     inner = 0.5 * np.stack([np.zeros(_RING_STEPS), np.cos(angles), np.sin(angles)], axis=1)
     outer = (1 + _RING_WIDTH) * inner

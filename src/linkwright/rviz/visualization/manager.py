@@ -42,7 +42,7 @@ class ManagerOwner(Protocol):
     """The owner of visualization managers, to be notified of their events."""
 
     def edited(self, manager: VisualizationManager) -> None:
-        """Handle a change of undo, redo or the unsaved state."""
+        """Handle a change to the undo history or the unsaved state."""
 
     def robot_changed(self) -> None:
         """Handle a change of the robot that a display shows."""
@@ -274,7 +274,7 @@ class VisualizationManager:
                     display.set_property(path, value)
 
     def edited(self) -> None:
-        """Record a change of the file that cannot be undone."""
+        """Record a change to the file that cannot be undone."""
         self.history.touch()
 
     # --- time --------------------------------------------------------------------------------------------------

@@ -93,7 +93,7 @@ def add_shape(
     shape_size = tuple(map(float, size)) or defaults.size
     if not is_size(kind, shape_size):
         raise EditError(
-            phrase("'{numbers}' is not a valid size of a {kind}", numbers=" ".join(map(str, size)), kind=kind)
+            phrase("'{numbers}' is not a valid size for a {kind}", numbers=" ".join(map(str, size)), kind=kind)
         )
     name = world.free_name(kind)
     colour = lengths((*defaults.colour, 1.0))

@@ -241,7 +241,7 @@ def _size_edits(entity: Entity, size: tuple[float, ...]) -> list[Replacement]:
         raise EditError(phrase("'{name}' cannot be resized: it is not a simple shape", name=entity.name))
     if not is_size(shape.kind, size):
         raise EditError(
-            phrase("'{numbers}' is not a valid size of a {kind}", numbers=" ".join(map(str, size)), kind=shape.kind)
+            phrase("'{numbers}' is not a valid size for a {kind}", numbers=" ".join(map(str, size)), kind=shape.kind)
         )
     assert isinstance(entity.written, Model), "only models that are written here have a shape"
     link = entity.written.links[0]

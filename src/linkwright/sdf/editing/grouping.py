@@ -96,7 +96,7 @@ def ungroup(world: WorldText, name: str) -> tuple[WorldText, list[str]]:
     entity = world.entity(name)
     model = entity.written
     if not isinstance(model, Model):
-        raise EditError(phrase("'{name}' is not a group that is written in this file", name=name))
+        raise EditError(phrase("'{name}' is not a group in this file", name=name))
     if not entity.member_names or model.joints or model.frames or model.plugins or model.links:
         raise EditError(phrase("'{name}' cannot be ungrouped: it contains more than models", name=name))
     member_elements = [element for element in entity.element.elements() if element.tag in ("model", "include")]

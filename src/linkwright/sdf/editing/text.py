@@ -170,7 +170,7 @@ class WorldText:
     def free_name(self, preferred_name: str, used_names: AbstractSet[str] | None = None) -> str:
         """Return the preferred name if it is free, or else with the first free number.
 
-        `used_names` are the names in use; None for those of this world.
+        `used_names` are the names in use; None for the names in this world.
         """
         used_names = self.used_names if used_names is None else used_names
         if preferred_name not in used_names:

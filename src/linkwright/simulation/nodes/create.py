@@ -57,7 +57,7 @@ class Create(EntitySpawner):
             self._spawn(self._read_parameter(sources["param"]))
         else:
             message = phrase("the command line of create does not name a model to add to the world")
-            hint = phrase("give it one of -topic, -file, -string and -param")
+            hint = phrase("pass one of -topic, -file, -string and -param")
             raise LinkwrightError(Diagnostic("NODE812", message, hint=hint))
 
     def _read_parameter(self, name: str) -> str:

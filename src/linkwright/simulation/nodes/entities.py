@@ -38,7 +38,7 @@ class Remove(SimulatorClient):
             self._node.declare_parameter("world", "")
             name = str(self._node.declare_parameter("entity_name", "").value)
             if not name:
-                hint = phrase("give it the parameter 'entity_name'")
+                hint = phrase("set the parameter 'entity_name'")
                 raise LinkwrightError(
                     Diagnostic(
                         "NODE812",
@@ -128,6 +128,6 @@ def _read(parser: _Parser, words: Sequence[str]) -> argparse.Namespace:
     arguments = parser.parse_args(words)
     if not arguments.name:
         message = phrase("the command line of {program} does not name a model", program=parser.prog)
-        hint = phrase("give its name with --name; Linkwright models have no numeric IDs")
+        hint = phrase("pass its name with --name; Linkwright models have no numeric IDs")
         raise LinkwrightError(Diagnostic("NODE812", message, hint=hint))
     return arguments

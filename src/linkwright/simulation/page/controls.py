@@ -42,7 +42,7 @@ _PAUSED = 2
 """The value of simulation_interfaces/msg/SimulationState for a paused simulation."""
 _VELOCITIES = ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped")
 _PUSH_NS = 50_000_000
-"""The duration of a push in nanoseconds; pages repeat the push while the user pulls."""
+"""The duration of a push in nanoseconds. Pages repeat the push while the user pulls."""
 
 _EMPTY_SERVICE = "std_srvs/srv/Empty"
 _ACTIONS = {

@@ -22,9 +22,9 @@ def error_findings(error: Exception, name: str, element: Element | None) -> list
         return list(error.diagnostics)
     reason = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
     message = phrase("'{plugin}' stopped because its code failed: {error}", plugin=name, error=foreign(reason))
-    hint = phrase("everything else continues without it")
+    hint = phrase("the simulation continues without it")
     if frames := extract_tb(error.__traceback__):
         location = f"{Path(frames[-1].filename).name}:{frames[-1].lineno}"
-        hint = phrase("it failed in {place}; everything else continues without it", place=location)
+        hint = phrase("the code failed in {place}; the simulation continues without it", place=location)
     span, source = (None, None) if element is None else (element.span(), element.source)
     return [Diagnostic("SIM138", message, span, hint=hint, source=source)]

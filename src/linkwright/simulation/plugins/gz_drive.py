@@ -14,9 +14,9 @@ from linkwright.simulation.plugins.limits import SpeedLimits
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
 
 GZ_RATE = 100.0
-"""The rate in Hz at which drives of gz process commands; gz itself processes them before each step."""
+"""The rate in Hz at which drives of gz process commands. In gz, they are processed before each step."""
 GZ_TORQUE = 5.0
-"""The maximum torque of a wheel in N m if a gz plugin specifies none; gz sets velocities without a limit."""
+"""The maximum torque of a wheel in N m if a gz plugin specifies none. In gz, velocities are set without a limit."""
 MOTOR_GAIN = 20.0
 """The torque of a motor in N m per rad/s by which its wheel is too slow."""
 

@@ -21,7 +21,7 @@ from linkwright.simulation.plugins.plugin import SimulatedPlugin
 _MOTOR_GAIN = 20.0
 """The torque of a motor in N m per rad/s by which its joint is too slow."""
 _DEFAULT_MAX_COMMAND = 1000.0
-"""The default of ``cmd_max`` in gz, which means that there is no limit."""
+"""The default of ``cmd_max`` in gz: no limit."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -85,7 +85,7 @@ class GzJointStates(_JointStates[GzParameters]):
     PARAMETERS = GzParameters
 
     def start(self) -> None:
-        """Find the joints named by the parameters, or all movable joints if none is named."""
+        """Start to publish the joints named by the parameters, or all movable joints by default."""
         prefix = f"{self.place.path}::"
         movable_joints = [
             name

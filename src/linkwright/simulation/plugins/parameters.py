@@ -60,7 +60,7 @@ def parameters_from(
         ignored: the names of parameters that have no effect here and give no warning.
 
     Returns:
-        The parameters, and warnings for unknown names and for invalid values, which are replaced by their defaults.
+        The parameters, and warnings for unknown names and for invalid values. Defaults replace invalid values.
 
     Raises:
         LinkwrightError: SIM132, a parameter without a default is missing.
@@ -112,7 +112,7 @@ def _read(declared_field: Field[Any], kind: Any, elements: list[Element], findin
         try:
             values.append(convert(text))
         except ValueError:
-            message = phrase("'{text}' is not a valid value of '{name}'", text=text, name=declared_field.name)
+            message = phrase("'{text}' is not a valid value for '{name}'", text=text, name=declared_field.name)
             findings.append(_warning("SIM131", message, child, phrase("the default is used")))
     if not values:
         return None

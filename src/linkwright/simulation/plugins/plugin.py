@@ -176,7 +176,7 @@ class SimulatedPlugin(Generic[P]):
             setattr(self, name, getattr(before, name))
 
     def is_like(self, other: SimulatedPlugin[Any]) -> bool:
-        """Return whether another plugin has the same class, place in its model and parameters."""
+        """Return whether another plugin has the same class, position in its model, and parameters."""
         own_place, other_place = self.place, other.place
         same_place = (own_place.path, own_place.name) == (other_place.path, other_place.name)
         return type(self) is type(other) and same_place and bool(self.parameters == other.parameters)

@@ -98,7 +98,7 @@ def _load(entry: EntryPoint) -> PluginClass:
     except Exception as error:
         message = phrase("the plugin '{name}' cannot be imported", name=entry.name)
         hint = phrase(
-            "the Python package '{place}' provides it, but its import fails: {problem}",
+            "fix the Python package '{place}', whose import fails: {problem}",
             place=entry.distribution,
             problem=foreign(error),
         )

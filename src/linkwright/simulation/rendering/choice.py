@@ -37,7 +37,7 @@ def make_renderer(simulation: Simulation, method: str = "") -> Renderer:
     for candidate in candidates:
         try:
             return _create_renderer(simulation, candidate)
-        except Exception:  # noqa: BLE001, PERF203, S112 - a missing library raises many exceptions
+        except Exception:  # noqa: BLE001, PERF203, S112 - a missing library may raise anything
             continue
     raise AssertionError("MuJoCo's rays need nothing, and never fail")
 

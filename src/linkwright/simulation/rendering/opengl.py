@@ -28,7 +28,7 @@ from linkwright.simulation.scene.bodies import COLLISION_GROUP, VISUAL_GROUP
 from linkwright.simulation.simulation import Simulation
 
 _LIBRARIES = {"cgl": ""} if sys.platform == "darwin" else {"egl": "EGL", "osmesa": "OSMesa"}
-"""The shared library that each of MuJoCo's backends needs; empty for none."""
+"""The shared library that each of MuJoCo's backends needs, or empty for none."""
 _BACKEND_NAMES = {"egl": "EGL", "osmesa": "OSMesa", "cgl": "CGL"}
 BACKENDS = tuple(_LIBRARIES)
 _MAX_LIGHTS = 8
@@ -38,9 +38,9 @@ _GROUND_SIZE = 4.0
 _RADIUS_TOLERANCE = 1e-6
 """The relative tolerance of a geom's bounding radius, which covers rounding errors."""
 _UNIFORM_LIGHT_QUADS, _OTHER_LIGHT_QUADS = 1, 4
-"""The squares along each edge of a box's face, in uniform and in other light; light is computed at their corners."""
+"""The squares along each edge of a box's face, in uniform and in other light. Light is computed at their corners."""
 _SLICES, _STACKS = 28, 14
-"""The slices of spheres and cylinders, as in MuJoCo, and the stacks of spheres; half as many stacks are as accurate."""
+"""The slices of spheres and cylinders, as in MuJoCo, and the stacks of spheres. Half as many stacks are as accurate."""
 _COMPILE, _STRIP, _FAN = 0x1300, 0x5, 0x6
 """OpenGL's GL_COMPILE, GL_TRIANGLE_STRIP and GL_TRIANGLE_FAN."""
 _BUILT_IN, _SPHERE, _CYLINDER, _TUBE = 8, 0, 3, 4

@@ -104,7 +104,8 @@ class BodyWriter:
         if not np.isfinite(tensor).all() or not is_positive_definite(tensor):
             if not (np.isfinite(tensor).all() and not tensor.any()):
                 message = phrase(
-                    "the inertia of link '{name}' is not physically possible; that of a ball of its mass is used",
+                    "the inertia of link '{name}' is not physically possible; the inertia of a ball with "
+                    "the same mass is used instead",
                     name=link.name,
                 )
                 self._warn("SIM111", message, inertial.element or link.element)
@@ -112,7 +113,7 @@ class BodyWriter:
         excess = triangle_excess(tensor)
         if excess > TOLERANCE:
             message = phrase(
-                "the inertia of link '{name}' is not physically possible; the mean of its moments is used",
+                "the inertia of link '{name}' is not physically possible; the mean of its moments is used instead",
                 name=link.name,
             )
             self._warn("SIM111", message, inertial.element or link.element)

@@ -104,7 +104,7 @@ def step_in_nanoseconds(step: float, world: World) -> int:
     """
     if not (isfinite(step) and round(step * NANOSECONDS_PER_SECOND) > 0):
         message = phrase("a time step of {step} s cannot be simulated", step=step)
-        hint = phrase("0.001 is usual: <max_step_size>0.001")
+        hint = phrase("use a time step such as <max_step_size>0.001")
         physics = physics_of(world)
         element = physics.element if physics.max_step_size == step else None
         if element is None:

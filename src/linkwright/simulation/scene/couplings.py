@@ -34,7 +34,7 @@ def gearbox_coupling(spec: Any, gear: PlacedJoint, joints: Iterable[PlacedJoint]
     Args:
         spec: the specification.
         gear: the gearbox.
-        joints: the movable joints, which include those that move the parent and child links of the gearbox.
+        joints: the movable joints, including the joints of the gearbox's parent and child links.
     """
     joint_of_link = {joint.child: joint for joint in joints if joint.axes}
     parent, child = joint_of_link.get(gear.parent), joint_of_link.get(gear.child)

@@ -27,9 +27,9 @@ from linkwright.simulation.scene.wrapping import textured_mesh
 from linkwright.xmltree import Element
 
 _MAX_PIECES = 300
-"""The maximum number of convex pieces of a mesh; each piece costs time in every step."""
+"""The maximum number of convex pieces of a mesh. Each piece costs time in every step."""
 _MOST_TRIANGLES = 1_000_000
-"""The maximum number of triangles; larger meshes need gigabytes without improving contacts or images."""
+"""The maximum number of triangles. Larger meshes need gigabytes without improving contacts or images."""
 _MAX_HULL_VERTICES = 64
 """The maximum number of vertices of a convex hull."""
 _MIN_AREA = 1e-12

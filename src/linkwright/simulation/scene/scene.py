@@ -35,7 +35,7 @@ _ANCHOR_DISTANCE = 0.1
 _LOOP_STEPS = 4.0
 """The time constant of constraints that close a loop, in time steps."""
 _MAX_ROLLING_WHEELS = 2
-"""The maximum number of driven wheels on a link that can roll; with more, some wheels slip in every turn."""
+"""The maximum number of driven wheels on a link that can roll. With more, some wheels slip in every turn."""
 _MAX_SPEED_CHANGE = 1.0
 """The maximum change in rad/s of a free wheel's speed within a step, caused by a motor at its maximum torque.
 

@@ -15,7 +15,7 @@ from linkwright.simulation.library import load_mujoco
 _INFINITE = 0.0
 """The half width of an infinite plane in MuJoCo."""
 _HALF_THICKNESS = 0.005
-"""Half the thickness in m of the box that replaces a plane on a movable body; MuJoCo's planes are static."""
+"""Half the thickness in m of the box that replaces a plane on a movable body. MuJoCo's planes are static."""
 _BASE_VERTICES = 32
 
 

@@ -15,11 +15,11 @@ _MIN_FRICTION = 1e-5
 """The minimum coefficient of friction in MuJoCo."""
 _MAX_FRICTION = 1e3
 FRICTIONLESS = 0.1
-"""The coefficient below which a shape has no friction; descriptions of casters use such values to mean none."""
+"""The coefficient below which a shape has no friction. Descriptions of casters use such values to mean none."""
 _SOFT_SOLREF = (0.05, 1.0)
 """The time constant in s and the damping ratio of sliding shapes, so soft that adjacent wheels bear the load."""
 _HARD_TIME_STEPS = 4.0
-"""The time constant of the contacts of wheels, in time steps; values below two are unstable."""
+"""The time constant of the contacts of wheels, in time steps. Values below two are unstable."""
 RESTITUTION_DATA = 2
 """The number of user values of a bouncing geom: the coefficient of restitution and the velocity threshold in m/s."""
 _HARD_SOLIMP = (0.99, 0.999, 0.001, 0.5, 2.0)

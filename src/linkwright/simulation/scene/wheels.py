@@ -72,7 +72,7 @@ def make_sliding(body: Any, unspecified: set[str]) -> None:
 
 
 def make_omnidirectional(body: Any, step: float) -> None:
-    """Make the collisions of a body frictionless but hard, like those of a wheel with rollers.
+    """Make the collisions of a body frictionless but hard, as for a wheel with rollers.
 
     Args:
         body: a body of the specification.

@@ -34,7 +34,7 @@ _SIDES = (
 
 
 _MIN_AREA = 1e-15
-"""The minimum area of a triangle in m2; smaller triangles, at the poles, are omitted."""
+"""The minimum area of a triangle in m2. Smaller triangles, at the poles, are omitted."""
 
 
 def textured_mesh(shape: Shape) -> Triangles | None:

@@ -23,7 +23,7 @@ _EQUATORIAL_RADIUS = 6378137.0
 _FLATTENING = 1 / 298.257223563
 _SQUARED_ECCENTRICITY = _FLATTENING * (2 - _FLATTENING)
 _ITERATIONS = 5
-"""The number of iterations for the latitude; each iteration reduces the error to less than a hundredth."""
+"""The number of iterations for the latitude. Each iteration reduces the error to less than a hundredth."""
 _ATMOSPHERE_RADIUS, _GRAVITY = 6356766.0, 9.80665
 """The standard atmosphere's radius of the earth in m, and gravity in m/s2."""
 _SEA_PRESSURE, _SEA_TEMPERATURE, _LAPSE_RATE, _AIR_GAS_CONSTANT = 101325.0, 288.15, 0.0065, 287.05287

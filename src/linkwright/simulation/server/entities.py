@@ -69,7 +69,7 @@ def read_entity(text: str, finder: ResourceFinder, library: DescriptionLibrary) 
         hint = (
             phrase("send URDF, or SDF with a <model>")
             if not sdf.sdf.worlds
-            else phrase("it describes a world, but only models can be added; send one of its models")
+            else phrase("send one of the models of the world: only models can be added")
         )
         raise LinkwrightError(Diagnostic("SIM142", message, hint=hint))
     return Entity(resolved.sdf.models[0], findings, tuple(_invalid_shapes(document.root)))

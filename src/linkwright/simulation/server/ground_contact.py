@@ -12,7 +12,7 @@ from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.simulation import Simulation
 
 _MIN_DEPTH, _MOST = 0.002, 0.3
-"""The depths in m between which a model is lifted; smaller depths are harmless, and greater depths may be intended."""
+"""The depths in m between which a model is lifted. Smaller depths are harmless, and greater depths may be intended."""
 _MIN_UPWARD_COMPONENT = 0.7
 """The minimum vertical component of a contact's normal, so that a wall does not lift a model that it contains."""
 

@@ -13,7 +13,7 @@ from linkwright.simulation.scene.connections import model_of
 from linkwright.simulation.simulation import Simulation
 
 _MIN_DEPTH = 0.02
-"""The depth in m above which bodies count as overlapping; soft contacts are up to this deep at rest."""
+"""The depth in m above which bodies count as overlapping. Soft contacts are up to this deep at rest."""
 _MAX_REPORTED = 8
 """The maximum number of overlaps that are reported individually."""
 

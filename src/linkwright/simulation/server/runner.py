@@ -16,7 +16,7 @@ from linkwright.simulation.server.server import SimulationServer
 _CHUNK = 0.005
 """The real time in s between two checks for commands."""
 _MAX_CHUNK = 0.05
-"""The maximum simulated time in s between two checks; all messages published in between arrive together."""
+"""The maximum simulated time in s between two checks. All messages published in between arrive together."""
 _MAX_DELAY = 0.25
 """The delay in s of real time up to which a simulation catches up; it does not make up for a greater delay."""
 _PAUSED_PERIOD = 1 / 30

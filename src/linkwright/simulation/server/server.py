@@ -45,7 +45,7 @@ from linkwright.simulation.server.unsimulated import unsimulated_elements, unsim
 from linkwright.simulation.simulation import Simulation
 
 _WORLD_OWNER = ""
-"""The key of the world's plugins; no model has this name."""
+"""The key of the world's plugins. No model has this name."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -356,7 +356,7 @@ class SimulationServer:
         if class_ is None and (class_ := plugin_class(original)) is not None and filename not in self._logged:
             self._logged.add(filename)
             notice = phrase(
-                "'{copy}' is simulated as '{original}', because its plugin name is a class of that library",
+                "'{copy}' is simulated as '{original}', because its plugin class belongs to '{original}'",
                 copy=filename,
                 original=original,
             )
@@ -440,7 +440,7 @@ class SimulationServer:
                 plugin=place.name,
                 name=full_name,
             )
-            hint = phrase("give it another name, or a namespace in <ros>")
+            hint = phrase("give the plugin another name, or a namespace in <ros>")
             span, source = (place.element.span(), place.element.source) if place.element else (None, None)
             raise LinkwrightError(Diagnostic("SIM135", message, span, hint=hint, source=source))
         node = Node(
@@ -474,9 +474,9 @@ class SimulationServer:
             self._log_failure(place, error)
 
     def report(self, findings: Iterable[Diagnostic], model: str = _WORLD_OWNER) -> None:
-        """Log findings, each only once, and add the findings on a model to `findings`.
+        """Log each new finding once, and keep the findings about a model in `findings`.
 
-        They remain in `findings` until the model is removed.
+        They are removed with the model.
         """
         reported = list(findings)
         if reported and model != _WORLD_OWNER:
@@ -489,7 +489,7 @@ class SimulationServer:
             self._logged.add(text)
             logger = self.node.get_logger()
             line = f"{text} ({diagnostic.hint})" if diagnostic.hint else text
-            if diagnostic.severity is Severity.ERROR:  # The logger tells calls apart by line.
+            if diagnostic.severity is Severity.ERROR:  # The logger distinguishes calls by line.
                 logger.error(line)
             else:
                 logger.warning(line)

@@ -93,6 +93,6 @@ def _find_world(name: str, finder: ResourceFinder) -> Path:
     world_names = finder.worlds()
     message = phrase("there is no world '{name}'", name=name)
     hint = did_you_mean(name, world_names) or phrase(
-        "give a file, or one of {names}", names=joined(sorted(world_names)[:8])
+        "pass a file, or one of {names}", names=joined(sorted(world_names)[:8])
     )
     raise LinkwrightError(Diagnostic("SIM150", message, hint=hint))

@@ -75,7 +75,7 @@ class ActionReader:
                 if kinds
                 else phrase("{what} has no action", what=self._keys.what)
             )
-            raise self._keys.error(message, None, phrase("give it one of {known}", known=all_kinds))
+            raise self._keys.error(message, None, phrase("add one of {known}", known=all_kinds))
         readers: dict[str, Callable[[], Action]] = {
             "drive": self._drive,
             "stop": self._stop,
@@ -178,7 +178,10 @@ class ActionReader:
         return Launch(package, file, arguments)
 
     def _call(self, keys: Keys, fields_key: str, find: Callable[[str], Any]) -> tuple[str, str, dict[str, Any]]:
-        """Return name, type and fields of a message to send, checked with an example value in each slot."""
+        """Return the name, type and fields of a message to send.
+
+        The fields are checked with an example value in each slot.
+        """
         name = keys.text("topic" if fields_key == "message" else "name", needed=True)
         type_name = keys.text("type", needed=True)
         values = self._fields(keys, fields_key)

@@ -24,7 +24,7 @@ Amount: TypeAlias = float | Slot
 
 @dataclass(frozen=True, slots=True)
 class Drive:
-    """A drive for a distance, an angle or a time, or until no command has arrived for the silence timeout.
+    """A drive for a distance, an angle or a time, or until the silence timeout expires.
 
     Attributes:
         x: the speed forward, as a multiple of the robot's speed; negative for backward.

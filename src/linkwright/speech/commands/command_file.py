@@ -90,7 +90,10 @@ class _Reader:
         return Place(keys.number("x", needed=True), keys.number("y", needed=True), keys.number("yaw"), frame)
 
     def _name(self, slot: str, name: str, node: yaml.Node | None) -> None:
-        """Read the spoken names of a place or an object. If there are none, its key is the name."""
+        """Read the spoken names of a place or an object.
+
+        If there are none, its key is the name.
+        """
         texts = self._texts(node) if node is not None else {ANY: [(name, None)]}
         spoken_names = self._slot_values.setdefault(slot, {})
         for language, names in texts.items():

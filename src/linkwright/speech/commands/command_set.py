@@ -156,7 +156,7 @@ class CommandSet:
 
 
 def choose_text(texts: ByLanguage, language: str) -> str:
-    """Return the text in a language, or else for any language, in English, or in another language.
+    """Return the text in a language, or else for any language, in English, or in any other.
 
     The result is empty if there is no text.
     """

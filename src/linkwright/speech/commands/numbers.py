@@ -38,7 +38,7 @@ _POWERS = {"十": 10, "百": 100, "千": 1000}
 
 
 def number(words: Words) -> float | None:
-    """Return the non-negative number that the words mean together, or None if they are not a number."""
+    """Return the non-negative number that words represent, or None if they are not a number."""
     if not words:
         return None
     if len(words) == 1 and words[0][0].isdigit():

@@ -26,7 +26,10 @@ _MAX_OPTIONAL = 6
 
 
 class TemplateError(ValueError):
-    """Raised if a phrase is malformed. The argument, a `Phrase`, is the reason."""
+    """Raised if a phrase is malformed.
+
+    The argument, a `Phrase`, is the reason.
+    """
 
 
 @dataclass(frozen=True, slots=True)

@@ -83,7 +83,7 @@ _PER_SECOND: Words = ("每", "秒")
 
 
 def parse_quantity(slot: str, words: Words) -> float | None:
-    """Return the value of words for a quantity slot in the slot's unit, or None if they are not such a value."""
+    """Return the value of words in a quantity slot's unit, or None if they are not a value."""
     if slot == "number":
         return number(words)
     if slot == "speed" and words[:2] == _PER_SECOND:

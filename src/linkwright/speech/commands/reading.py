@@ -39,7 +39,7 @@ class Keys:
             key_name = str(key.value) if isinstance(key, yaml.ScalarNode) else ""
             if allowed_names is not None and key_name not in allowed_names:
                 hint = did_you_mean(key_name, allowed_names) or phrase(
-                    ("use one of {known}"), known=", ".join(allowed_names)
+                    ("use one of {names}"), names=", ".join(allowed_names)
                 )
                 raise self.error(phrase("{what} has no '{key}'", what=what, key=key_name), key, hint)
             if key_name in self._values:
@@ -58,7 +58,7 @@ class Keys:
         return list(self._values)
 
     def node(self, key: str) -> yaml.Node | None:
-        """Return the node of the value under a key, or None if the key is missing or its value is null."""
+        """Return the value node under a key, or None if the key is missing or the value is null."""
         node = self._values.get(key)
         return None if node is None or node.tag == _NULL else node
 
@@ -115,7 +115,7 @@ class Keys:
         return texts
 
     def plain(self, key: str) -> Any:
-        """Return the value under a key as plain Python data, or an empty mapping if the key is missing."""
+        """Return the value under a key as plain Python data, or an empty mapping if it is missing."""
         node = self.node(key)
         if node is None:
             return {}

@@ -1,4 +1,4 @@
-"""Texts as words, so that case, punctuation and blanks between Chinese characters do not matter."""
+"""Texts as words, independent of case, punctuation and spaces between Chinese characters."""
 
 from __future__ import annotations
 

@@ -1,8 +1,9 @@
-"""The engine ``onnx``: a user's ONNX network that classifies a section of sound (keyword spotting).
+"""The engine ``onnx``: a user's ONNX network that spots keywords.
 
-The input is ``[1, n]`` float32, the sound at 16 kHz with full scale at 1. The output is ``[1, classes]``, scores or
-probabilities. The metadata ``names`` contains the classes, as JSON (a list, or an object of numbers and names) or
-separated by commas. Classes that do not match any phrase, such as ``background``, represent all other sound.
+The network classifies a speech segment. The input is ``[1, n]`` float32, the sound at 16 kHz with full scale at 1. The
+output is ``[1, classes]``, scores or probabilities. The metadata ``names`` contains the classes, as JSON (a list, or an
+object of numbers and names) or separated by commas. Classes that do not match any phrase, such as ``background``,
+represent all other sound.
 
 Speech between two silences is cut to ``n`` samples around its middle, or padded with silence on both sides.
 """
@@ -33,7 +34,7 @@ _FULL_SCALE = 32_768.0
 
 
 class OnnxEngine(SpeechEngine):
-    """An engine that recognises phrases with a network from an ONNX file. The option ``model`` names the file.
+    """An engine that recognises phrases with the ONNX network in the file of option ``model``.
 
     Raises:
         LinkwrightError: VOICE102, onnxruntime is not installed; VOICE104, the file is not such a network.
@@ -51,7 +52,10 @@ class OnnxEngine(SpeechEngine):
         self._sample_count = 0  # the number of samples
 
     def hear(self, samples: Samples) -> Sequence[Heard]:
-        """Process samples. There are no partial results, because the network runs at the end of an utterance."""
+        """Process samples, and return results at the end of an utterance.
+
+        There are no partial results, because the network classifies whole utterances.
+        """
         self._buffer = np.concatenate((self._buffer, samples))[-_MAX_SAMPLES:]
         self._sample_count += len(samples)
         results: list[Heard] = []
@@ -151,7 +155,7 @@ def _parse_names(text: str) -> tuple[str, ...]:
 def _model_error(path: Path, reason: Phrase) -> LinkwrightError:
     message = phrase("'{path}' is not a keyword spotter: {reason}", path=path, reason=reason)
     hint = phrase(
-        "use a network that takes 16 kHz sound as float32 [1, n], outputs [1, classes], and names "
-        "the classes in its metadata 'names'"
+        "use a network that accepts 16 kHz audio as float32 [1, n], outputs [1, classes], and "
+        "names the classes in its metadata 'names'"
     )
     return LinkwrightError(Diagnostic("VOICE104", message, hint=hint))

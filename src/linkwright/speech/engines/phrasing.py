@@ -81,7 +81,7 @@ class Phrasing:
 
 
 def _spell_word(word: str, in_vocabulary: Callable[[str], bool]) -> list[str] | None:
-    """Return the fewest words of a vocabulary that together make up a word, or None if there are none."""
+    """Split a word into the fewest words of a vocabulary, or return None if that is impossible."""
     for spelling in (word, word.lower()):
         if in_vocabulary(spelling):
             return [spelling]

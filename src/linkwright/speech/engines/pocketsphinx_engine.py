@@ -1,4 +1,4 @@
-"""The engine ``pocketsphinx``: a grammar of phrases with an acoustic model of American English.
+"""The engine ``pocketsphinx``: a grammar of phrases and a model of American English.
 
 The grammar has no model of other speech: in our measurements a quarter of other utterances was recognised as a phrase,
 and more in noise. The engine is therefore suitable for push-to-talk; Vosk or enrolled words are better where they are
@@ -66,7 +66,10 @@ class PocketsphinxEngine(SpeechEngine):
         self._partial = ""
 
     def hear(self, samples: Samples) -> Sequence[Heard]:
-        """Process samples. A partial result is a complete phrase that matches the words so far."""
+        """Process samples.
+
+        A partial result is a complete phrase that matches the words so far.
+        """
         self._waiting += samples.astype("<i2").tobytes()
         size = self._endpointer.frame_bytes
         results: list[Heard] = []
@@ -130,7 +133,7 @@ class PocketsphinxEngine(SpeechEngine):
     def _confidence(self) -> float:
         """Return the confidence of the current result, 0 to 1.
 
-        It compares the score of the words with that of the best sequence of phones in any order.
+        It compares the score of the words with the score of the best sequence of any phones.
         """
         word_segments = [
             segment for segment in self._decoder.seg() or () if not segment.word.startswith(_FILLER_PREFIXES)

@@ -1,1 +1,1 @@
-"""Words that the user has enrolled, recognised in any language by their distance from the recordings."""
+"""Enrolled words of any language, recognised by their distance from the recordings."""

@@ -1,4 +1,4 @@
-"""The engine ``enrolled``, which recognises words in any language that the user has recorded."""
+"""The engine ``enrolled``: recognises words in any language that the user has recorded."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ _MIN_NUMBER_CONFIDENCE = 0.7
 
 
 class EnrolledEngine(SpeechEngine):
-    """An engine that recognises enrolled words by comparing each utterance with their recordings.
+    """An engine that recognises enrolled words by comparing utterances with their recordings.
 
     The file can appear, change and disappear at run time: it is checked with each block of samples.
 
@@ -72,7 +72,10 @@ class EnrolledEngine(SpeechEngine):
         return self._problem
 
     def hear(self, samples: Samples) -> Sequence[Heard]:
-        """Process samples. A word becomes a partial result in the block in which it ends."""
+        """Process samples.
+
+        A word becomes a partial result in the block in which it ends.
+        """
         self._reload_if_changed()
         results: list[Heard] = []
         for frame in self._frames.feed(samples):

@@ -1,4 +1,4 @@
-"""The enrolment of words: a check whether a recording is usable, with the reason if it is not."""
+"""The enrolment of words: checks whether a recording is usable, and why it is not."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def enrol(words: Words, name: str, samples: Samples, has_gaps: bool = False) -> 
         reason = phrase("there are already {most} words", most=MAX_WORDS)
         return (_rejection("VOICE204", phrase("a word cannot be named '{name}': {reason}", name=name, reason=reason)),)
     if has_gaps:
-        message = phrase("the sound that was recorded for '{name}' has gaps", name=name)
+        message = phrase("the recording for '{name}' has gaps", name=name)
         return (_rejection("VOICE212", message, phrase("record it again when the machine is less busy")),)
     powers = mel_frames(samples)
     first, last, noise = speech_span(powers)
@@ -82,7 +82,7 @@ def _compare_take(words: Words, name: str, take: Take) -> Diagnostic | None:
     if own_cost > _MAX_OWN_DISTANCE * reversed_cost:
         return _rejection(
             "VOICE208",
-            phrase("the recording for '{name}' differs from its earlier ones", name=name),
+            phrase("the recording for '{name}' differs from the earlier ones", name=name),
             phrase("speak it as before, or remove the word and enrol it again"),
         )
     nearest = min(costs, key=lambda word: costs[word], default=name)

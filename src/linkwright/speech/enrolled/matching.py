@@ -1,8 +1,9 @@
-"""Dynamic time warping of cepstra: distances of a sound from all enrolled takes, computed in parallel.
+"""Dynamic time warping of cepstra: distances of a recording from all enrolled takes.
 
-For each frame of the sound, a path advances by zero, one or two frames of a take. So a word may be spoken up to twice
-as fast, and all paths have as many costs as the sound has frames. Before and after the word, a path stays in the
-background. There is no loop over takes: each frame needs a few operations on an array with the frames of all takes.
+The distances are computed in parallel. For each frame of the recording, a path advances by zero, one or two frames of a
+take. So a word may be spoken up to twice as fast, and all paths have as many costs as the sound has frames. Before and
+after the word, a path stays in the background. There is no loop over takes: each frame needs a few operations on an
+array with the frames of all takes.
 
 Noise is masked as by Klatt, and by Holmes and Sedgwick: levels below the current noise, or far below the loudest level,
 are raised to this floor, both in the takes and in the sound. So they can be compared even if their noise differs.
@@ -37,14 +38,15 @@ _SPEECH_SOUND_FRAMES = 8  # frames: roughly the length of a speech sound
 
 @dataclass(frozen=True, slots=True)
 class Match:
-    """The distances of a sound from each take.
+    """The distances of a recording from each take.
 
     Arrays have the shape ``(takes,)`` unless stated otherwise.
 
     Attributes:
-        cost: the mean distance between frames of the sound and of the take, including the background around the word.
-        first: the index of the first frame of the word in the sound.
-        last: the index of the last frame of the word in the sound.
+        cost: the mean distance between frames of the recording and of the take, including the background around the
+            word.
+        first: the index of the first frame of the word in the recording.
+        last: the index of the last frame of the word in the recording.
         background: the mean distance between the word's frames and the background.
         distances: the distance of each frame of the sound from each frame of all takes, shape ``(frames, frames of all
             takes)``.
@@ -79,7 +81,7 @@ class Templates:
         self._first_columns, self._last_columns = starts, starts + self.lengths - 1
 
     def match(self, powers: Powers, noise: NDArray[np.float64]) -> Match:
-        """Compare a sound with all takes.
+        """Compare a recording with all takes.
 
         Args:
             powers: one or more frames, with the word and some background before and after it.
@@ -146,7 +148,7 @@ class Templates:
         return total[last, np.arange(len(self.lengths))] / (last + 1 - first), first, last, steps
 
     def _find_starts(self, steps: NDArray[np.int8], last: NDArray[np.intp]) -> NDArray[np.intp]:
-        """Return the frame at which each path enters its take, given the frames at which the paths end."""
+        """Return the frame at which each path enters its take, given the frame at which it ends."""
         column, first = self._last_columns.copy(), last.copy()
         active = np.arange(len(column))
         while len(active):
@@ -167,7 +169,10 @@ def loudness(powers: Powers) -> float:
 
 
 def _features(powers: NDArray[np.float64], mask: NDArray[np.float64]) -> _Array:
-    """Return the cepstra of masked powers and their derivatives, shape ``(frames, 2 * (_CEPSTRA + 1))``."""
+    """Return the cepstra of masked powers and their derivatives.
+
+    The shape is ``(frames, 2 * (_CEPSTRA + 1))``.
+    """
     cepstra = _multiply(10.0 * np.log10(np.maximum(powers, mask)), _COSINES)
     padded = np.pad(cepstra, ((_CONTEXT_FRAMES, _CONTEXT_FRAMES), (0, 0)), "edge")
     differences = (2.0 * (padded[4:] - padded[:-4]) + (padded[3:-1] - padded[1:-3])) / 10.0
@@ -176,22 +181,25 @@ def _features(powers: NDArray[np.float64], mask: NDArray[np.float64]) -> _Array:
 
 
 def _distances(sound: _Array, states: _Array) -> _Array:
-    """Return Euclidean distances, shape ``(frames of the sound, frames of all takes)``."""
+    """Return Euclidean distances, shape ``(frames of the recording, frames of all takes)``."""
     squares = np.sum(sound**2, axis=1)[:, None] + np.sum(states**2, axis=1)[None] - 2.0 * _multiply(sound, states.T)
     return np.asarray(np.sqrt(np.maximum(squares, 0.0)), dtype=np.float32)
 
 
 def _multiply(left: NDArray[_Float], right: NDArray[_Float]) -> NDArray[_Float]:
-    """Return the product of two matrices, computed in blocks for which OpenBLAS uses only one thread.
+    """Return the product of two matrices, computed with one thread.
 
-    The waiting threads of OpenBLAS would keep other cores busy.
+    OpenBLAS uses only one thread for the small blocks. Its waiting threads would keep other cores busy.
     """
     rows = max(1, _MAX_SINGLE_THREAD // right.size)
     return np.concatenate([left[start : start + rows] @ right for start in range(0, len(left), rows)])
 
 
 def _cosines() -> NDArray[np.float64]:
-    """Return the DCT-II matrix of the bands with a weighted level, shape ``(BANDS, _CEPSTRA + 1)``."""
+    """Return the DCT-II matrix of the bands, with a weighted level.
+
+    The shape is ``(BANDS, _CEPSTRA + 1)``.
+    """
     bands, orders = np.arange(BANDS) + 0.5, np.arange(_CEPSTRA + 1)
     weights = np.where(orders == 0, _LEVEL_WEIGHT, 1.0) * np.sqrt(2.0 / BANDS)
     return np.asarray(np.cos(np.pi * np.outer(bands, orders) / BANDS) * weights)

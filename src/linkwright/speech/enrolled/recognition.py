@@ -34,13 +34,13 @@ _MIN_REVERBERATION_LEVEL = 20.0  # dB above noise: below it, noise hides the dec
 
 @dataclass(frozen=True, slots=True)
 class Guess:
-    """The enrolled word that is nearest to a sound, with a confidence.
+    """The enrolled word that is nearest to a recording, with a confidence.
 
     Attributes:
         name: the name of the word.
         confidence: the probability that exactly this word was spoken, 0 to 1.
-        first: the first frame of the word in the sound.
-        last: the last frame of the word in the sound.
+        first: the first frame of the word in the recording.
+        last: the last frame of the word in the recording.
     """
 
     name: str

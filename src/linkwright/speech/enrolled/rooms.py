@@ -1,4 +1,4 @@
-"""Takes as they would sound in a room, so that words enrolled near the microphone are recognised from afar.
+"""Takes with the reverberation of a room, to recognise words from a distance.
 
 A room adds earlier sound to the current sound. In each band its power decays exponentially, by 60 dB in the
 reverberation time (Polack's model of late reverberation), and its total energy is a fraction of the direct sound's

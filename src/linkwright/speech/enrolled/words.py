@@ -1,9 +1,10 @@
-"""The file of enrolled words: spectra of their recordings, from which the voice cannot be played back.
+"""The file of enrolled words: the spectra of their recordings.
 
-The file is JSON, version 1: ``{"format": "linkwright enrolled words", "version": 1, "words": [...]}``, with words of
-the form ``{"name": "stop", "takes": [{"frames": BASE64, "noise": BASE64}, ...]}``. ``frames`` contains the bands of
-`linkwright.speech.sound.spectra` from the first to the last frame of the word, frame after frame, one byte each: the
-level in steps of 0.5 dB above a power of 1. ``noise`` is the level of the take's background, one byte per band.
+The voice cannot be played back from it. The file is JSON, version 1: ``{"format": "linkwright enrolled words",
+"version": 1, "words": [...]}``, with words of the form ``{"name": "stop", "takes": [{"frames": BASE64, "noise":
+BASE64}, ...]}``. ``frames`` contains the bands of `linkwright.speech.sound.spectra` from the first to the last frame of
+the word, frame after frame, one byte each: the level in steps of 0.5 dB above a power of 1. ``noise`` is the level of
+the take's background, one byte per band.
 """
 
 from __future__ import annotations
@@ -185,7 +186,7 @@ def _parse_words(document: Any, path_text: str) -> dict[str, tuple[Take, ...]]:
         takes = word.get("takes")
         if not isinstance(takes, list) or not 1 <= len(takes) <= MAX_TAKES:
             raise _damaged_error(
-                path_text, phrase("the word '{name}' must have 1 to {most} takes", name=name, most=MAX_TAKES)
+                path_text, phrase("the word '{name}' must have 1 to {most} recordings", name=name, most=MAX_TAKES)
             )
         takes_by_name[name] = tuple(_read_take(take, name, path_text) for take in takes)
     return takes_by_name
@@ -197,10 +198,12 @@ def _read_take(take: Any, name: str, path_text: str) -> Take:
             np.frombuffer(base64.b64decode(take[key], validate=True), np.uint8) for key in ("frames", "noise")
         )
     except (TypeError, KeyError, ValueError, binascii.Error):
-        raise _damaged_error(path_text, phrase("a take of the word '{name}' cannot be decoded", name=name)) from None
+        raise _damaged_error(
+            path_text, phrase("a recording of the word '{name}' cannot be decoded", name=name)
+        ) from None
     count = len(frames) // BANDS
     if len(frames) % BANDS or not 1 <= count <= _MAX_FRAMES or len(noise) != BANDS:
-        raise _damaged_error(path_text, phrase("a take of the word '{name}' has the wrong length", name=name))
+        raise _damaged_error(path_text, phrase("a recording of the word '{name}' has the wrong length", name=name))
     return Take(_from_levels(frames).reshape(count, BANDS), _from_levels(noise))
 
 

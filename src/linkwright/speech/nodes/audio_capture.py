@@ -1,4 +1,4 @@
-"""audio_capture: publishes the sound of a WAV file or of the microphone on the topics of audio_common.
+"""audio_capture: publishes a WAV file or the microphone on the topics of audio_common.
 
 Topics and parameters are those of the node in ros-drivers' audio_common: ``audio``, ``audio_stamped`` and, latched,
 ``audio_info``. Deliberate difference: the format is always 16 kHz, mono, S16LE, the default of that node, and never

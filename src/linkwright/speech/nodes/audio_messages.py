@@ -1,4 +1,4 @@
-"""The conversion of sound to messages of audio_common_msgs, and from any format of these messages.
+"""The conversion of samples to messages of audio_common_msgs, and back from any format.
 
 audio_capture publishes interleaved samples in one of GStreamer's formats (``S16LE``), which it announces on
 ``audio_info``. Without an AudioInfo, the format is audio_capture's default: 16 kHz, mono, S16LE.
@@ -121,7 +121,10 @@ def _sample_bytes(form: AudioFormat) -> int:
 
 
 def _values(data: bytes, form: AudioFormat) -> NDArray[np.float64]:
-    """Return samples with the stream's channels and rate, full scale at 1, without an incomplete sample."""
+    """Return samples with the stream's channels and rate, full scale at 1.
+
+    An incomplete last sample is dropped.
+    """
     size, kind = _sample_bytes(form), form.sample_format[0]
     order = ">" if form.sample_format.endswith("BE") else "<"
     data = data[: len(data) // size * size]
@@ -140,7 +143,7 @@ def _values(data: bytes, form: AudioFormat) -> NDArray[np.float64]:
 
 
 def audio_info(form: AudioFormat) -> Any:
-    """Return the AudioInfo of a format. Its bit rate is in kbit/s, as in audio_capture."""
+    """Return the AudioInfo of a format, with the bit rate in kbit/s, as in audio_capture."""
     info = get_message(AUDIO_INFO)()
     info.channels, info.sample_rate, info.sample_format = form.channels, form.rate, form.sample_format
     info.bitrate = form.channels * form.rate * 8 * _sample_bytes(form) // 1000

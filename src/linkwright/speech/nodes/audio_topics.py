@@ -22,7 +22,9 @@ NAMESPACE = "/audio"
 
 
 class AudioTopics:
-    """The publishers of sound on ``audio``, ``audio_stamped`` and ``audio_info``: mono 16-bit PCM at 16 kHz.
+    """The publishers of ``audio``, ``audio_stamped`` and ``audio_info``.
+
+    The format is mono 16-bit PCM at 16 kHz.
 
     Args:
         node: the node that publishes.
@@ -40,11 +42,11 @@ class AudioTopics:
         self._stamps = SampleStamps()
 
     def restart(self) -> None:
-        """Start a new stream, whose stamps do not continue those of the previous one."""
+        """Start a new stream, whose stamps are independent of the previous stream."""
         self._stamps.restart()
 
     def publish(self, samples: Samples, lost: float = 0.0) -> None:
-        """Publish the next block of the stream. Its last sample was recorded now or earlier.
+        """Publish the next block of the stream, stamped with the time of its first sample.
 
         Args:
             samples: the block.

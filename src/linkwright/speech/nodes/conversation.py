@@ -70,7 +70,11 @@ class Conversation:
         return self._driver.is_moving or self._requests.is_active
 
     def handle(self, text: str) -> bool:
-        """Execute the command in a text, or ask for confirmation, and return whether the text was understood."""
+        """Execute the command in a text, or ask for confirmation.
+
+        Returns:
+            Whether the text was understood.
+        """
         answer = self._commands.answer(text) if self._pending is not None else None
         if self._pending is not None and answer is not None:
             confirmed, spoken_text = self._pending
@@ -123,7 +127,7 @@ class Conversation:
     def on_drive_end(self, ending: Ending) -> None:
         """Answer the user if a drive has ended because the robot is stuck."""
         if ending == "stuck":
-            self.answer(phrase("I am stuck, so I stop"))
+            self.answer(phrase("I am stuck, so I am stopping"))
 
     def on_goal_end(self, is_reached: bool, reason: str) -> None:
         """Answer the user whether a goal was reached, or why it failed."""
@@ -171,12 +175,12 @@ class Conversation:
         elif isinstance(action, GoTo):
             name = str(values[action.place.name]) if isinstance(action.place, Slot) else action.place
             if not self._requests.send_pose(action.action, self._commands.places[name]):
-                return phrase("I cannot: no node serves '{name}'", name=action.action)
+                return phrase("I cannot do it: no node serves '{name}'", name=action.action)
         elif isinstance(action, SendGoal):
             if not self._requests.send_goal(action, values):
-                return phrase("I cannot: no node serves '{name}'", name=action.action)
+                return phrase("I cannot do it: no node serves '{name}'", name=action.action)
         elif isinstance(action, CallService) and not self._requests.call(action, values):
-            return phrase("I cannot: no node serves '{name}'", name=action.name)
+            return phrase("I cannot do it: no node serves '{name}'", name=action.name)
         return None
 
     def _end_other_motion(self, match: Match) -> None:

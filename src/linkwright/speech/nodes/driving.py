@@ -1,4 +1,7 @@
-"""Drives by command: without a limit, or for a time, a distance or an angle, measured by odometry if available."""
+"""Drives by command, without a limit or for a time, a distance or an angle.
+
+Odometry measures distances and angles if it is available.
+"""
 
 from __future__ import annotations
 
@@ -81,14 +84,17 @@ class Driver:
         self._timer.reset()
 
     def stop(self) -> None:
-        """Stop the robot. A zero velocity is published even if it does not move."""
+        """Stop the robot.
+
+        A zero velocity is published even if it does not move.
+        """
         self._drive = None
         self._timer.cancel()
         self._topic.review(may_change=False)
         self._topic.stop()
 
     def scale(self, factor: float) -> float:
-        """Multiply the speeds by a factor, within bounds, and return the factor that now applies to all speeds."""
+        """Multiply the speeds by a factor, within bounds, and return the total factor."""
         self._scale = min(max(self._scale * factor, _SCALE_RANGE[0]), _SCALE_RANGE[1])
         return self._scale
 
@@ -143,7 +149,7 @@ class Driver:
         return hypot(self._drive.x, self._drive.y) * self._speed * self._scale
 
     def _expected_seconds(self) -> float:
-        """Return the expected duration in s of a drive over a distance or an angle, or 0 for other drives."""
+        """Return the expected duration in s of a drive over a distance or angle, or 0 for others."""
         return (
             self._remaining / self._progress_rate() if self._remaining is not None and self._kind != "duration" else 0.0
         )

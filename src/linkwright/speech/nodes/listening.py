@@ -97,7 +97,7 @@ class Listener:
             self._serve()
         except LinkwrightError as error:
             self._queue_result(error)
-        except Exception as error:  # noqa: BLE001 - of an engine that others may bring
+        except Exception as error:  # noqa: BLE001 - another package's engine may raise anything
             message = phrase("the speech engine failed: {problem}", problem=foreign(f"{type(error).__name__}: {error}"))
             self._queue_result(LinkwrightError(Diagnostic("VOICE307", message)))
 

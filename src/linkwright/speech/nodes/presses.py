@@ -1,4 +1,7 @@
-"""Presses of the talk button. A press without a command is answered after its sound has been processed."""
+"""Presses of the talk button.
+
+A press without a command is answered after its sound has been processed.
+"""
 
 from __future__ import annotations
 
@@ -30,7 +33,7 @@ class _Press:
 
 
 class Presses:
-    """The presses whose sound the engine still processes. The next press may begin before that is done.
+    """The presses whose sound the engine still processes, even if the next press has begun.
 
     Args:
         can_enrol: whether pages can enrol words, so that the user can enrol words that were not understood.

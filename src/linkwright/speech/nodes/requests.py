@@ -1,4 +1,4 @@
-"""The requests of commands to other nodes: action goals, service calls, messages and launch files."""
+"""The requests of commands to nodes: action goals, service calls, messages, launch files."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class Goals:
         node: the node that sends them.
         type_name: the type of the action.
         name: the name of the action.
-        on_end: called when a goal ends, with whether it was reached, and the server's reason or an empty text. It is
+        on_end: called when a goal ends, with whether it was reached, and the server's reason or an empty string. It is
             not called for a goal that was canceled or replaced.
     """
 
@@ -72,7 +72,7 @@ class Goals:
         self.is_active = False
 
     def cancel_all(self) -> None:
-        """Cancel all goals of the action, including those of other clients."""
+        """Cancel all goals of the action, including goals of other clients."""
         self.cancel()
         if self._cancel_client.service_is_ready():
             self._cancel_client.call_async(self._cancel_client.srv_type.Request())

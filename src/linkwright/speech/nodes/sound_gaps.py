@@ -27,7 +27,7 @@ class SampleStamps:
         self._next_ns: int | None = None
 
     def restart(self) -> None:
-        """Start a new stream, whose stamps do not continue those of the previous one."""
+        """Start a new stream, whose stamps are independent of the previous stream."""
         self._next_ns = None
 
     def stamp(self, samples: int, now: int, lost: float = 0.0) -> int:

@@ -1,4 +1,6 @@
-"""voice_commander of my_robot_voice: turns spoken commands into velocities, goals, service calls and messages.
+"""voice_commander of my_robot_voice: turns spoken commands into velocities and requests.
+
+Requests are action goals, service calls and messages.
 
 An engine of `linkwright.speech` recognises the sound on ``audio/audio_stamped``, and the command file defines the
 meaning of the words. The node listens while ``voice/listen`` reports that a button is held, or always with
@@ -241,7 +243,11 @@ class VoiceCommander(SingleNode):
             self._presses.note_unknown(result)
 
     def _handle_final_result(self, result: Heard) -> bool:
-        """Execute a recognised text, or ask the user to repeat it, or return False if neither was done."""
+        """Execute a recognised text, or ask the user to repeat it.
+
+        Returns:
+            False if neither was done.
+        """
         missing = 0.0 if self._listener is None else self._listener.missing_seconds(result)
         is_certain = result.confidence >= self._min_confidence
         if is_certain and missing <= _MAX_MISSING_SECONDS and self._execute(result.text, by_voice=True):
@@ -330,14 +336,14 @@ class VoiceCommander(SingleNode):
             self._conversation.stop_driving(phrase("I hear nothing, so I stop"))
 
     def _check_audio_source(self) -> None:
-        """Stop if the audio source is lost during a drive without a limit that was commanded by voice."""
+        """Stop an endless drive that was commanded by voice if the audio source is lost."""
         if self._is_voice_command and self._driver.is_endless and not self._audio_subscription.get_publisher_count():
             self._stop_without_sound()
 
     def _stop_without_sound(self) -> None:
         if self._is_voice_command and self._conversation.is_busy:
             self._conversation.stop()
-            self._conversation.answer(phrase("the audio source stopped, so I stop"))
+            self._conversation.answer(phrase("the audio source is gone, so I am stopping"))
 
     def _on_commander_lost(self, publisher: EndpointInfo) -> None:
         if not self._is_voice_command and self._conversation.is_busy:

@@ -1,4 +1,4 @@
-"""The page feature that publishes the sound of microphones, and sends recognised commands and answers to pages."""
+"""The page feature for voice: microphones, recognised commands and answers."""
 
 from __future__ import annotations
 
@@ -42,9 +42,10 @@ _MAX_TEXT = 500
 
 
 class VoiceFeature(PageFeature):
-    """The feature that publishes the sound of one page at a time, and sends recognised commands to watching pages.
+    """The feature that publishes the sound of one page at a time, and sends results to pages.
 
-    The sound topics exist while any page has its microphone open, and the other topics while any page watches.
+    The results are recognised commands and answers. The sound topics exist while any page has its microphone open, and
+    the other topics while any page watches.
     """
 
     def __init__(self, viewer: FeatureHost) -> None:
@@ -74,7 +75,7 @@ class VoiceFeature(PageFeature):
         return [VoiceNode(self._node.count_publishers(_TOPICS["command"]) > 0)]
 
     def receive(self, page: Page, message: Any) -> None:
-        """Handle sound, a text, a microphone mode, or a request to start or stop watching, from a page."""
+        """Handle a page's sound, text, microphone mode, or request to start or stop watching."""
         if isinstance(message, SoundBlock):
             self._receive_sound(page, message)
         elif isinstance(message, Talk):
@@ -127,7 +128,10 @@ class VoiceFeature(PageFeature):
         self._send_state()
 
     def _update_button(self) -> None:
-        """Publish whether a button is held. If another page takes over, publish a release and a new press."""
+        """Publish whether a button is held.
+
+        If another page takes over, publish a release and a new press.
+        """
         holder = self._floor.holder
         if holder is self._holder or self._listen_publisher is None:
             return

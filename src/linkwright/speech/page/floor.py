@@ -15,7 +15,10 @@ _CLOCK_TOLERANCE = 1.05
 
 
 class Floor:
-    """The pages with an open microphone. Of those with a held button, the one that has held it longest talks."""
+    """The pages with an open microphone.
+
+    Of the pages with a held button, the page that has held it longest talks.
+    """
 
     def __init__(self) -> None:
         self._modes: dict[Page, TalkMode] = {}
@@ -46,9 +49,10 @@ class Floor:
 
 
 class SoundBudget:
-    """A limit for the sound that a page sends and the loss that it reports: as many seconds as have passed.
+    """A limit for the sound that a page sends and the loss that it reports.
 
-    The two are counted separately, because a page may send silence for lost sound.
+    Each may last as many seconds as have passed. The two are counted separately, because a page may send silence for
+    lost sound.
 
     Args:
         clock: returns the time in seconds.

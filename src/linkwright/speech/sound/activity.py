@@ -1,4 +1,4 @@
-"""Voice activity detection, which compares the energy of frames with an adaptive noise floor.
+"""Voice activity detection with the energy of frames and an adaptive noise floor.
 
 During silence, the floor of each band follows the power of the band. During speech it falls with the power, but rises
 only to the minimum of the band in the last 0.8 s (minimum statistics, after R. Martin). So a fan that is switched on
@@ -89,7 +89,7 @@ class VoiceActivity:
 
 
 def unsteady_noise(powers: Powers, floor: NDArray[np.float64]) -> NDArray[np.float64] | None:
-    """Return the level of unsteady noise that swells and fades, such as other people's talk around a word.
+    """Return the level of unsteady noise, such as other people's talk around a word.
 
     The floor follows the minimum of such noise, and most of the noise is far above it. The level before the speech, and
     its deviation, distinguish this noise from steady noise and from a word that starts softly.
@@ -127,7 +127,7 @@ def _first_loud(powers: Powers) -> int:
 
 
 def speech_span(powers: Powers) -> tuple[int, int, NDArray[np.float64]]:
-    """Return the longest section of speech in a complete sound.
+    """Return the longest speech segment of a recording, and the noise floor.
 
     Returns:
         The first frame of the section, the frame after its last, and the noise floor, shape ``(BANDS,)``; the two

@@ -1,4 +1,4 @@
-"""The resampling of a stream to `RATE` without aliasing, with a polyphase filter, block by block.
+"""The resampling of a stream to `RATE` without aliasing, in blocks, by a polyphase filter.
 
 The filter is a sinc in a Kaiser window. Its pass band ends at 0.92 of half the lower rate; frequencies above that half
 are attenuated by at least 60 dB. The output starts with the first sample of the input, without the filter's delay.
@@ -47,7 +47,7 @@ class Resampler:
         self._position = 0  # the position of the next output in the buffer, in 1/up of an input sample
 
     def feed(self, values: NDArray[np.floating]) -> Samples:
-        """Process the next block, shape ``(n,)``, full scale at 1, and return the output samples that it completes.
+        """Process the next block, shape ``(n,)``, full scale at 1, and return completed samples.
 
         The output is delayed by half the filter, 2 ms or less at usual rates. `flush` returns the rest.
         """
@@ -74,7 +74,7 @@ class Resampler:
 
 
 def resample(values: NDArray[np.floating], rate: int) -> Samples:
-    """Resample a complete sound, full scale at 1, shape ``(n,)``, to `RATE`.
+    """Resample a recording, full scale at 1, shape ``(n,)``, to `RATE`.
 
     The duration changes by less than one sample.
     """

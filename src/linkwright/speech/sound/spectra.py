@@ -58,7 +58,7 @@ class MelFrames:
 
 
 def mel_frames(samples: Samples) -> Powers:
-    """Return the frames of a complete sound."""
+    """Return the frames of a recording."""
     return MelFrames().feed(samples)
 
 

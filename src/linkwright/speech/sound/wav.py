@@ -37,7 +37,7 @@ class _Form:
 def read_wav(path: str | os.PathLike[str]) -> Samples:
     """Read a WAV file with PCM of 8 to 32 bits or floating-point samples.
 
-    The channels are averaged, and the result is resampled to `RATE`. From a truncated file, such as that of a recorder
+    The channels are averaged, and the result is resampled to `RATE`. From a truncated file, such as one of a recorder
     that was killed, the samples that it contains are returned.
 
     Raises:
@@ -108,7 +108,7 @@ def wav_bytes(samples: Samples) -> bytes:
 def _read_chunks(data: bytes, name: str) -> tuple[_Form, bytes]:
     """Return the format, and the bytes of the samples."""
     if data[:4] != b"RIFF" or data[8:12] != b"WAVE":
-        raise _wav_error(name, phrase("it has no header of a WAV file"))
+        raise _wav_error(name, phrase("it has no WAV header"))
     wav_format: _Form | None = None
     offset = 12
     while offset + 8 <= len(data):
@@ -121,7 +121,7 @@ def _read_chunks(data: bytes, name: str) -> tuple[_Form, bytes]:
             wav_format = _Form(tag, channels, rate, bits)
         elif chunk_id == b"data":
             if wav_format is None:
-                raise _wav_error(name, phrase("the chunk with its samples comes before the chunk with their format"))
+                raise _wav_error(name, phrase("its 'data' chunk comes before its 'fmt ' chunk"))
             return wav_format, body
         offset += 8 + size + size % 2
     raise _wav_error(name, phrase("it contains no samples"))

@@ -67,16 +67,16 @@ class Context:
 
     @property
     def graph(self) -> Graph:
-        """The graph of the context's nodes. It joins the network on first use by a node."""
+        """The graph of the context's nodes, which joins the network on first use by a node."""
         with self._lock:
             if self._graph is None:
                 self._graph = self._create_graph()
             return self._graph
 
     def wait_for_network(self) -> None:
-        """Wait until the graph has joined the network. Later calls return immediately.
+        """Wait until the graph has joined the network.
 
-        Without this wait, DDS would delay the first timers.
+        Later calls return immediately. Without this wait, DDS would delay the first timers.
         """
         transport, self._joining_transport = self._joining_transport, None
         if transport is not None:
@@ -169,9 +169,10 @@ class Context:
             self.shutdown()
 
     def shutdown_by_signal(self) -> None:
-        """Stop the executors from a signal handler. `shutdown` must complete the shutdown later.
+        """Stop the executors from a signal handler.
 
-        A signal can arrive at any point of the program, so this method does only what is safe in a signal handler.
+        `shutdown` must complete the shutdown later. A signal can arrive at any point of the program, so this method
+        does only what is safe in a signal handler.
         """
         if self._ok:
             self._was_ended_by_signal = True

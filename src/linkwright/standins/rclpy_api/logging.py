@@ -37,7 +37,9 @@ root_logger = Logger("", write, time.time_ns, LEVELS)
 
 
 def get_logger(name: str) -> Logger:
-    """Return the logger with a name. Dots in the name separate the levels of the hierarchy.
+    """Return the logger with a name.
+
+    Dots in the name separate the levels of the hierarchy.
 
     Raises:
         ValueError: the name is empty.
@@ -64,7 +66,10 @@ def clear_config() -> None:
 
 
 def set_logger_level(name: str, level: int, detailed_error: bool = False) -> None:  # noqa: ARG001  # rclpy's signature
-    """Set the level of a logger and its children. The empty name sets the default level."""
+    """Set the level of a logger and its children.
+
+    The empty name sets the default level.
+    """
     LEVELS.set(name, LogLevel(level))
 
 

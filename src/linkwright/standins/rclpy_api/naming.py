@@ -32,7 +32,7 @@ def validate_namespace(namespace: str) -> bool:
 
 
 def validate_topic_name(name: str, *, is_service: bool = False) -> bool:
-    """Return True for a valid name of a topic or service.
+    """Return True for a valid topic or service name.
 
     The name may be relative or private.
 

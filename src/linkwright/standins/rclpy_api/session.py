@@ -54,7 +54,9 @@ def init(
     domain_id: int | None = None,
     signal_handler_options: SignalHandlerOptions | None = None,
 ) -> InitContextManager:
-    """Initialise a context. Nodes can be created only after this.
+    """Initialise a context.
+
+    Nodes can be created only after this.
 
     Args:
         args: the command line; None for ``sys.argv``.

@@ -12,7 +12,10 @@ from typing import Any
 
 
 class SignalHandlerOptions(IntEnum):
-    """The signals that shut contexts down. The values can be combined."""
+    """The signals that shut contexts down.
+
+    The values can be combined.
+    """
 
     NO = 0
     SIGINT = 1

@@ -1,4 +1,7 @@
-"""Sets clocks from ``/clock`` (rclpy ``time_source``). The clock of a node does not need this module."""
+"""Sets clocks from ``/clock`` (rclpy ``time_source``).
+
+The clock of a node does not need this module.
+"""
 
 from __future__ import annotations
 
@@ -63,7 +66,10 @@ class TimeSource:
         node.add_post_set_parameters_callback(self._on_set_parameters)
 
     def detach_node(self) -> None:
-        """Stop following the node's parameter and ``/clock``. The clocks keep their time."""
+        """Stop following the node's parameter and ``/clock``.
+
+        The clocks keep their time.
+        """
         node = self._get_node()
         if node is not None:
             self._unsubscribe()

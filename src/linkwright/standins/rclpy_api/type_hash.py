@@ -8,7 +8,7 @@ _HASH_SIZE = 32
 
 
 class TypeHashDictionary(TypedDict):
-    """A type hash as a dictionary: the version of the hashing rules, and the 32 bytes of the hash."""
+    """A type hash as a dictionary: the version of the hashing rules, and the 32-byte hash."""
 
     version: int
     value: bytes

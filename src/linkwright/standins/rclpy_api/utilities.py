@@ -21,7 +21,7 @@ def remove_ros_args(args: Sequence[str] | None = None) -> list[str]:
 def timeout_sec_to_nsec(timeout_sec: float | None) -> int:
     """Convert a timeout to nanoseconds.
 
-    For None and negative numbers, return -1, which means no limit.
+    For None and negative numbers, return -1 (no limit).
     """
     if timeout_sec is None or timeout_sec < 0:
         return -1

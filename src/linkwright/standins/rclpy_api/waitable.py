@@ -7,7 +7,10 @@ from dataclasses import astuple, dataclass
 
 @dataclass
 class NumberOfEntities:
-    """The number of entities of each kind. Two objects can be added with ``+``."""
+    """The number of entities of each kind.
+
+    Two objects can be added with ``+``.
+    """
 
     num_subscriptions: int = 0
     num_guard_conditions: int = 0

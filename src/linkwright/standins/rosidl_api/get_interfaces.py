@@ -64,5 +64,5 @@ def _interfaces_by_package(kinds: tuple[str, ...], package_names: Iterable[str])
                 names_by_package.setdefault(package, []).append(interface_name)
     missing_packages = sorted(requested_packages - set(names_by_package) - set(get_interface_packages()))
     if missing_packages:
-        raise LookupError(phrase("there is no package '{missing}'", missing=missing_packages[0]))
+        raise LookupError(phrase("there is no package '{package}'", package=missing_packages[0]))
     return {package: sorted(names) for package, names in sorted(names_by_package.items())}

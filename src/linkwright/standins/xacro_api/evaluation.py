@@ -62,7 +62,9 @@ def eval_extension(s: str) -> str:
 
 
 def load_yaml(filename: str) -> Any:
-    """Load a YAML file. The keys of its mappings are also available as attributes.
+    """Load a YAML file.
+
+    The keys of its mappings are also available as attributes.
 
     Raises:
         XacroException: there is no such file, or the file is not YAML.
@@ -126,7 +128,7 @@ class YamlDictWrapper(dict[Any, Any]):
         try:
             return self[item]
         except KeyError:
-            raise AttributeError(phrase("the YAML mapping has no key '{item}'", item=item)) from None
+            raise AttributeError(phrase("the YAML mapping has no key '{key}'", key=item)) from None
 
 
 class YamlListWrapper(list[Any]):
@@ -143,7 +145,10 @@ class YamlListWrapper(list[Any]):
 
 
 class _SymbolView(dict[str, Any]):
-    """A dictionary view of a symbol table. Values are evaluated on access if necessary."""
+    """A dictionary view of a symbol table.
+
+    Values are evaluated on access if necessary.
+    """
 
     __slots__ = ("_session", "_table")
 

@@ -60,7 +60,9 @@ def parse_macro_arg(s: str) -> tuple[str, tuple[str | None, str | None] | None, 
 
 
 def resolve_macro(fullname: str, macros: Mapping[str, Any], symbols: Mapping[str, Any]) -> tuple[Any, Any, Any]:
-    """Look up a macro by its name. The name can have namespace prefixes.
+    """Look up a macro by its name.
+
+    The name can have namespace prefixes.
 
     Returns:
         The table of macros and the table of properties that contain the macro, and the macro.

@@ -94,10 +94,10 @@ def import_xml_namespaces(parent: Any, attributes: Any) -> None:
         if parent.hasAttribute(name) and parent.getAttribute(name) != value:
             colour.warning(
                 phrase(
-                    "'{name}' is declared as '{value}' here, but as '{getattribute}' in an enclosing element",
+                    "'{name}' is declared as '{value}' here, but as '{attributes}' in an enclosing element",
                     name=name,
                     value=value,
-                    getattribute=parent.getAttribute(name),
+                    attributes=parent.getAttribute(name),
                 )
             )
         else:

@@ -54,7 +54,10 @@ def _state_property(name: str) -> property:
 
 
 class LiveModule(ModuleType):
-    """A module whose variables are the attributes of `STATE`. Programs can read and set them."""
+    """A module whose variables are the attributes of `STATE`.
+
+    Programs can read and set them.
+    """
 
     filestack = _state_property("filestack")
     macrostack = _state_property("macrostack")

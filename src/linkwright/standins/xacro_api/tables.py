@@ -17,7 +17,9 @@ _DOCUMENT_VERBOSITY, _FULL_VERBOSITY = 2, 3
 
 
 class Table(dict[str, Any]):
-    """A symbol table with a parent table. Strings are evaluated on first access.
+    """A symbol table with a parent table.
+
+    Strings are evaluated on first access.
 
     Args:
         parent: the parent table; a plain dict contains the names that xacro provides.

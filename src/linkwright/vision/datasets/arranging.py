@@ -148,7 +148,7 @@ def _choose_structures(stage: Stage, generator: np.random.Generator) -> list[int
 
 
 def _choose_camera_pose(stage: Stage, ground: _Ground, generator: np.random.Generator) -> tuple[float, float, float]:
-    """Return the camera's x and y in m and its heading in radians, with free space ahead if possible."""
+    """Return the camera's x and y in m and heading in rad, with free space ahead if possible."""
     minimum, maximum = stage.area
     x = y = heading = 0.0
     for _ in range(_MAX_TRIES):
@@ -186,7 +186,7 @@ def _choose_props(stage: Stage, options: Options, generator: np.random.Generator
 
 
 def _distance_range(prop: Prop, focal: float, options: Options) -> tuple[float, float]:
-    """Return the distances in m at which an object is neither too large nor too small in an image."""
+    """Return the range of distances in m at which an object has a suitable size in an image."""
     spans = np.sort(prop.corners.max(axis=0) - prop.corners.min(axis=0))
     nearest = max(focal * spans[2] / (_MAX_LENGTH * options.width), _MIN_DISTANCE)
     farthest = min(spans[2] / (_MIN_LENGTH * options.width), spans[1] / (1.2 * max(options.min_size, 1))) * focal
@@ -202,7 +202,7 @@ def _find_free_position(
     generator: np.random.Generator,
     distances: tuple[float, float],
 ) -> tuple[float, float] | None:
-    """Occupy and return a free position, usually in view of the camera, or None if there is none."""
+    """Occupy a free position, usually in view of the camera, and return it, or return None."""
     x, y, heading = camera
     minimum, maximum = stage.area
     nearest, may_be_hidden = distances[0] + radius, generator.random() < _OCCLUDED_SHARE

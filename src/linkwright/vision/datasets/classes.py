@@ -64,7 +64,7 @@ class ClassRules:
     patterns: Mapping[str, tuple[str, ...]]
 
     def class_number(self, *names: str) -> int | None:
-        """Return the number of the first class with a pattern that matches one of the names, or None."""
+        """Return the number of the first class with a pattern that matches a name, or None."""
         for number, patterns in enumerate(self.patterns.values()):
             if any(fnmatchcase(name, pattern) for name in names for pattern in patterns):
                 return number
@@ -100,16 +100,19 @@ def _invalid_classes(document: YamlDocument, node: yaml.Node | None) -> Linkwrig
 
 
 def default_class(name: str) -> str:
-    """Return the class for a model name, without colour and final number: ``red_ball_2`` gives ``ball``."""
+    """Return the class for a model name, such as ``ball`` for ``red_ball_2``.
+
+    The class is the name in lower case, without colours and final number.
+    """
     words = [word for word in re.split(r"[ _-]+", _NUMBER_SUFFIX.sub("", name.lower())) if word]
     words_without_colours = [word for word in words if word not in _COLOURS]
     return "_".join(words_without_colours or words) or name
 
 
 def default_rules(simulations: list[Simulation]) -> ClassRules:
-    """Return default class rules for worlds: a class for each model except surroundings, sorted by name.
+    """Return default class rules for worlds, with a class for each model except surroundings.
 
-    For an included model, the name in its own file determines the class.
+    The classes are sorted by name. For an included model, the name in its own file determines the class.
     """
     patterns: dict[str, set[str]] = {}
     for simulation in simulations:
@@ -151,7 +154,10 @@ def own_name(model: Model) -> str:
 
 
 def geom_boxes(model: Any, data: Any) -> Array:
-    """Return the axis-aligned boxes of all geoms in world coordinates: corners in m, shape (geoms, 2, 3)."""
+    """Return the axis-aligned boxes of all geoms in world coordinates.
+
+    The corners are in m, and the shape is (geoms, 2, 3).
+    """
     rotations = data.geom_xmat.reshape(-1, 3, 3)
     centres = data.geom_xpos + np.einsum("gij,gj->gi", rotations, model.geom_aabb[:, :3])
     half_sizes = np.einsum("gij,gj->gi", np.abs(rotations), model.geom_aabb[:, 3:])

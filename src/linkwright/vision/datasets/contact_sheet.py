@@ -15,7 +15,7 @@ _IGNORED_COLOUR = "#808080"
 
 
 def contact_sheet(images: Sequence[LabelledImage], classes: Sequence[str]) -> bytes:
-    """Return a JPEG of the first images, at most `MOST`, with the class and visible box of each object.
+    """Return a JPEG of the first `MOST` images, with the class and visible box of each object.
 
     Objects that are ignored, because too little of them is visible, have grey boxes.
     """

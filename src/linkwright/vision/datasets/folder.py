@@ -28,7 +28,7 @@ _FILES = (CARD, "data.yaml", SHEET)
 
 
 class DatasetFolder:
-    """A dataset on disk. It is complete after `finish`, even if it was interrupted.
+    """A dataset on disk, which is complete after `finish`, even after an interruption.
 
     Args:
         path: the folder.
@@ -113,7 +113,7 @@ class DatasetFolder:
     def finish(self, card: Mapping[str, Any]) -> None:
         """Write the COCO annotations of all images, and the card.
 
-        If the disk is full, the last images are dropped first.
+        If the disk is full, the last images are dropped until the rest can be written.
 
         Args:
             card: how the images of this run were made.

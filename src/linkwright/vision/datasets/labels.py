@@ -139,7 +139,10 @@ def _measure_whole(stage: Stage, shot: Shot, prop: Prop, visible: Box) -> tuple[
 
 
 def _window(stage: Stage, shot: Shot, prop: Prop, visible: Box) -> Box:
-    """Return the part of the image plane that contains an object with a margin, up to a maximum size."""
+    """Return the part of the image plane that contains an object with a margin.
+
+    Its size is limited.
+    """
     optics, data, model = shot.optics, stage.simulation.data, stage.simulation.model
     signs = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
     local = model.geom_aabb[prop.geoms, None, :3] + signs * model.geom_aabb[prop.geoms, None, 3:]

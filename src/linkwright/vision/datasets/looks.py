@@ -1,4 +1,4 @@
-"""The random appearance of an image: lights, colours, patterns, backdrop, and camera effects."""
+"""The random appearance of an image: lights, colours, patterns, backdrop, camera effects."""
 
 from __future__ import annotations
 
@@ -37,7 +37,10 @@ def light(stage: Stage, generator: np.random.Generator) -> None:
 
 
 def paint(stage: Stage, shot: Shot, generator: np.random.Generator) -> None:
-    """Recolour all objects and surroundings, where most objects keep their colour or get a similar one."""
+    """Recolour all objects and surroundings.
+
+    Most objects keep their colour or get a similar one.
+    """
     for prop in shot.placed_props:
         choice, new_colours = generator.random(), {}
         is_textured = generator.random() < 0.3

@@ -217,11 +217,13 @@ def _no_objects_error(world: str, classes: str | None) -> LinkwrightError:
     message = phrase("there is no object to label in the world '{world}'", world=world)
     hint = (
         phrase(
-            "all its models are surroundings, such as ground and walls: choose models or visuals with "
-            "--classes, or add models with --add"
+            "choose models or visuals with --classes, or add models with --add: the world contains "
+            "only surroundings, such as ground and walls"
         )
         if classes is None
-        else phrase("no model or visual in it has a name that matches a pattern in '{file}'", file=classes)
+        else phrase(
+            "change the patterns in '{file}', which match no name of a model or visual in the world", file=classes
+        )
     )
     return LinkwrightError(Diagnostic("VISION202", message, hint=hint))
 

@@ -1,4 +1,4 @@
-"""A world whose objects move and change colour between images, without recompiling MuJoCo's model."""
+"""A world whose objects move and change colour between images, without recompilation."""
 
 from __future__ import annotations
 
@@ -121,7 +121,7 @@ class Stage:
         self.renderer: Renderer = make_renderer(simulation)
 
     def begin(self) -> None:
-        """Move all structures back to their places, restore their colours, and hide all objects."""
+        """Restore the poses and colours of all structures, and hide all objects."""
         model, data = self.simulation.model, self.simulation.data
         data.geom_xpos[:], data.geom_xmat[:] = self._initial_poses
         model.geom_rgba[:], model.geom_matid[:] = self._colours, self._materials
@@ -146,7 +146,10 @@ class Stage:
         data.geom_xmat[prop.geoms] = (rotation @ prop.turns).reshape(-1, 9)
 
     def shape_distractor(self, geom: int, generator: np.random.Generator) -> float:
-        """Give a distractor a random size, unlike a ball, cube or drum, and return its bounding radius in m."""
+        """Give a distractor a random shape and size, and return its bounding radius in m.
+
+        No shape resembles a ball, cube or drum.
+        """
         model, geom_types = self.simulation.model, self._mujoco.mjtGeom
         short, medium, long = np.sort(generator.uniform(0.03, 0.12, 3)) * [0.5, 1.0, 1.0]
         long = max(long * generator.uniform(2.0, 6.0), 3.0 * medium)
@@ -208,7 +211,10 @@ class Stage:
         self.simulation.world = replace(self._original_world, lights=tuple(lights), models=(), scene=scene)
 
     def set_patterns(self, generator: np.random.Generator) -> None:
-        """Replace all patterns by random ones. The rendering of the next image then takes longer."""
+        """Replace all patterns by random ones.
+
+        The rendering of the next image then takes longer.
+        """
         model = self.simulation.model
         for kind, size in _PATTERN_SIZES.items():
             for number in range(_PATTERNS_PER_KIND):
@@ -244,7 +250,7 @@ class Stage:
         return np.stack([centre - half_size, centre + half_size])
 
     def _copy(self, objects: Sequence[SceneObject], copies: int) -> list[tuple[SceneObject, str]]:
-        """Add copies of objects as static bodies, and return each copy with the name of its original."""
+        """Add copies of objects as static bodies, and return each copy with its original's name."""
         model, spec = self.simulation.model, self.simulation.scene.spec
         counts: dict[int, int] = {}
         for scene_object in objects:

@@ -44,7 +44,7 @@ def pattern(generator: np.random.Generator, size: int, *, soft: bool) -> Pixels:
 
 
 def smooth(generator: np.random.Generator, cells: int, height: int, width: int) -> Any:
-    """Return random values between 0 and 1, interpolated from a coarse grid, shape (height, width)."""
+    """Return random values from 0 to 1, interpolated from a coarse grid, shape (height, width)."""
     grid = generator.random((cells + 1, cells + 1))
     row_positions, column_positions = (
         np.linspace(0, cells, height, endpoint=False),

@@ -30,7 +30,7 @@ COLOURS: Mapping[str, tuple[int, ...]] = {
 class ColourDetector(Detector):
     """A detector of patches of a colour.
 
-    The score is the fraction of the box that the colour fills, which is 0.79 for a ball.
+    The score is the fraction of the box that the colour fills, such as 0.79 for a ball.
 
     Settings:
         ``colours``

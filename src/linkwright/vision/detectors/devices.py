@@ -1,4 +1,4 @@
-"""The device of a network, and the refusal of network options by detectors without a network."""
+"""The device of a network, and the check that only networks receive network options."""
 
 from __future__ import annotations
 

@@ -19,7 +19,10 @@ _MIN_TEXT_HEIGHT = 9
 
 
 def colour_of(name: str) -> tuple[int, int, int]:
-    """Return the colour in the name of a class, or else a colour derived from the name, as red, green and blue."""
+    """Return the red, green and blue of the colour in a class name.
+
+    A name without a colour gets a colour derived from the name.
+    """
     named_colour = find_rgb(name)
     if named_colour is not None:
         return named_colour
@@ -45,7 +48,7 @@ def draw_detections(image: NDArray[np.uint8], detections: Detections) -> NDArray
     line_width = max(1, round(image.shape[0] / 300))
     text_height = max(_MIN_TEXT_HEIGHT, round(_TEXT_HEIGHT_SHARE * image.shape[0]))
     scale, stroke = cv2.getFontScaleFromHeight(cv2.FONT_HERSHEY_SIMPLEX, text_height), max(1, round(text_height / 10))
-    for index in reversed(range(len(detections))):  # draw the most certain last, so that no other covers it
+    for index in reversed(range(len(detections))):  # draw the most certain detection last, so that it is not covered
         name = detections.name(index)
         colour = colour_of(name)
         left, top, right, bottom = (int(edge) for edge in np.rint(detections.boxes[index]))

@@ -114,4 +114,4 @@ def _read_embedded_names(file: Path) -> tuple[str, ...]:
         return tuple(line.strip() for line in lines)
     except (BadZipFile, StopIteration, UnicodeDecodeError, OSError):
         message = phrase("there are no labels in '{path}'", path=file)
-        raise LinkwrightError(Diagnostic("VISION108", message, hint=phrase("give a labels file"))) from None
+        raise LinkwrightError(Diagnostic("VISION108", message, hint=phrase("pass a labels file"))) from None

@@ -114,7 +114,7 @@ def find_layout(
         size: the height and width of that image in pixels.
         metadata: the metadata of the network's file.
         file: the network's file, for messages.
-        labels: the number of names in the label file, which precede those in the metadata; None if there is none.
+        labels: the number of names in the label file, which precede the names in the metadata; None if there is none.
         labels_file: the label file, for messages.
 
     Raises:
@@ -167,7 +167,7 @@ def class_count_error(file: Path, classes: int, name_count: int, labels: Path | 
             named=name_count,
         )
         return LinkwrightError(
-            Diagnostic("VISION107", message, hint=phrase("give a labels file with one name per class"))
+            Diagnostic("VISION107", message, hint=phrase("pass a labels file with one name per class"))
         )
     message = phrase(
         "the network in '{file}' has {classes} classes, but '{labels}' has {named} names",
@@ -176,7 +176,9 @@ def class_count_error(file: Path, classes: int, name_count: int, labels: Path | 
         labels=labels,
         named=name_count,
     )
-    return LinkwrightError(Diagnostic("VISION107", message, hint=phrase("give the labels that it was trained with")))
+    return LinkwrightError(
+        Diagnostic("VISION107", message, hint=phrase("pass the labels that the network was trained with"))
+    )
 
 
 def _extra_values(shapes: Sequence[Sequence[int]], metadata: Metadata) -> tuple[int, str]:
@@ -192,7 +194,7 @@ def _extra_values(shapes: Sequence[Sequence[int]], metadata: Metadata) -> tuple[
 def _possible_forms(
     shape: Sequence[int], size: tuple[int, int], extra_values: int, *, suppressed: bool
 ) -> list[tuple[Form, int]]:
-    """Return the forms that an output's shape allows, each with its number of classes, the likeliest first."""
+    """Return the forms that an output's shape allows, with their class counts, likeliest first."""
     batch, first, second = shape
     if batch != 1:
         return []

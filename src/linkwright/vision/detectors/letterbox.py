@@ -75,7 +75,7 @@ def letterbox_image(
 
 
 def to_tensor(pixels: NDArray[np.uint8], kind: type[np.floating]) -> NDArray[np.floating]:
-    """Convert pixels to floats from 0 to 1, and shape ``(rows, columns, 3)`` to ``(1, 3, rows, columns)``."""
+    """Convert ``(rows, columns, 3)`` pixels to floats from 0 to 1, ``(1, 3, rows, columns)``."""
     cv2 = load_opencv()
     planes = np.empty((1, 3, *pixels.shape[:2]), np.float32)
     for plane, channel in zip(planes[0], cv2.split(pixels), strict=True):

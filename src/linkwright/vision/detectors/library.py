@@ -1,4 +1,7 @@
-"""Imports of optional libraries: OpenCV, from the extra ``vision``, and LiteRT, which no extra installs."""
+"""Imports of optional libraries: OpenCV and LiteRT.
+
+OpenCV belongs to the extra ``vision``. No extra installs LiteRT.
+"""
 
 from __future__ import annotations
 

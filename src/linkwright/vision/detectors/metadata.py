@@ -38,7 +38,10 @@ class Metadata:
 
     @classmethod
     def of(cls, entries: Mapping[str, str]) -> Metadata:
-        """Read the ``metadata_props`` of a file. Malformed entries get their defaults."""
+        """Read the ``metadata_props`` of a file.
+
+        Malformed entries get their defaults.
+        """
         stride = _parse_literal(entries.get("stride", ""))
         size = _parse_literal(entries.get("imgsz", ""))
         keypoint_shape = _parse_literal(entries.get("kpt_shape", ""))

@@ -1,4 +1,4 @@
-"""A detector that runs a network in an ONNX file: YOLOv5, v8, v10, v11, 26, or a network of Linkwright."""
+"""A detector that runs an ONNX network: YOLOv5, v8, v10, v11, 26, or one of Linkwright."""
 
 from __future__ import annotations
 
@@ -115,7 +115,7 @@ class NetworkDetector(Detector):
     def _run(self, tensor: NDArray[np.floating]) -> Sequence[NDArray[Any]]:
         try:
             outputs: Sequence[NDArray[Any]] = self._session.run(None, {self._input: tensor})
-        except Exception as error:  # noqa: BLE001 - of many classes, which onnxruntime does not document
+        except Exception as error:  # noqa: BLE001 - onnxruntime raises many undocumented classes
             shape = list(tensor.shape)
             reason = error_reason(error)
             message = phrase(
@@ -138,12 +138,12 @@ class NetworkDetector(Detector):
         raw_names = self._session.get_modelmeta().custom_metadata_map.get("names")
         if raw_names:
             note = phrase(
-                "the names of the classes in '{file}' cannot be read, so they are numbered; give a labels file",
+                "the names of the classes in '{file}' cannot be read, so they are numbered; pass a labels file",
                 file=self._file.name,
             )
         else:
             note = phrase(
-                "'{file}' does not name its classes, so they are numbered; give a labels file", file=self._file.name
+                "'{file}' does not name its classes, so they are numbered; pass a labels file", file=self._file.name
             )
         self._notes.append(note)
         return tuple(map(str, range(classes or 1000)))

@@ -14,7 +14,7 @@ MAX_SIZE = 8192
 class DetectorOptions:
     """The options of a detector.
 
-    Each detector uses only those that apply to it.
+    Each detector uses only the options that apply to it.
 
     Attributes:
         labels: a file with the names of the classes; None for the names in the network's file.

@@ -1,4 +1,4 @@
-"""The available detectors: networks by path or model name, and other detectors by entry point.
+"""The available detectors: networks by path or model name, others by entry point.
 
 Entry points are in the group ``linkwright.detectors``. Each names a callable that takes `DetectorOptions`, returns a
 `Detector`, and raises LinkwrightError if its library is missing.
@@ -32,7 +32,7 @@ def detector_names() -> tuple[str, ...]:
 def make_detector(model: str, options: DetectorOptions) -> Detector:
     """Create a detector by its name, or from a network in an ONNX or TFLite file.
 
-    The name can be that of a model that `linkwright models get` has fetched.
+    The name can belong to a model that `linkwright models get` has fetched.
 
     Raises:
         LinkwrightError: VISION102 there is no such detector or file, VISION104 the file has another format; or an error
@@ -56,7 +56,7 @@ def make_detector(model: str, options: DetectorOptions) -> Detector:
     if not file.is_file():
         names = detector_names()
         message = phrase("there is neither a file nor a detector '{model}'", model=model)
-        hint = did_you_mean(model, names) or phrase("give an ONNX file, or one of {names}", names=quoted_names(names))
+        hint = did_you_mean(model, names) or phrase("pass an ONNX file, or one of {names}", names=quoted_names(names))
         raise LinkwrightError(Diagnostic("VISION102", message, hint=hint))
     detector_class = EfficientDetDetector if file.suffix.lower() == ".tflite" else NetworkDetector
     return detector_class(file, options)

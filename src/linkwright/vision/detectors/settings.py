@@ -33,7 +33,7 @@ def choice(settings: Mapping[str, object], name: str, default: str, choices: Seq
     """
     value = str(settings.get(name, default))
     if value not in choices:
-        hint = did_you_mean(value, choices) or phrase("choose from {known}", known=", ".join(choices))
+        hint = did_you_mean(value, choices) or phrase("choose from {names}", names=", ".join(choices))
         raise setting_error(name, value, hint)
     return value
 

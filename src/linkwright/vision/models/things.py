@@ -1,4 +1,7 @@
-"""The network ``things``, which detects the objects in Linkwright's worlds. Its card is ``things.md``."""
+"""The network ``things``, which detects the objects in Linkwright's worlds.
+
+``things.md`` is its model card.
+"""
 
 from __future__ import annotations
 

@@ -41,7 +41,7 @@ _FORWARD_IN_OPTICAL = (0.5, -0.5, 0.5, 0.5)
 
 
 class Detect3DNode(SingleNode):
-    """The node that computes positions of detections from depth images, and optionally from the ground.
+    """The node that computes positions of detections from depth images or from the ground.
 
     Parameters:
 
@@ -121,7 +121,7 @@ class Detect3DNode(SingleNode):
             self._markers.publish(_make_markers(self.FORM, result, positions))
 
     def _find_positions(self, message: Any) -> list[Place | None]:
-        """Return the position of each detection in the optical frame of its image, or None if it is unknown."""
+        """Return each detection's position in the optical frame of its image, or None if unknown."""
         camera = self._cameras.get("colour") or self._cameras.get("depth")
         if camera is None:
             self._warn("no camera_info has arrived")
@@ -161,7 +161,10 @@ class Detect3DNode(SingleNode):
         return depths if image.encoding == "32FC1" else depths * self._metres_per_unit
 
     def _ground_plane(self, message: Any) -> tuple[NDArray[np.float64], float] | None:
-        """Return the upward direction in the optical frame and the height of the camera in m, or None if unknown."""
+        """Return the upward direction and the camera's height in m, or None if unknown.
+
+        The direction is in the optical frame.
+        """
         if not self._ground_frame:
             return None
         header = message.header

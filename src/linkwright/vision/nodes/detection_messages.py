@@ -14,7 +14,7 @@ from linkwright.vision.nodes.dialects import VISION, YOLO
 
 
 def vision_message(header: Any, detections: Detections) -> Any:
-    """Convert detections to vision_msgs/msg/Detection2DArray, with the class name as ``class_id``."""
+    """Convert detections to a Detection2DArray of vision_msgs, with class names as ``class_id``."""
     detection_class, hypothesis_class = (
         get_message("vision_msgs/msg/Detection2D"),
         get_message("vision_msgs/msg/ObjectHypothesisWithPose"),

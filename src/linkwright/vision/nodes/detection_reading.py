@@ -44,7 +44,10 @@ class DetectionFormat(ABC):
 
     @abstractmethod
     def best(self, detection: Any) -> tuple[str, float]:
-        """Return the class and score of a detection's best hypothesis. The class is empty if there is none."""
+        """Return the class and score of a detection's best hypothesis.
+
+        The class is empty if there is no hypothesis.
+        """
 
     @abstractmethod
     def box(self, detection: Any) -> NDArray[np.float64]:

@@ -11,7 +11,7 @@ Parameters, by the names of yolo_ros:
     an ONNX file, or the name of a detector: ``colours``, ``aruco``, ``apriltag``, ``qr``, ``line``, or a detector
     that a package provides.
 ``labels``
-    a file with the names of the classes, which replace those in the network's file.
+    a file with the names of the classes, which replace the names in the network's file.
 ``device``
     where the network runs: ``cpu``, ``cuda:0``.
 ``imgsz_height``, ``imgsz_width``
@@ -91,7 +91,7 @@ class _Task:
 
 
 class DetectorNode(SingleNode):
-    """The detector node. It exits if the detector does not exist or lacks a requested class.
+    """The detector node, which exits if the detector does not exist or lacks a class.
 
     Attributes:
         loaded: a future that is done as soon as the detector is loaded.
@@ -297,7 +297,7 @@ class DetectorNode(SingleNode):
     # --- in the worker's thread ----------------------------------------------------------------------------------
 
     def _load(self, model: str, options: DetectorOptions) -> Callable[[_Task], None] | None:
-        """Load the detector, and return a function that processes an image, or None if loading failed."""
+        """Load the detector, and return a function that processes an image, or None on failure."""
         try:
             detector = make_detector(model, options)
         except LinkwrightError as error:
@@ -379,7 +379,10 @@ def _detector_failure(error: Exception) -> LinkwrightError:
 
 
 class YoloRosNode(DetectorNode):
-    """yolo_node of yolo_ros: publishes yolo_msgs/msg/DetectionArray on ``detections``, and ``dbg_image``."""
+    """The node yolo_node of yolo_ros.
+
+    It publishes yolo_msgs/msg/DetectionArray on ``detections``, and ``dbg_image``.
+    """
 
     DIALECT = YOLO_ROS
 
@@ -395,14 +398,20 @@ class Yolov5RosNode(DetectorNode):
 
 
 class Yolov5Ros2Node(DetectorNode):
-    """yolo_detect_2d of yolov5_ros2, with its ``image_topic``, ``yolo_result`` and ``result_img``."""
+    """The node yolo_detect_2d of yolov5_ros2.
+
+    It subscribes to ``image_topic``, and publishes ``yolo_result`` and ``result_img``.
+    """
 
     DEFAULT_NAME = "yolov5_ros2"
     DIALECT = YOLOV5_ROS2
 
 
 class DarknetRosNode(DetectorNode):
-    """detector_node of openrobotics_darknet_ros: ``~/images``, ``~/detections``, ``detection.threshold``."""
+    """The node detector_node of openrobotics_darknet_ros.
+
+    Its topics are ``~/images`` and ``~/detections``, and ``detection.threshold`` is a parameter.
+    """
 
     DEFAULT_NAME = "detector_node"
     DIALECT = DARKNET_ROS

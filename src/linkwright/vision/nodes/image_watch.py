@@ -1,4 +1,4 @@
-"""Warnings about missing images: wrong topic, wrong type, incompatible QoS, or a camera that stopped."""
+"""Warnings about missing images and their causes: topic, type, QoS or a stopped camera."""
 
 from __future__ import annotations
 
@@ -15,9 +15,10 @@ _MAX_TOPICS = 5
 
 
 class ImageWatch:
-    """A monitor that warns once if no image has arrived for some seconds, and reports when images arrive again.
+    """A monitor that warns once if no image has arrived for some seconds.
 
-    The timeout doubles each time images arrive again, so that a slow camera causes only a few warnings.
+    It also reports when images arrive again. The timeout then doubles, so that a slow camera causes only a few
+    warnings.
 
     Args:
         node: the node that logs.

@@ -1,4 +1,4 @@
-"""A worker thread that processes only the latest item, so that slow work never builds up a queue."""
+"""A worker thread that processes only the latest item, so that no backlog builds up."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""object_seeker: finds an object by its name, drives to it or follows it, and describes visible objects.
+"""object_seeker: finds an object by name, drives to it or follows it, and lists objects.
 
 ``vision/go_to`` and ``vision/follow`` receive a name, optionally with a colour (``red ball``, 红色的球).
 ``vision/stop`` ends the search. The outcome is published on ``/voice/response``.
@@ -113,7 +113,10 @@ class ObjectSeeker(SingleNode):
         return self._node.get_clock().now().nanoseconds
 
     def _begin(self, language: str | None, follow: bool, message: Any) -> None:
-        """Seek the object that a message names. If `language` is None, answer in the language of the message."""
+        """Seek the object that a message names.
+
+        If `language` is None, answer in the language of the message.
+        """
         request = requested(message.data)
         if request is None:
             self._node.get_logger().warning(f"'{message.data}' does not name an object; say 'ball' or 'red ball'")
@@ -235,7 +238,11 @@ class ObjectSeeker(SingleNode):
         return min(candidates, key=lambda candidate: hypot(*_in_robot_frame(pose, candidate)), default=None)
 
     def _free_distance(self, now_ns: int) -> float:
-        """Return the distance in m from the robot's centre to the nearest point ahead, or 0 if scans have stopped."""
+        """Return the distance in m to the nearest point ahead, or 0 if scans have stopped.
+
+        The distance is measured from the robot's centre. It is infinite before the first scan, or if the pose is
+        unknown.
+        """
         scan = self._scan
         if scan is None:
             return inf

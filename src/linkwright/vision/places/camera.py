@@ -1,7 +1,7 @@
 """Camera models: a pinhole camera, and a lens with distortion.
 
 Sources: sensor_msgs/msg/CameraInfo, and OpenCV's camera model with its coefficients. The axes follow REP 103: x to
-the right, y down, z into the image. Pixel coordinates are those of boxes: pixel 0 extends from 0 to 1.
+the right, y down, z into the image. Pixel coordinates are as in boxes: pixel 0 extends from 0 to 1.
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ class CameraModel:
         return np.stack([x, y, np.ones_like(x)], axis=-1)
 
     def pixels(self, points: Floats) -> Floats:
-        """Project points in the optical frame, shape ``(n, 3)``, z not 0, to pixels, shape ``(n, 2)``."""
+        """Project points ``(n, 3)`` in the optical frame, z not 0, to pixels ``(n, 2)``."""
         x, y = points[:, 0] / points[:, 2], points[:, 1] / points[:, 2]
         if any(self.distortion):
             radial, shift_x, shift_y = self._distortion_at(x, y)

@@ -68,7 +68,10 @@ def colour_of(image: NDArray[np.uint8], box: NDArray[np.floating]) -> str | None
 
 
 def classify_colours(pixels: NDArray[np.uint8]) -> NDArray[np.intp]:
-    """Return the index in `COLOURS`, shape ``(n,)``, of the colour of each RGB pixel, shape ``(n, 3)``."""
+    """Return the index in `COLOURS` of each pixel's colour.
+
+    The shape is ``(n,)`` for RGB pixels of shape ``(n, 3)``.
+    """
     values = np.ascontiguousarray(pixels.T) / 255.0  # one contiguous row per channel halves the time of the comparisons
     maxima, minima = values.max(axis=0), values.min(axis=0)
     chroma = maxima - minima

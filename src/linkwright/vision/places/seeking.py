@@ -83,7 +83,9 @@ class Command:
 
 
 class Seeker:
-    """The search for an object, which stops if the object is lost, the path is blocked, or detections stop arriving.
+    """The search for an object.
+
+    It ends if the object is lost, the path is blocked, or detections stop arriving.
 
     Args:
         settings: the settings; None for the defaults.

@@ -26,7 +26,7 @@ _ACCELERATION_NOISE = 3.0
 
 @dataclass(frozen=True, slots=True)
 class TrackerSettings:
-    """The settings of a tracker. Names and defaults are those of ByteTrack's file, where it has them.
+    """The settings of a tracker, with ByteTrack's names and defaults where it has them.
 
     Attributes:
         high: detections with at least this score start tracks, and are matched first (``track_high_thresh``).
@@ -47,9 +47,10 @@ class TrackerSettings:
 
 @dataclass(slots=True)
 class _Track:
-    """A tracked object: centre and size (x, y, width, height), their velocities, and their covariances.
+    """A tracked object: its centre and size, their velocities, and the covariances.
 
-    A filter for each of the four values has the same model: the variances of value and velocity, and their covariance.
+    The values are x, y, width and height. Each has a filter with the same model: the variances of value and velocity,
+    and their covariance.
     """
 
     name: str
@@ -98,7 +99,9 @@ class _Frame:
 
 
 class Tracker:
-    """A tracker that assigns IDs to objects. An ID is never reused.
+    """A tracker that assigns IDs to objects.
+
+    An ID is never reused.
 
     Args:
         settings: the settings; None for the defaults.
@@ -114,7 +117,7 @@ class Tracker:
         """Update the tracks with the detections of an image.
 
         Args:
-            detections: all detections, including those with a low score.
+            detections: all detections, including detections with a low score.
             time: the time of the image, seconds. A jump back drops all tracks; IDs are still never reused.
 
         Returns:
@@ -148,7 +151,7 @@ class Tracker:
         return [track_by_detection[index].id if index in track_by_detection else 0 for index in range(len(detections))]
 
     def _correct_tracks(self, tracks: Sequence[_Track], candidates: Sequence[int], frame: _Frame) -> dict[int, _Track]:
-        """Update tracks with their matching detections, and return the track for each matched detection."""
+        """Update tracks with matching detections, and return the track for each such detection."""
         track_by_detection: dict[int, _Track] = {}
         for row, column in self._match(tracks, candidates, frame):
             track, index = tracks[row], candidates[column]

@@ -75,13 +75,13 @@ class Answer(Enum):
 
 _ANSWERS: Mapping[Answer, Callable[[str], Phrase]] = {
     Answer.LOOKING: lambda it: phrase("I am looking for the {it}.", it=it),
-    Answer.FOUND: lambda it: phrase("I see the {it} and go there.", it=it),
+    Answer.FOUND: lambda it: phrase("I see the {it} and am going to it.", it=it),
     Answer.ARRIVED: lambda it: phrase("I am at the {it}.", it=it),
     Answer.NOT_FOUND: lambda it: phrase("I cannot find the {it}.", it=it),
     Answer.LOST: lambda it: phrase("I have lost the {it}.", it=it),
     Answer.BLOCKED: lambda it: phrase("Something is between me and the {it}.", it=it),
-    Answer.BLIND: lambda _: phrase("I stop: no detections arrive."),
-    Answer.STOPPED: lambda _: phrase("I stop."),
+    Answer.BLIND: lambda _: phrase("I am stopping, because I receive no detections."),
+    Answer.STOPPED: lambda _: phrase("I am stopping."),
 }
 """The answers, given the name of the object."""
 
@@ -135,7 +135,7 @@ class ObjectRequest:
 
 @dataclass(frozen=True, slots=True)
 class Sighting:
-    """A visible object: its class, its colour or None, and how far ahead and to the left it is, in metres."""
+    """A visible object: its class, its colour or None, and its position in m."""
 
     name: str
     colour: str | None
@@ -144,7 +144,10 @@ class Sighting:
 
 
 def object_name(name: str) -> str:
-    """Return the common name of an object in lower case and singular, such as ``ball`` for ``football`` and ``球``."""
+    """Return the common name of an object in lower case and singular.
+
+    It is ``ball`` for ``football`` and ``球``, for example.
+    """
     normalized = name.strip().lower()
     if normalized in _COMMON_NAMES:
         return _COMMON_NAMES[normalized]
@@ -155,7 +158,10 @@ def object_name(name: str) -> str:
 
 
 def requested(text: str) -> ObjectRequest | None:
-    """Parse a request such as ``go to the red ball`` or ``去红色的球那里``; return None if it names no object."""
+    """Parse a request such as ``go to the red ball`` or ``去红色的球那里``.
+
+    The result is None if the request names no object.
+    """
     normalized = text.strip().strip(".,!?。，！？").lower()
     if normalized.isascii():
         normalized = (
@@ -177,7 +183,7 @@ def requested(text: str) -> ObjectRequest | None:
 
 
 def described(sightings: Iterable[Sighting], language: str) -> str:
-    """Describe visible objects, the nearest first: *I see a red ball 1.2 m ahead and two crates*."""
+    """Describe visible objects, nearest first: *I see a red ball 1.2 m ahead and two crates*."""
     groups: dict[str, list[Sighting]] = {}
     for sighting in sorted(sightings, key=lambda sighting: hypot(sighting.ahead, sighting.left)):
         groups.setdefault(name_with_colour(sighting.name, sighting.colour, language), []).append(sighting)
@@ -201,7 +207,10 @@ def name_with_colour(name: str, colour: str | None, language: str) -> str:
 
 
 def answer_phrase(event: Answer, request: ObjectRequest, language: str) -> str:
-    """Return the answer to a request. It names the object as the request does, or translates the name."""
+    """Return the answer to a request.
+
+    The object has its name from the request, or the translation of that name.
+    """
     name = request.text if request.language == language else name_with_colour(request.noun, request.colour, language)
     return localized(_ANSWERS[event](name), language)
 

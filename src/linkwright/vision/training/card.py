@@ -48,7 +48,7 @@ def make_card(name: str, facts: Mapping[str, str], examinations: Sequence[Examin
 
 
 def dataset_facts(folder: Path) -> dict[str, str]:
-    """Return the card's entries on how a dataset was made, or an empty dict if another program made it."""
+    """Return the card's entries on how a dataset was made, or an empty dict if unknown."""
     record = _read_record(folder)
     if record is None:
         return {}
@@ -80,7 +80,13 @@ def origin(folder: Path, training_folder: Path) -> str:
 
 @dataclass(frozen=True, slots=True)
 class _DatasetRecord:
-    """The record of how a dataset was made: worlds as pairs of name and SHA-256, options in words, and added files."""
+    """The record of how a dataset was made.
+
+    Attributes:
+        worlds: pairs of name and SHA-256.
+        options: the options, in words.
+        added: the added files.
+    """
 
     worlds: frozenset[tuple[str, str]]
     options: str
@@ -109,7 +115,10 @@ def table(evaluation: Evaluation) -> list[str]:
 
 
 def confusion(evaluation: Evaluation) -> list[str]:
-    """Return the confusion matrix as a Markdown table, with a row per label and a column per detected class."""
+    """Return the confusion matrix as a Markdown table, with rows of labels.
+
+    The columns are the detected classes.
+    """
     names = [class_results.name for class_results in evaluation.classes]
     lines = [f"| label \\ detection | {' | '.join(names)} | nothing |", "| --- |" + " ---: |" * (len(names) + 1)]
     for name, row in zip([*names, "nothing"], evaluation.confusion.tolist(), strict=True):

@@ -104,9 +104,9 @@ def repeated_indices(factors: NDArray[np.float64], generator: np.random.Generato
 def augmented(
     lesson: LabelledImages, place: int, view: View, generator: np.random.Generator
 ) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
-    """Return a sample with random augmentation: a random part of an image, with other light and colours.
+    """Return a randomly augmented part of an image, with its objects.
 
-    The part is mirrored and scaled at random; brightness, contrast, colours and sharpness change, and noise is added.
+    The part is mirrored and scaled at random; light, contrast, colours and sharpness change, and noise is added.
 
     Args:
         lesson: the images.
@@ -170,7 +170,7 @@ def _vary_light(image: NDArray[np.uint8], generator: np.random.Generator) -> NDA
 def _transform_objects(
     objects: NDArray[np.float32], transform: NDArray[np.float32], width: int, height: int
 ) -> NDArray[np.float32]:
-    """Return the objects in the transformed image, with objects that are mostly outside marked as ignored."""
+    """Transform objects with an image, and mark those that are mostly outside as ignored."""
     x = objects[:, 1::2] * transform[0, 0] + transform[0, 2]
     y = objects[:, 2::2] * transform[1, 1] + transform[1, 2]
     full_boxes = np.stack((x.min(1), y.min(1), x.max(1), y.max(1)), 1) if len(objects) else np.zeros((0, 4), np.float32)

@@ -68,7 +68,7 @@ class Options:
     command: str = ""
 
     def view(self, epoch: int) -> View:
-        """Return the crops for an epoch, counted from 0: small ones at first, full images in the last epochs.
+        """Return the crops for an epoch, counted from 0: small at first, full images at the end.
 
         Features depend little on the size of an image, so small crops teach nearly as much as full images in a quarter
         of the time. Full images are only needed for objects that fill much of an image.

@@ -74,7 +74,7 @@ class Dataset:
             message = phrase(
                 "the dataset '{folder}' has no split '{split}'", folder=display_path(self.folder), split=split
             )
-            raise LinkwrightError(Diagnostic("VISION303", message, hint=phrase("use one of {known}", known=splits)))
+            raise LinkwrightError(Diagnostic("VISION303", message, hint=phrase("use one of {names}", names=splits)))
         paths = [
             path
             for folder in self.splits[split]
@@ -135,7 +135,7 @@ def _description(folder: Path) -> Path:
     files = sorted(folder.glob("*.y*ml"))
     preferred = [file for file in files if file.stem in {"data", "dataset"}]
     if not files:
-        hint = phrase("give a dataset of `linkwright dataset`, or a folder with a data.yaml")
+        hint = phrase("pass a folder that `linkwright dataset` created, or one with a data.yaml")
         raise _dataset_error(folder, phrase("it contains no YAML file"), hint)
     return (preferred or files)[0]
 
@@ -211,7 +211,7 @@ def _read_labelled(path: Path, classes: int, hidden: Sequence[list[float]]) -> L
 
 
 def label_path(image: Path) -> Path:
-    """Return the path of an image's label file: its last folder named ``images`` becomes ``labels``."""
+    """Return the path of an image's label file, with the last folder ``images`` as ``labels``."""
     parts = list(image.parts)
     for index in range(len(parts) - 2, -1, -1):
         if parts[index] == "images":

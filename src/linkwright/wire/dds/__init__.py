@@ -1,4 +1,7 @@
-"""DDS as ROS 2 nodes use it. Importing this package does not load the DDS library."""
+"""DDS as ROS 2 nodes use it.
+
+Importing this package does not load the DDS library.
+"""
 
 from linkwright.wire.dds.joining import available, join, unavailable_reason
 from linkwright.wire.dds.transport import DdsTransport

@@ -305,7 +305,9 @@ def describe(code: int) -> str:
 
 
 def write(writer: int, data: bytes) -> int:
-    """Write a sample. This may wait for slow readers, with the GIL released.
+    """Write a sample.
+
+    This may wait for slow readers, with the GIL released.
 
     Args:
         writer: the writer.

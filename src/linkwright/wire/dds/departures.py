@@ -1,4 +1,4 @@
-"""Distinguishes lost publishers (killed, crashed, unreachable) from those that left in order.
+"""Distinguishes lost publishers (killed, crashed, unreachable) from orderly departures.
 
 A publisher that leaves announces this: ROS 2 withdraws an endpoint from ``ros_discovery_info`` before removing it from
 the domain (rmw_dds_common), and so does Linkwright. An endpoint that disappears without being withdrawn is lost: its
@@ -66,7 +66,10 @@ class Departures:
         remote.departures = self
 
     def watch(self, callback: Callable[[EndpointInfo], None]) -> None:
-        """Register a callback for lost publishers. The callback runs in the discovery thread."""
+        """Register a callback for lost publishers.
+
+        The callback runs in the discovery thread.
+        """
         self._watchers.append(callback)
 
     def endpoint_left(self, endpoint: RemoteEndpoint, node: NodeIdentity | None) -> None:

@@ -51,10 +51,10 @@ _READER_QOS = QoSProfile(1, durability=DurabilityPolicy.TRANSIENT_LOCAL, history
 class Discovery:
     """Fills the tables of the remote graph and publishes the graph of this process.
 
-    A gid has 24 bytes for ROS 2 up to Humble and 16 from Iron on, and the wrong size harms the nodes that receive it.
-    Our announcements use the size of the ROS 2 nodes that have been discovered. If both sizes occur, the older size
-    is used, because ``ros2 node list`` of the older distribution would fail otherwise. Processes of Linkwright
-    understand both sizes and do not affect the choice.
+    A gid has 24 bytes for ROS 2 up to Humble and 16 from Iron on. An announcement with the wrong size makes ``ros2 node
+    list`` of Humble fail, or leaves our nodes without names. Our announcements use the size of the ROS 2 nodes that
+    have been discovered. If both sizes occur, the older size is used, because ``ros2 node list`` of the older
+    distribution would fail otherwise. Processes of Linkwright understand both sizes and do not affect the choice.
 
     Args:
         participant: our participant.
@@ -73,7 +73,7 @@ class Discovery:
         self._types = types
         self.gid_size = gid_size
         self.changed = False
-        """Whether something outside has changed since the flag was last read and reset."""
+        """Whether the remote graph has changed since the flag was last read and reset."""
         self._nodes: Sequence[NodeEntities] = ()
         self._gid_sizes: dict[bytes, int] = {}
         self._participants = self._create_builtin_reader(BUILTIN_PARTICIPANTS)
@@ -248,7 +248,7 @@ def machine_id() -> str:
 
 
 def _pointer(qos: int) -> int:
-    """Return the pointer itself, because policies are read on demand while the sample is on loan."""
+    """Return the pointer: policies are read on demand while the sample is on loan."""
     return qos
 
 

@@ -108,7 +108,7 @@ class _Reader:
     def _gid(self) -> bytes:
         gid = self._bytes(self._gid_size)
         if any(gid[GID_SIZE:]):
-            raise IndexError("the bytes behind a GUID are zeros")
+            raise IndexError("the bytes after a GUID must be zeros")
         return gid[:GID_SIZE]
 
     def _string(self) -> str:
@@ -123,13 +123,13 @@ class _Reader:
         (count,) = struct.unpack_from(self._order + "I", self._data, self._offset)
         self._offset += 4
         if count * limit > len(self._data) - self._offset:
-            raise IndexError("longer than the sample")
+            raise IndexError("a sequence is longer than the sample")
         return int(count)
 
     def _bytes(self, size: int) -> bytes:
         end = self._offset + size
         if end > len(self._data):
-            raise IndexError("longer than the sample")
+            raise IndexError("a sequence is longer than the sample")
         value = self._data[self._offset : end]
         self._offset = end
         return value

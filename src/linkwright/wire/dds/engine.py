@@ -195,7 +195,7 @@ class Engine(AnyEngine):
         self._is_announced = False
 
     def close_endpoint(self, endpoint: Any) -> None:
-        """Delete the mirror of a subscription, a service, a client or a presence."""
+        """Delete the DDS entities of a subscription, service, client or presence."""
         self._is_announced = False
         presence = self._presences.pop(endpoint, None)
         if presence is not None:
@@ -320,7 +320,10 @@ class Engine(AnyEngine):
                 topic.close()
 
     def _announce(self) -> None:
-        """Announce our nodes if they have changed. Several changes in a row are announced together."""
+        """Announce our nodes if they have changed.
+
+        Several changes in a row are announced together.
+        """
         if not self._is_announced and (
             not self._work or time.monotonic() - self._announced_at > self._max_announce_delay
         ):

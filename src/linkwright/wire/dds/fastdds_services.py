@@ -2,7 +2,7 @@
 
 In rmw_fastrtps, a reply identifies its request in the inline QoS of RTPS, outside the sample. Cyclone neither writes
 inline QoS nor passes it on. Therefore a participant of our own does this (`linkwright.wire.dds.rtps`), with a reader
-and a writer for each service and client in addition to those of Cyclone.
+and a writer for each service and client in addition to Cyclone's.
 """
 
 from __future__ import annotations
@@ -89,7 +89,7 @@ class FastServer:
         )
 
     def on_early_request(self, request: EarlyRequest) -> None:
-        """Accept a request from Cyclone's reader. It is dropped if this reader receives it, too."""
+        """Accept a request from Cyclone's reader, unless this reader receives it, too."""
         heard_at = self._participant.matched_writers(self._requests).get(request.writer)
         if heard_at is None or time.monotonic() < heard_at + _SETTLING_TIME_S:
             with self._lock:
@@ -181,7 +181,7 @@ class FastServer:
                 self._forward(request.body, writer, writer, number)
 
     def _assign_numbers(self, writer: bytes, early_requests: list[EarlyRequest]) -> list[tuple[int, EarlyRequest]]:
-        """Return a writer's numbered early requests, without those that this reader also receives."""
+        """Return a writer's numbered early requests, except requests that this reader also receives."""
         last_number = self._participant.last_of(self._requests, writer)
         with self._lock:
             if writer in self._first_samples:
@@ -245,7 +245,10 @@ class FastClient:
         )
 
     def close(self) -> None:
-        """Delete the endpoints. Pending requests stay unanswered."""
+        """Delete the endpoints.
+
+        Pending requests stay unanswered.
+        """
         self._response_callbacks.clear()
         self._participant.remove(self._requests)
         self._participant.remove(self._replies)

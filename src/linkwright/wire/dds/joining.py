@@ -26,7 +26,7 @@ def unavailable_reason(environment: Mapping[str, str] | None = None) -> Phrase:
     """Return the reason why this process does not use DDS, or an empty phrase if it uses DDS.
 
     Args:
-        environment: the environment variables; those of this process if omitted.
+        environment: the environment variables; by default, the variables of this process.
     """
     if is_switched_off(environment):
         return switched_off_reason()

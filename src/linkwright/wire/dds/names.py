@@ -83,7 +83,7 @@ def parse_user_data(data: bytes) -> dict[str, str]:
 def endpoint_id(guid: bytes) -> str:
     """Format the id that links the reader and the writer of a client or service.
 
-    The format is that of rmw_cyclonedds_cpp.
+    The format is rmw_cyclonedds_cpp's.
     """
     first_byte, *other_bytes = guid
     return f"{first_byte:2x}" + "".join(f".{byte:x}" for byte in other_bytes)

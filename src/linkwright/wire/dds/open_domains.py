@@ -1,4 +1,7 @@
-"""The open DDS domains of this process. Several graphs may share a domain."""
+"""The open DDS domains of this process.
+
+Several graphs may share a domain.
+"""
 
 from __future__ import annotations
 
@@ -55,7 +58,10 @@ def open_domain(settings: Settings) -> OpenDomain:
 
 
 def close_domain(domain: OpenDomain) -> None:
-    """Remove a participant from a domain. The last one closes the domain's sockets and threads."""
+    """Remove a participant from a domain.
+
+    The last one closes the domain's sockets and threads.
+    """
     with _lock:
         domain.users -= 1
         if not domain.users:

@@ -221,9 +221,9 @@ class PacedWriter:
         self._pacer.add(self)
 
     def send_next(self) -> bool:
-        """Send the next queued sample. Return False if no sample was queued.
+        """Send the next queued sample.
 
-        Called in the pacer's thread.
+        Return False if no sample was queued. Called in the pacer's thread.
         """
         with self._condition:
             if self._waiting:
@@ -240,7 +240,10 @@ class PacedWriter:
         return True
 
     def wait_until_written(self, seconds: float) -> bool:
-        """Wait until no sample is queued. Return False if that takes longer than `seconds`."""
+        """Wait until no sample is queued.
+
+        Return False if that takes longer than `seconds`.
+        """
         with self._condition:
             return self._condition.wait_for(lambda: not self._is_pacing, min(seconds, threading.TIMEOUT_MAX))
 

@@ -1,4 +1,4 @@
-"""The DDS participant of this process. It creates readers and writers."""
+"""The DDS participant of this process, which creates readers and writers."""
 
 from __future__ import annotations
 
@@ -68,7 +68,9 @@ class Participant:
         return self._domain.descriptions
 
     def create_topic(self, name: str, described_type: object) -> int:
-        """Create a topic. Only the name of its type is announced.
+        """Create a topic.
+
+        Only the name of its type is announced.
 
         Args:
             name: the topic's DDS name.
@@ -88,7 +90,10 @@ class Participant:
         return check_call(self._dds.dds_create_writer(self.entity, topic, qos, None), "making a writer")
 
     def delete(self, *entities: int) -> None:
-        """Delete entities. Readers and writers must precede their topics."""
+        """Delete entities.
+
+        Readers and writers must precede their topics.
+        """
         for entity in entities:
             self._dds.dds_delete(entity)
 

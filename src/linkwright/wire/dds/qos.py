@@ -32,7 +32,7 @@ _XCDR1 = 0
 
 @contextmanager
 def endpoint_qos(profile: QoSProfile, user_data: bytes = b"") -> Iterator[int]:
-    """Yield the policies of a reader or writer. They are valid only inside the ``with`` block.
+    """Yield the policies of a reader or writer, valid only inside the ``with`` block.
 
     The participant does not receive its own samples, because the bus of the process has already delivered them.
 
@@ -77,7 +77,7 @@ def endpoint_qos(profile: QoSProfile, user_data: bytes = b"") -> Iterator[int]:
 
 @contextmanager
 def participant_qos(user_data: bytes, entity_name: str) -> Iterator[int]:
-    """Yield the policies of a participant. They are valid only inside the ``with`` block."""
+    """Yield the policies of a participant, valid only inside the ``with`` block."""
     dds = load()
     qos: int = dds.dds_create_qos()
     try:

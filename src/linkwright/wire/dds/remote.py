@@ -32,7 +32,7 @@ _PREFIX = 12
 """The number of bytes of a GUID that identify the participant."""
 
 _FIRST_ENDPOINT_TIMEOUT_S = 1.3
-"""Seconds within which a participant's first endpoint is discovered; Fast DDS repeats lost announcements after 1 s."""
+"""Seconds within which a participant's first endpoint is discovered. Fast DDS repeats lost announcements after 1 s."""
 
 _ANNOUNCEMENT_TIMEOUT_S = 3.0
 """Seconds within which a participant that reads announcements sends one, and its endpoints are discovered."""
@@ -174,7 +174,10 @@ class DepartureWatch(Protocol):
 
 
 class RemoteGraph(Outside):
-    """The nodes and endpoints of other processes. `Outside` describes the thread safety."""
+    """The nodes and endpoints of other processes.
+
+    `Outside` describes the thread safety.
+    """
 
     def __init__(self) -> None:
         super().__init__()
@@ -185,7 +188,7 @@ class RemoteGraph(Outside):
         self._early_announcements: dict[bytes, ParticipantEntities] = {}
         self._dead_cache: tuple[float, frozenset[bytes]] = (0.0, frozenset())
         self.departures: DepartureWatch | None = None
-        """Receives notifications of endpoints that disappear; None if nothing receives them."""
+        """The receiver of notifications of endpoints that disappear, or None."""
 
     # --- called by discovery ------------------------------------------------------------------------------------
 
@@ -400,7 +403,10 @@ class RemoteGraph(Outside):
         }
 
     def _dead_participants(self) -> frozenset[bytes]:
-        """Return the GUIDs of participants whose process was killed. The result is cached briefly."""
+        """Return the GUIDs of participants whose process was killed.
+
+        The result is cached briefly.
+        """
         now = time.monotonic()
         checked_at, dead = self._dead_cache
         if now - checked_at > 0.25:

@@ -162,7 +162,7 @@ class OutsideServer:
         return count == _MAX_SAMPLES
 
     def on_writer_status(self) -> bool:
-        """Handle a change of the readers that match the writer.
+        """Handle a change in the readers that match the writer.
 
         Returns False, because a status change brings no samples.
         """
@@ -179,7 +179,10 @@ class OutsideServer:
             self._client.set_outside(self if is_ready else None)
 
     def close(self) -> None:
-        """Delete the endpoints. Pending requests stay unanswered."""
+        """Delete the endpoints.
+
+        Pending requests stay unanswered.
+        """
         self._client.set_outside(None)
         self._response_callbacks.clear()
         if self._fast is not None:

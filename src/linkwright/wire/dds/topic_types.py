@@ -1,4 +1,4 @@
-"""The Cyclone types of a domain's topics. They are kept until the domain is closed.
+"""The Cyclone types of a domain's topics, kept until the domain is closed.
 
 Two properties of Cyclone's Python package prevent using its types directly.
 
@@ -39,7 +39,10 @@ _VERSION_ON_WINDOWS = 1
 
 
 class TopicTypes:
-    """The types of one domain. Any thread may use this object."""
+    """The types of one domain.
+
+    Any thread may use this object.
+    """
 
     def __init__(self) -> None:
         self._dds = load()

@@ -434,7 +434,10 @@ class _LogLimits:
         self._logged: dict[str, float] = {}
 
     def is_new(self, guid: bytes) -> bool:
-        """Return whether this is the first call for an endpoint. The mismatch must then be logged."""
+        """Return whether this is the first call for an endpoint.
+
+        The mismatch must then be logged.
+        """
         is_new = guid not in self._guids
         self._guids.add(guid)
         return is_new

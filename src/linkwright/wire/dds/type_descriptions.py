@@ -27,7 +27,10 @@ class UndescribableError(Exception):
 
 
 class WireTypes:
-    """Creates and caches the descriptions of types. Any thread may use this object."""
+    """Creates and caches the descriptions of types.
+
+    Any thread may use this object.
+    """
 
     def __init__(self) -> None:
         self._classes: dict[object, Any] = {}
@@ -45,7 +48,10 @@ class WireTypes:
         return self._describe_name(DISCOVERY_TYPE)
 
     def by_name(self, type_name: str) -> Any:
-        """Return a description with only a type's name. Cyclone does not check samples against it."""
+        """Return a description with only a type's name.
+
+        Cyclone does not check samples against it.
+        """
         return self._describe_name(dds_type(type_name))
 
     def _describe_name(self, name: str) -> Any:

@@ -53,7 +53,10 @@ class WaitingThread(threading.Thread):
         check_call(self._dds.dds_waitset_attach(self._waitset, entity, entity), "attaching")
 
     def detach(self, entity: int) -> None:
-        """Stop calling the handler of an entity. A call in progress continues."""
+        """Stop calling the handler of an entity.
+
+        A call in progress continues.
+        """
         self._handlers.pop(entity, None)
         self._dds.dds_waitset_detach(self._waitset, entity)
 

@@ -12,7 +12,7 @@ from typing import NamedTuple
 GID_SIZE = 16
 
 _LAYOUT = Struct("<qqB16s")
-"""Little-endian, without padding; a sequence begins with its length, in LEB128."""
+"""Little-endian, without padding. A sequence begins with its length, in LEB128."""
 
 
 class Attachment(NamedTuple):

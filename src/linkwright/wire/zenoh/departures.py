@@ -1,4 +1,4 @@
-"""Distinguishes lost publishers (killed, crashed, unreachable) from those that left in order.
+"""Distinguishes lost publishers (killed, crashed, unreachable) from orderly departures.
 
 A token disappears when its owner withdraws it, and when its session ends for any reason. Linkwright's sessions have an
 additional token, and announce their departure before that token disappears. Without this announcement, their endpoints
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from linkwright.wire.zenoh.remote import RemoteGraph
 
 GRACE = 0.4
-"""Seconds after a publisher disappears within which the changes of its session's other tokens arrive."""
+"""Seconds after a publisher disappears within which changes to its session's other tokens arrive."""
 
 
 @dataclass(slots=True)
@@ -66,7 +66,10 @@ class Departures:
         self._nodes_removed_at: dict[tuple[str, str], float] = {}
 
     def watch(self, callback: Callable[[EndpointInfo], None]) -> None:
-        """Register a callback for lost publishers. The callback runs in the discovery thread."""
+        """Register a callback for lost publishers.
+
+        The callback runs in the discovery thread.
+        """
         self._watchers.append(callback)
 
     @property
@@ -76,7 +79,10 @@ class Departures:
 
     @property
     def live_sessions(self) -> AbstractSet[str]:
-        """The ids of Linkwright's live sessions. These sessions announce their departure."""
+        """The ids of Linkwright's live sessions.
+
+        These sessions announce their departure.
+        """
         return self._live_sessions
 
     def session_started(self, session: str) -> None:

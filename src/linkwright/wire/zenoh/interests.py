@@ -22,7 +22,9 @@ OURS = "@linkwright"
 
 
 class Interests:
-    """The tokens to which a session subscribes. After `__init__`, only one thread may use this.
+    """The tokens to which a session subscribes.
+
+    After `__init__`, only one thread may use this.
 
     Args:
         session: the session.
@@ -62,7 +64,7 @@ class Interests:
         return not self.subscribes_to_all
 
     def follow(self, publishing_sessions: AbstractSet[str], live_sessions: AbstractSet[str]) -> None:
-        """Subscribe to all tokens of other sessions. Their changes show how these sessions end.
+        """Subscribe to all tokens of other sessions, whose changes show how these sessions end.
 
         The subscription to a session ends when none of its tokens is left.
 

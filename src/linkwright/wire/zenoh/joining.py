@@ -31,7 +31,7 @@ def unavailable_reason(environment: Mapping[str, str] | None = None) -> Phrase:
     """Return the reason why this process does not use Zenoh, or an empty phrase if it does.
 
     Args:
-        environment: the environment variables; those of this process if omitted.
+        environment: the environment variables; by default, the variables of this process.
     """
     if is_switched_off(environment):
         return switched_off_reason()

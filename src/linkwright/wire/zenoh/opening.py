@@ -1,4 +1,7 @@
-"""Opens a session. Waiting for a router or peers is logged and can be interrupted."""
+"""Opens a session.
+
+Waiting for a router or peers is logged and can be interrupted.
+"""
 
 from __future__ import annotations
 
@@ -99,7 +102,10 @@ class ObstacleReporter:
         self._thread.start()
 
     def end(self) -> None:
-        """Stop reporting. If the thread is trying an address, it ends a moment later."""
+        """Stop reporting.
+
+        If the thread is trying an address, it ends a moment later.
+        """
         self._end_event.set()
 
     def _run(self) -> None:

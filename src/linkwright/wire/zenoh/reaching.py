@@ -1,6 +1,6 @@
-"""Finds the reasons why a connection to an address fails. Zenoh does not report them.
+"""Finds the reasons why a connection to an address fails.
 
-To do so, this module connects to the address with sockets and TLS in the same way as Zenoh.
+Zenoh does not report them. To do so, this module connects to the address with sockets and TLS in the same way as Zenoh.
 """
 
 from __future__ import annotations
@@ -194,7 +194,7 @@ def _read_problem(path: str) -> Phrase:
             with Path(path).open("rb"):
                 pass
     except OSError as error:
-        return phrase("'{path}' cannot be read: {reason}", path=path, reason=_reason(error))
+        return phrase("cannot read '{path}': {reason}", path=path, reason=_reason(error))
     return Phrase("")
 
 

@@ -17,7 +17,10 @@ _GONE_FOR = 0.5
 
 
 class RemoteGraph(Outside):
-    """The nodes and endpoints of other sessions. `Outside` describes the thread safety."""
+    """The nodes and endpoints of other sessions.
+
+    `Outside` describes the thread safety.
+    """
 
     def __init__(self) -> None:
         super().__init__()
@@ -70,7 +73,10 @@ class RemoteGraph(Outside):
         return token
 
     def forget_endpoints(self, kind: EndpointKind, data_key: str) -> None:
-        """Remove the endpoints of a kind at a key. The session no longer subscribes to their tokens."""
+        """Remove the endpoints of a kind at a key.
+
+        The session no longer subscribes to their tokens.
+        """
         with self._lock:
             removed_keys = [
                 key for key, token in self._tokens.items() if (token.kind, token.data_key) == (kind, data_key)
@@ -80,7 +86,10 @@ class RemoteGraph(Outside):
             self._counts.pop((kind, data_key), None)
 
     def forget_nodes(self, full_name: str) -> None:
-        """Remove all nodes with a full name. The session no longer subscribes to their tokens."""
+        """Remove all nodes with a full name.
+
+        The session no longer subscribes to their tokens.
+        """
         with self._lock:
             for key in [key for key, token in self._tokens.items() if token.kind is None]:
                 if self._tokens[key].node.full_name == full_name:

@@ -79,7 +79,10 @@ class OutsideServer:
             self._client.set_outside(self if is_ready else None)
 
     def close(self) -> None:
-        """Withdraw the client. Pending requests stay unanswered."""
+        """Withdraw the client.
+
+        Pending requests stay unanswered.
+        """
         self._client.set_outside(None)
         self._response_callbacks.clear()
         self._listener.undeclare()
@@ -99,9 +102,9 @@ class OutsideServer:
             forward_response(sample.payload.to_bytes(), self._client, on_response)
 
     def _end(self, number: int) -> None:
-        """Handle the end of a request. A request without a reply is logged once per client.
+        """Handle the end of a request.
 
-        The future of such a request stays pending, as in rclpy.
+        A request without a reply is logged once per client. The future of such a request stays pending, as in rclpy.
         """
         if (
             self._response_callbacks.pop(number, None) is not None
@@ -196,5 +199,8 @@ class _PendingRequest:
         self._query.drop()
 
     def drop(self) -> None:
-        """Drop the query. This notifies the client that no reply will follow."""
+        """Drop the query.
+
+        This notifies the client that no reply will follow.
+        """
         self._query.drop()

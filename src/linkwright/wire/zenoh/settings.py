@@ -83,7 +83,7 @@ def read_settings(environment: Mapping[str, str] | None = None, *, domain_id: in
     """Read the settings from environment variables.
 
     Args:
-        environment: the variables; those of this process if omitted.
+        environment: the variables; by default, the variables of this process.
         domain_id: the domain, which takes precedence over ROS_DOMAIN_ID; None for ROS_DOMAIN_ID.
 
     Raises:

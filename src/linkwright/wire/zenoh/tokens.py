@@ -90,7 +90,10 @@ class Token:
 
     @property
     def node_key(self) -> tuple[str, str]:
-        """The id of the session and the id of the node in it. A node and its endpoints share them."""
+        """The id of the session and the id of the node in it.
+
+        A node and its endpoints share them.
+        """
         return self.session, self.node_id
 
     def described(self) -> EndpointInfo | None:

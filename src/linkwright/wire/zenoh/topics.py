@@ -180,7 +180,7 @@ class IncomingTopic:
         info = MessageInfo(sent_ns, time.time_ns(), gid, True, number)
         try:
             self._subscription.receive(sample.payload.to_bytes(), info)
-        except Exception as error:  # noqa: BLE001 - the thread is Zenoh's, which would print it and not log it
+        except Exception as error:  # noqa: BLE001 - Zenoh's thread would print the error without logging it
             self._subscription.report(error)
 
     def _refuse(self) -> None:

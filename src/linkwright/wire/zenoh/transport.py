@@ -23,7 +23,7 @@ SETTLED_AFTER = 0.4
 """Seconds without changes after which discovery counts as complete, if another session is connected."""
 
 _ANSWERED_WITHIN = 2.0
-"""Seconds within which the router answers with the live tokens; the first query waits for the answer."""
+"""Seconds within which the router answers with the live tokens. The first query waits for the answer."""
 
 _QUIET = 0.1
 """Seconds without new tokens after which the answer counts as complete."""

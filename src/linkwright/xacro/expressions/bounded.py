@@ -23,7 +23,7 @@ class RefusalError(Exception):
 
 
 _MAX_EQUAL_HASHES = 1_000
-"""The maximum number of keys with the same hash; Python compares each of them with all others."""
+"""The maximum number of keys with the same hash. Python compares each of them with all others."""
 _MAX_COMPARED = 200_000_000
 """The maximum number of character comparisons in one call."""
 _MAX_NUMBERS = 1_000

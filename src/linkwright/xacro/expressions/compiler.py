@@ -36,7 +36,7 @@ _GENERATOR_COST = 10
 """The number of steps that a generator costs, because of its memory."""
 _LINE = r"[^\r\n]*(?:\r\n?|\n|\Z)"
 _MAX_DEPTH = 500
-"""The maximum nesting of the nodes of an expression; a sum with n terms has n levels."""
+"""The maximum nesting of the nodes of an expression. A sum with n terms has n levels."""
 
 FAILURES = (
     ArithmeticError,

@@ -66,7 +66,7 @@ _KEYWORDS = frozenset(
 
 _compiler = TextCompiler(Expression)
 expressions = _compiler.forms
-"""The expressions compiled so far, by source; the expressions inside templates are not included."""
+"""The expressions compiled so far, by source. The expressions inside templates are not included."""
 
 
 def compile_expression(source: str) -> Expression:
@@ -140,7 +140,7 @@ def _syntax_tree(source: str) -> ast.Expression:
 
 def _syntax_fault(source: str, stripped: str, error: SyntaxError) -> Fault:
     reason = error.msg.removeprefix("f-string: ")
-    message = phrase("'{shortened}' is not an expression: {words}", shortened=_shorten(stripped), words=foreign(reason))
+    message = phrase("'{shortened}' is not an expression: {error}", shortened=_shorten(stripped), error=foreign(reason))
     hint = next((hint for sign, hint in _SYNTAX_HINTS if sign in stripped), None)
     if "!=" in stripped and hint == "write 'not'":
         hint = None

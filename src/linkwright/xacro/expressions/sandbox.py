@@ -91,7 +91,7 @@ def attribute(value: Any, name: str) -> Any:
     if kind is Module:
         if name in value.values:
             return value.values[name]
-        raise AttributeError(phrase("'{name}' has no '{other_name}'", name=value.name, other_name=name))
+        raise AttributeError(phrase("'{name}' has no '{key}'", name=value.name, key=name))
     if isinstance(value, Namespace):
         try:
             return value.lookup(name)

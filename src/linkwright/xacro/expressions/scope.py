@@ -4,7 +4,7 @@ Scopes form a chain. A macro call opens a scope whose parent is the caller's sco
 An include with a namespace opens a `Namespace`. The outermost scope contains the names that the language provides.
 
 Strings that look like numbers or booleans are converted to such values, and conditions accept some strings as true.
-Both rules are those of ros/xacro, on which real robots rely: ``007`` is 7 and ``true`` is True, but ``TRUE``,
+Both rules come from ros/xacro, and real robots rely on them: ``007`` is 7 and ``true`` is True, but ``TRUE``,
 ``0x10`` and ``1_000`` are strings.
 """
 
@@ -276,7 +276,10 @@ class Scope:
 
 
 class Namespace(Scope):
-    """The scope of an include with a namespace. Expressions access its properties with a dot."""
+    """The scope of an include with a namespace.
+
+    Expressions access its properties with a dot.
+    """
 
     __slots__ = ()
 

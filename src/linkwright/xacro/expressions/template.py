@@ -12,7 +12,7 @@ ros/xacro in this order at each position:
 - Anything else is literal text, which may contain single dollars.
 
 Substitutions are ``$(arg name)``, ``$(find package)`` and similar commands. The text between the parentheses is split
-at blanks into a command and its arguments. Each ``$(find ...)`` in the result is evaluated, too, so that the value of
+at spaces into a command and its arguments. Each ``$(find ...)`` in the result is evaluated, too, so that the value of
 an argument may contain one.
 """
 

@@ -20,7 +20,7 @@ _MAX_NUMBER_LENGTH = 4_000
 _MAX_LARGE_NUMBERS = 1_000
 
 tags: dict[str, str] = {}
-"""The tags of plain scalars, by text; a tag does not depend on the location of the scalar."""
+"""The tags of plain scalars, by text. A tag does not depend on the location of the scalar."""
 
 
 class NodeLoader(getattr(yaml, "CSafeLoader", yaml.SafeLoader)):  # type: ignore[misc]
@@ -45,7 +45,10 @@ class NodeLoader(getattr(yaml, "CSafeLoader", yaml.SafeLoader)):  # type: ignore
         return tag
 
     def descend_resolver(self, node: Any, _index: Any) -> None:
-        """Check the nesting depth of a node; the path to a node does not affect its tag."""
+        """Check the nesting depth of a node.
+
+        The path to a node does not affect its tag.
+        """
         self.depth += 1
         if self.depth > _MAX_DEPTH:
             message = f"the values are nested more than {_MAX_DEPTH} levels deep"

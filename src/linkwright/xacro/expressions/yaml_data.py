@@ -108,7 +108,7 @@ def load(text: str, evaluate: Callable[[str], Any]) -> Any:
 
 
 cache: BoundedCache[str, Any] = BoundedCache(200, lambda *_: 1)
-"""The values of YAML texts without tags, by text; a caller receives a copy."""
+"""The values of YAML texts without tags, by text. A caller receives a copy."""
 
 
 def _load(text: str, evaluate: Callable[[str], Any] | None) -> Any:

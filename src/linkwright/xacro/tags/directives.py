@@ -161,9 +161,7 @@ def define_property(expander: Expander, site: Site) -> None:
         return
     if "default" in attributes:
         if "scope" in attributes:
-            message = phrase(
-                "the default of '{name}' applies to this scope only; 'scope' has no effect with it", name=name
-            )
+            message = phrase("the default of '{name}' applies to this scope only, so 'scope' has no effect", name=name)
             expander.session.warn("XAC308", message, node.attribute_span("scope"))
         if name in scope:
             return
@@ -202,9 +200,7 @@ def _boolean_attribute(expander: Expander, node: Element, attribute: str, scope:
     try:
         return truth(value)
     except ValueError:
-        message = phrase(
-            "'{attribute}' is '{value}', which is neither true nor false", attribute=attribute, value=value
-        )
+        message = phrase("'{name}' is '{text}', which is neither true nor false", name=attribute, text=value)
         expander.fail_at("XAC305", message, node, node.attribute_span(attribute), phrase("write true or false"))
 
 
@@ -226,7 +222,7 @@ def _remove(expander: Expander, node: Element, name: str, scope: Scope) -> bool:
 
 
 def _target_scope(expander: Expander, node: Element, name: str, scope: Scope) -> tuple[Scope, bool]:
-    """Return the scope in which to define a property, and whether that scope is the scope of the tag."""
+    """Return the scope in which to define a property, and whether it is the tag's scope."""
     scope_name = node.attributes.get("scope")
     if scope_name == "global":
         return scope.document_scope(), False
@@ -237,8 +233,8 @@ def _target_scope(expander: Expander, node: Element, name: str, scope: Scope) ->
         while isinstance(target, Namespace):
             target = target.parent
     if target is None or target.parent is None:
-        message = phrase("there is no scope around this one for '{name}'", name=name)
-        hint = phrase("'scope' is for properties defined inside a macro; leave it out here")
+        message = phrase("the property '{name}' has no enclosing scope", name=name)
+        hint = phrase("leave 'scope' out, because it is only for properties of a macro")
         expander.fail_at("XAC307", message, node, node.attribute_span("scope"), hint)
     return target, False
 
@@ -248,7 +244,7 @@ _NAME = r"[^\W\d][\w.\-]*(:[^\W\d][\w.\-]*)?"  # not compiled here because few f
 
 
 def declare_argument(expander: Expander, site: Site) -> None:
-    """Expand ``<xacro:arg name default/>``: set an argument to its default unless it has a value."""
+    """Expand ``<xacro:arg name default/>``: set a default unless the argument has a value."""
     node, session = site.node, expander.session
     check_attributes(expander, node, ("name", "default"), ())
     name = node.attributes["name"]
@@ -271,11 +267,11 @@ def expand_condition(expander: Expander, site: Site) -> None:
         condition = truth(value)
     except ValueError:
         message = phrase(
-            "the condition '{value}' gives '{other_value}', which is neither true nor false",
+            "the condition '{value}' evaluates to '{other_value}', not to true or false",
             value=node.attributes["value"],
             other_value=value,
         )
-        hint = phrase("write a condition that gives true, false or an integer")
+        hint = phrase("write a condition that evaluates to true, false or an integer")
         expander.fail_at("XAC305", message, node, node.attribute_span("value"), hint)
     if condition is (node.tag == "xacro:if"):
         if "$" in node.attributes["value"] and session.changes(node.attributes["value"]):
@@ -403,4 +399,4 @@ DIRECTIVES: Mapping[str, Directive] = {
     "xacro:property": define_property,
     "xacro:unless": expand_condition,
 }
-"""Tag -> the function that expands it; any other tag with the prefix is a macro call."""
+"""Tag -> the function that expands it. Any other tag with the prefix is a macro call."""

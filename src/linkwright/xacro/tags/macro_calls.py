@@ -34,7 +34,7 @@ def define_macro(expander: Expander, site: Site) -> None:
     if name.startswith(PREFIX):
         name = name[len(PREFIX) :]
         message = phrase(
-            ("the definition of the macro '{name}' has the prefix 'xacro:', which only its calls must have"), name=name
+            ("the definition of the macro '{name}' has the prefix 'xacro:', but only calls have this prefix"), name=name
         )
         expander.session.warn("XAC411", message, node.attribute_span("name"), phrase('write name="{name}"', name=name))
     try:
@@ -276,7 +276,7 @@ class _Call:
             name=macro.name,
             parameters=quoted_names(parameter.name for parameter in missing),
         )
-        hint = phrase("write {attributes}", attributes=" ".join(f'{parameter.name}="..."' for parameter in missing))
+        hint = phrase("write {text}", text=" ".join(f'{parameter.name}="..."' for parameter in missing))
         if not all(parameter.name.lstrip("*").isidentifier() for parameter in missing):
             hint = phrase("a default that contains spaces ends at the first space; put it in quotes")
         note = self._definition(macro, missing[0])

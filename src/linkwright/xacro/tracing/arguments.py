@@ -1,7 +1,7 @@
 """The arguments of a description, found even if it cannot be expanded without them.
 
 The file is expanded with a session in which no argument is missing: a missing argument gets the default that some
-file declares, or else an empty text, and is recorded as required. All files that were read are then searched,
+file declares, or else an empty string, and is recorded as required. All files that were read are then searched,
 including branches that were not taken and macros that were not called. If the expansion did not finish, the includes
 that it did not reach are read, too, as far as their names are known.
 """
@@ -58,7 +58,7 @@ class Arguments:
     """The arguments of a description, as found by `examine_arguments`.
 
     Attributes:
-        arguments: the arguments: first those that are declared, then the others.
+        arguments: the arguments, declared ones first.
         unused: a warning for each passed argument that no file declares or uses.
         problems: the errors that stopped the expansion. If there are any, `arguments` may be incomplete.
     """
@@ -159,7 +159,7 @@ class _Findings:
                     self.uses.setdefault(name, span)
 
     def arguments(self) -> tuple[Argument, ...]:
-        """Return all arguments, starting with those that are declared."""
+        """Return all arguments, declared ones first."""
         session = self.session
         declarations = {**session.declared, **self.elsewhere, **session.declared}
         missing_names = dict(session.missing)
@@ -182,9 +182,9 @@ class _Findings:
             Diagnostic(
                 "XAC215",
                 phrase(
-                    "the argument '{name}' is given, but '{inputs_name}' does not use it",
+                    "the argument '{name}' is given, but '{file}' does not use it",
                     name=name,
-                    inputs_name=self.inputs.name,
+                    file=self.inputs.name,
                 ),
                 severity=Severity.WARNING,
                 hint=did_you_mean(name, known_names),

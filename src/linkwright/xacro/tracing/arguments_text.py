@@ -27,7 +27,10 @@ def arguments_text(arguments: tuple[Argument, ...]) -> str:
 
 
 def incompleteness_remarks(findings: Arguments) -> list[Diagnostic]:
-    """Return a warning that the list of arguments may be incomplete, or an empty list if the expansion finished."""
+    """Return a warning that the list of arguments may be incomplete.
+
+    The list is empty if the expansion finished.
+    """
     if not findings.problems:
         return []
     first_problem = findings.problems[0]
@@ -40,13 +43,13 @@ def incompleteness_remarks(findings: Arguments) -> list[Diagnostic]:
         for argument in suspected_arguments or findings.arguments
         if suspected_arguments or argument.required
     ]
-    hint = phrase("give {required}", required=" ".join(required)) if required else None
+    hint = phrase("pass {required}", required=" ".join(required)) if required else None
     notes = (Note(first_problem.message), *first_problem.notes)
     return [Diagnostic("XAC803", message, first_problem.span, Severity.WARNING, notes, hint, first_problem.source)]
 
 
 def _arguments_causing(arguments: Iterable[Argument], message: str) -> list[Argument]:
-    """Return the arguments whose default values occur in an error message, such as in the name of a missing file."""
+    """Return the arguments whose defaults occur in an error message, as in a missing file."""
     return [
         argument
         for argument in arguments

@@ -33,7 +33,7 @@ def log_properties(inputs: Inputs, put: Callable[[str], None], *, everywhere: bo
 
 
 class _Log:
-    """A logger that replaces the names of a scope with a `_Table` at the first probe in the scope."""
+    """A logger that replaces a scope's names with a `_Table` at the first probe in it."""
 
     def __init__(self, put: Callable[[str], None], *, everywhere: bool) -> None:
         self._put = put
@@ -84,7 +84,7 @@ class _Table(dict[str, Any]):
 
     def get(self, name: str, default: Any = None) -> Any:
         """Return the value of a name, or `default` if there is none, and log the use."""
-        return self[name] if name in self else default  # noqa: SIM401 - it is `get` itself
+        return self[name] if name in self else default  # noqa: SIM401 - this is the implementation of `get`
 
     def _log(self, action: str, name: str, value: Any) -> None:
         if isinstance(value, Scope):

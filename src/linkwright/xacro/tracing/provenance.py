@@ -40,7 +40,7 @@ class AttributeProvenance:
         written: the text in the source, such as ``${prefix}_link``.
         span: the location of this text.
         values: the names in the text, with their values.
-        calls: the calls and includes that contain the text, innermost first. They differ from those of the element if
+        calls: the calls and includes that contain the text, innermost first. They differ from the element's if
             ``<xacro:attribute>`` has set the attribute.
     """
 
@@ -57,7 +57,7 @@ class TextProvenance:
     """The provenance of a text inside an element.
 
     Attributes:
-        value: the text in the result, without surrounding blanks.
+        value: the text in the result, without surrounding whitespace.
         written: the text in the source.
         span: the location of the text in the source.
         values: the names in the text, with their values.
@@ -78,7 +78,7 @@ class Provenance:
         span: the location where the element is written.
         calls: the macro calls and includes that contain the element, innermost first.
         attributes: the provenance of each attribute, in document order.
-        texts: the provenance of each text directly in the element, except blank texts.
+        texts: the provenance of each text directly in the element, except texts of only whitespace.
         children: the provenance of the child elements.
     """
 
@@ -99,7 +99,7 @@ class Provenance:
 
 
 def provenance_of(inputs: Inputs, root: Element, element: Element) -> Provenance:
-    """Return the provenance of an element of an expansion; see `linkwright.xacro.Expansion.provenance`."""
+    """Return an element's provenance; see `linkwright.xacro.Expansion.provenance`."""
     return Tracer(inputs, root).trace(element)
 
 

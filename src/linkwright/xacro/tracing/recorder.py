@@ -95,7 +95,7 @@ class Recorder:
     # watching
 
     def _recording_directive(self, directive: Directive) -> Directive:
-        """Return a directive that also records argument declarations and uses of ``<xacro:attribute>``.
+        """Return a directive that records argument declarations and ``<xacro:attribute>`` uses.
 
         A use inside the directive is recorded for the parent element if the element has the attribute with that value.
         """
@@ -262,7 +262,7 @@ def _defining_scope(scope: Scope, name: str) -> Scope | None:
 
 
 def _parameter_value(parameter: Parameter, value: Any, call: Element, macro: Element) -> Value:
-    """Return the value of a parameter in a call, with the location of the argument or of the default."""
+    """Return a parameter's value in a call, and the location of the argument or default."""
     text = format_value(value.text if isinstance(value, Lazy) else literal(value))
     if parameter.name in call.attributes:
         span, written = call.attribute_span(parameter.name), written_attribute(call, parameter.name)

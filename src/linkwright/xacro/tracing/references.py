@@ -139,7 +139,7 @@ class _PathCollector(ast.NodeVisitor):
 
 
 def _root_name(node: ast.AST) -> str | None:
-    """Return the first name of an expression such as ``arm.joints[0]``, or None for other expressions."""
+    """Return the first name of an expression such as ``arm.joints[0]``, or None for others."""
     while True:
         if isinstance(node, ast.Name):
             return node.id

@@ -41,7 +41,7 @@ class Evaluation(NamedTuple):
 
 @dataclass(slots=True)
 class EvaluatedExpression:
-    """An expression, a substitution, or a whole attribute value or text with some of them, and its values.
+    """An expression, a substitution, or a text that contains some, and its values.
 
     Attributes:
         file: the name of the file.
@@ -118,7 +118,7 @@ class _RecordingSession(Session):
                 expression.evaluations.append(Evaluation(self._value_text(part, scope), self.frame, names))
 
     def _start(self, text: str) -> int | None:
-        """Return the offset in the file of a text that is being evaluated, or None if it is not found there."""
+        """Return the offset in the file of a text under evaluation, or None if it is not found."""
         place = self.current_node
         assert place is not None
         assert place.source is not None

@@ -35,7 +35,7 @@ class _Settings:
         path: the path of the device; None to use the number or name.
         deadzone: the fraction of an axis around its centre that counts as 0.
         repeat_rate: the rate of messages while nothing changes, in Hz; 0 for none.
-        coalesce: the time for which changes of axes are collected, in seconds.
+        coalesce: the time for which changes of axis positions are collected, in seconds.
         sticky: whether a button stays pressed until it is pressed again.
     """
 

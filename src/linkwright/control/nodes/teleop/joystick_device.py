@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 FOLDER = Path("/dev/input")
 MAX_VALUE = 32767
-"""The value of an axis at one end of its travel; the value at the other end is the negative."""
+"""The value of an axis at one end of its travel. The value at the other end is the negative."""
 
 _EVENT = struct.Struct("=IhBB")
 _BUTTON, _AXIS, _INITIAL = 0x01, 0x02, 0x80

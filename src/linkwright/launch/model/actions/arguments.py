@@ -198,7 +198,10 @@ class DeclareBooleanLaunchArgument(DeclareLaunchArgument):
 
     @classmethod
     def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
-        """Return the class and keyword arguments for the tag. The tag accepts no choices."""
+        """Return the class and keyword arguments for the tag.
+
+        The tag accepts no choices.
+        """
         _, kwargs = super().parse(entity, parser)
         if "choices" in kwargs:
             raise ValueError("Cannot specify choices for bool_arg")

@@ -275,7 +275,7 @@ class ExecuteLocal(Action):
         except KeyError as error:
             invalid_mode = str(error.args[0])
             modes = ", ".join(f"'{output_mode}'" for output_mode in OUTPUT_MODES)
-            hint = did_you_mean(invalid_mode, OUTPUT_MODES) or phrase("use one of {modes}", modes=modes)
+            hint = did_you_mean(invalid_mode, OUTPUT_MODES) or phrase("use one of {names}", names=modes)
             text = f'{invalid_mode} is not a valid standard output config i.e. "screen", "log" or "both"'
             message = phrase("output destination '{wrong}' does not exist", wrong=invalid_mode)
             raise error_at(self.place, "LAUNCH141", message, hint, ros_error=ValueError(text)) from error
@@ -293,9 +293,9 @@ class ExecuteLocal(Action):
             return perform_typed_substitution(context, value, bool)
         except ValueError as error:
             message = phrase(
-                "'{name}' is '{perform_substitutions}', which is neither true nor false",
+                "'{name}' is '{text}', which is neither true nor false",
                 name=name,
-                perform_substitutions=perform_substitutions(context, value),
+                text=perform_substitutions(context, value),
             )
             raise error_at(self.place, "LAUNCH141", message, ros_error=error) from error
 
@@ -421,7 +421,7 @@ class ExecuteProcess(ExecuteLocal):
 
     @property
     def name(self) -> Any:
-        """The name of the process in the log, such as ``talker-1``, or substitutions before evaluation."""
+        """The process's name in the log, such as ``talker-1``, or its unevaluated substitutions."""
         return self._description.final_name or self._description.name
 
     @property

@@ -30,7 +30,7 @@ class GroupAction(Action):
 
     Args:
         actions: the actions of the group.
-        scoped: whether the changes of launch configurations and environment variables end with the group.
+        scoped: whether the changes to launch configurations and environment variables end with the group.
         forwarding: whether a scoped group inherits the launch configurations and environment variables from outside.
         launch_configurations: maps the names of launch configurations to set in the group to their values.
     """

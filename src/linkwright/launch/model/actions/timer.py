@@ -130,5 +130,5 @@ def _normalize_period(period: Any, timer: TimerAction) -> Any:
     try:
         return float(period)
     except ValueError as error:
-        message = phrase("the period '{period}' of a timer is not a number", period=period)
+        message = phrase("the period '{text}' of a timer is not a number", text=period)
         raise error_at(timer.place, "LAUNCH127", message, ros_error=error) from error

@@ -118,7 +118,7 @@ class Parser(Protocol):
 
 
 def parse_texts(entity: Entity, parser: Parser, **attributes: str) -> dict[str, list[Substitution]]:
-    """Return keyword arguments for the given attributes, without those that the tag lacks.
+    """Return keyword arguments for the given attributes that the tag has.
 
     Args:
         entity: the tag.

@@ -79,7 +79,12 @@ class Command(DeclaredSubstitution, tag="command", shown="Command({command})"):
         except LinkwrightError as error:
             raise located(error, self.place) from error
         if warning:
-            self._warn(context, "LAUNCH128", warning, phrase("put quotes around it: Command(['xacro \"', path, '\"'])"))
+            self._warn(
+                context,
+                "LAUNCH128",
+                warning,
+                phrase("put quotes around a path with spaces: Command(['xacro \"', path, '\"'])"),
+            )
         return _expand(context, call)
 
     def _run(self, context: LaunchContext, text: str, words: list[str]) -> str:

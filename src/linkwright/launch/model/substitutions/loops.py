@@ -62,7 +62,7 @@ class ForEachVar(DeclaredSubstitution, tag="for-var", shown="{kind}(name={name},
         hint = did_you_mean(name, loop_names)
         if hint is None:
             hint = (
-                phrase("it has {names}", names=quoted_names(loop_names))
+                phrase("the loop has {names}", names=quoted_names(loop_names))
                 if loop_names
                 else phrase("use it inside a loop")
             )

@@ -87,7 +87,7 @@ def resolveProcesses(
 
 
 def name_of(action: ExecuteLocal) -> str:
-    """Return the name of an action's process in the log, or an empty text if it has none yet."""
+    """Return the name of an action's process in log lines, or an empty string without one."""
     return str((action.process_details or {}).get("name") or action.process_description.final_name or "")
 
 

@@ -217,7 +217,7 @@ class DataRepublisher:
 def get_rmw_output_filter(rmw_implementation: str, filter_type: str) -> list[str]:
     """Return the prefixes or patterns of lines that tests ignore.
 
-    The lines are those of an rmw implementation's output.
+    The lines are output of an rmw implementation.
 
     Args:
         rmw_implementation: the package of the rmw implementation.

@@ -220,7 +220,7 @@ def _sensor(node: Node, kind: str, name: str, topic: str) -> SensorSettings:
 
 
 _CONTROL_TIMEOUT = 0.2
-"""The documented default in seconds; the code of robot_localization has 0, which ignores every command."""
+"""The documented default in seconds. The code of robot_localization has 0, which ignores every command."""
 _THRESHOLDS = ("pose_rejection_threshold", "twist_rejection_threshold")
 
 

@@ -68,7 +68,7 @@ class NavsatTransformNode(SingleNode):
         self._zone: Zone | None = None
         self._plane: TangentPlane | None = None
         self._grid_in_map: Transform | None = None
-        """The pose of the earth's grid in the map; None until it is known."""
+        """The pose of the earth's grid in the map, or None until it is known."""
         self._first_fix: Vector3 | None = None
         self._first_pose: Transform | None = None
         self._heading: Quaternion | None = None

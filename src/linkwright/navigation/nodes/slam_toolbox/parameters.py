@@ -115,7 +115,7 @@ class _ParameterReader:
 
 
 def settings_of(node: Node) -> Settings:
-    """Read the parameters of a node, declaring those that are not declared yet.
+    """Read the parameters of a node, and declare the missing ones.
 
     Raises:
         LinkwrightError: NODE433, a value is invalid; GRAPH201, a value has the wrong type.

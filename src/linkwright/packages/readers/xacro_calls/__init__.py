@@ -1,1 +1,1 @@
-"""Readers for calls of xacro in launch files, tests and build files, without running these files."""
+"""Readers for calls of xacro in launch files, tests and build files that are not run."""

@@ -370,7 +370,7 @@ def _add_values(left: Value, right: Value) -> Value:
 
 
 def _interleave(parts: Sequence[str], texts: Sequence[Text]) -> Text:
-    """Return the text that consists of the parts of a pattern, with the given texts between them."""
+    """Return a text of the parts of a pattern, with the given texts between them."""
     result = literal(parts[0])
     for text, part in zip(texts, parts[1:], strict=True):
         result = (*result, *text, *literal(part))

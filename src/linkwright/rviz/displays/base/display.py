@@ -51,11 +51,11 @@ class DisplayHost(Protocol):
         """
 
     def fading_changed(self) -> None:
-        """Handle a change of a TF display's frame timeout or check box."""
+        """Handle a change to a TF display's frame timeout or check box."""
 
 
 Pose = NDArray[np.float64]
-"""The pose of a frame in the Fixed Frame: x, y, z in metres, qx, qy, qz, qw; shape (7,)."""
+"""The pose of a frame in the Fixed Frame: x, y, z in metres, qx, qy, qz, qw, shape (7,)."""
 
 _LEVEL_RANK: dict[StatusLevel, int] = {"ok": 0, "warn": 1, "error": 2}
 
@@ -84,7 +84,7 @@ class ViewerDisplay:
     SCHEMA: ClassVar[Schema] = ()
     SUPPORTED: ClassVar[bool] = True
     DRAWN_AS: ClassVar[str] = ""
-    """The RViz class that the page draws for this class; empty if the page can draw this class itself."""
+    """The RViz class that the page draws for this class, or empty if the page can draw this class itself."""
     TOPIC: ClassVar[Path] = ("Topic",)
     """The property that is set to the topic when the display is added for a topic."""
 
@@ -117,7 +117,7 @@ class ViewerDisplay:
 
     @property
     def enabled(self) -> bool:
-        """Whether the display is drawn: its check box and the check boxes of all enclosing groups are on."""
+        """Whether the check boxes of the display and of all enclosing groups are on."""
         return self.config.enabled
 
     def schema(self) -> Schema:
@@ -206,7 +206,7 @@ class ViewerDisplay:
         self.frames_changed()
 
     def arranged(self, displays: Sequence[ViewerDisplay]) -> None:
-        """Handle a change of the list of displays: one was added, removed, moved or renamed.
+        """Handle a change to the list of displays: one was added, removed, moved or renamed.
 
         Args:
             displays: all displays, each group before its contents.

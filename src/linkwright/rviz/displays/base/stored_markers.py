@@ -46,6 +46,6 @@ class StoredMarkersDisplay(TopicDisplay):
             )
 
     def show_markers(self) -> None:
-        """Send all changes of the store to the pages, with access to the files of the markers."""
+        """Send all changes to the store to the pages, with access to the files of the markers."""
         self.context.meshes.replace(self.id, self._meshes.folders)
         self.pages.send_data(self._store.key, self._store)

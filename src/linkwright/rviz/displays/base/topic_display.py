@@ -189,7 +189,7 @@ class TopicDisplay(DataDisplay, ABC):
         return self.MESSAGE, self.properties.text(TOPIC).strip(), qos_of(self.properties)
 
     def most_waiting(self) -> int:
-        """Return the maximum number of messages that are queued until their transforms are available."""
+        """Return the maximum number of messages that wait for their transforms."""
         return int(self.properties.number(TOPIC, FILTER_SIZE))
 
     # --- methods for subclasses --------------------------------------------------------------------------------
@@ -221,7 +221,7 @@ class TopicDisplay(DataDisplay, ABC):
         self._restart()
 
     def frames_changed(self) -> None:
-        """Show the last message in the new Fixed Frame, and the queued messages that can be placed now."""
+        """Show the last message in the new Fixed Frame, and queued messages with a known pose."""
         if self.fixed_frame_changed():
             self._waiting.clear()
             self.reset()
@@ -235,7 +235,10 @@ class TopicDisplay(DataDisplay, ABC):
             self._offer(self._paused_messages.popleft())
 
     def time_reset(self) -> None:
-        """Discard all messages and the content. The display stays empty until a new message arrives."""
+        """Discard all messages and the content.
+
+        The display stays empty until a new message arrives.
+        """
         self.last_message = None
         self._waiting.clear()
         self._paused_messages.clear()
@@ -334,7 +337,7 @@ class TopicDisplay(DataDisplay, ABC):
         self._report_count_later()
 
     def _may_be_silent(self) -> bool:
-        """Return whether the display is `OCCASIONAL` and the topic has a publisher of the right type."""
+        """Return whether the display is `OCCASIONAL` and has a publisher of the right type."""
         message, topic, _ = self.subscription()
         publishers = self.context.published.publishers(topic)
         return self.OCCASIONAL and self._incompatibility is None and any(kind == message for _, kind in publishers)
@@ -464,7 +467,10 @@ class TopicDisplay(DataDisplay, ABC):
             self._late_timer = None
 
     def _process(self, message: Any, pose: Pose | None) -> None:
-        """Show a message. An exception is logged, and does not prevent later messages."""
+        """Show a message.
+
+        An exception is logged, and does not prevent later messages.
+        """
         self.last_message = message
         try:
             self.process_message(message, pose)
@@ -496,7 +502,7 @@ class _ShownContent:
 
 
 class RecentDisplay(TopicDisplay):
-    """A display of the most recent messages, each at the pose of its frame at the message's time.
+    """A display of the most recent messages, each at its frame's pose at its time.
 
     A subclass sets `LENGTH` to the property with the number of messages, where 0 means all messages. Without
     `LENGTH` the display shows one message.

@@ -21,7 +21,7 @@ _DEFAULT_NAME = "world.sdf"
 _MAX_STEM_LENGTH = 56
 """The limit in characters, of which a file system may count four bytes each."""
 _MAX_UNDO_STEPS = 200
-"""The maximum number of undo steps; older steps are dropped."""
+"""The maximum number of undo steps. Older steps are dropped."""
 _PROGRAM_FOLDER = Path(__file__).parents[3]
 """The folder of the program's own files, which users cannot overwrite."""
 
@@ -197,7 +197,7 @@ class EditedWorld:
             write_whole_file(file, self._encoded)
         except OSError as error:
             return Diagnostic("RVIZ104", _write_error(file, error))
-        message = phrase("unsaved changes of the world '{path}' are stored in '{kept}'", path=self.path, kept=file)
+        message = phrase("unsaved changes to the world '{path}' are stored in '{kept}'", path=self.path, kept=file)
         return Diagnostic("RVIZ301", message, severity=Severity.WARNING)
 
     @property
@@ -208,7 +208,7 @@ class EditedWorld:
         """Return the absolute path of a file name that the user entered.
 
         Raises:
-            EditError: the name is not a valid name of a world file.
+            EditError: the name is not valid for a world file.
         """
         try:
             path = Path(os.path.normpath(self.path.absolute().parent / Path(name.strip()).expanduser()))

@@ -22,9 +22,9 @@ def _layout(size: int, **offsets: int) -> np.dtype[Any]:
 CLASSIC = _layout(16, x=0, y=4, z=8, intensity=12)
 """The layout of a point of ``gazebo_ros_ray_sensor``."""
 VELODYNE = _layout(22, x=0, y=4, z=8, intensity=12, ring=16, time=18)
-"""The layout of a point of velodyne_simulator, as in velodyne_pointcloud; all points of a revolution have time 0."""
+"""The layout of a point of velodyne_simulator, as in velodyne_pointcloud. All points of a revolution have time 0."""
 GZ = _layout(32, x=0, y=4, z=8, intensity=16, ring=24)
-"""The layout of a point of gz-sensors; the fields after x, y and z start at multiples of 8 bytes."""
+"""The layout of a point of gz-sensors. The fields after x, y and z start at multiples of 8 bytes."""
 _COLOURED = _layout(32, x=0, y=4, z=8, rgb=16)
 
 

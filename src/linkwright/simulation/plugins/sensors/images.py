@@ -29,7 +29,7 @@ DEFAULT_ENCODING = "bgr8"
 """The encoding of images whose format is not in `ENCODINGS`."""
 _GREY_WEIGHTS = np.array([0.299, 0.587, 0.114], np.float32)
 _SURPLUS_NUMBERS = 1 << 16
-"""The number of surplus random numbers, which are drawn once; the noise of each image starts at a random offset."""
+"""The number of surplus random numbers, which are drawn once. The noise of each image starts at a random offset."""
 
 
 class PixelNoise:
@@ -138,8 +138,8 @@ def fill_camera_info(
         message: the CameraInfo.
         optics: the projection of the camera.
         lens: the distortion of the lens; None for a camera without distortion.
-        center: the principal point to publish, in pixels; None for that of `optics`.
-        focal: the focal length to publish, in pixels; 0 for those of `optics`.
+        center: the principal point to publish, in pixels; None to use `optics`.
+        focal: the focal length to publish, in pixels; 0 to use `optics`.
         baseline: the distance from the left camera of a stereo pair to this one, in m.
     """
     lens = lens or Distortion()

@@ -1,1 +1,4 @@
-"""The code that imports PyTorch. Call `linkwright.vision.training.library.need_pytorch` before importing it."""
+"""The code that imports PyTorch.
+
+Call `linkwright.vision.training.library.need_pytorch` before importing it.
+"""

@@ -1,4 +1,4 @@
-"""The training loop: epochs, a moving average of the weights for evaluation, and checkpoints."""
+"""The training loop: epochs, a moving average of the weights, and checkpoints."""
 
 from __future__ import annotations
 

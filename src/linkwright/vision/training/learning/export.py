@@ -29,7 +29,10 @@ class _YoloOutput(nn.Module):
         self.shift = math.log((1 - threshold) / threshold)
 
     def forward(self, images: Tensor) -> Tensor:
-        """Return centre, width and height in pixels, then the scores, shape (batch, 4 + classes, cells)."""
+        """Return centre, width and height in pixels, and the scores.
+
+        The shape is (batch, 4 + classes, cells).
+        """
         boxes, logits = self.network(images)
         top_left, bottom_right = boxes[..., :2], boxes[..., 2:]
         return torch.cat(

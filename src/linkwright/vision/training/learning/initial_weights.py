@@ -51,7 +51,7 @@ def load_weights(network: Network, names: Sequence[str], path: Path, images: Ite
         (len(file_names) if layer in scores else len(layer.weight), *layer.weight.shape[1:]) for layer in convolutions
     ]
     if shapes != [tuple(kernel.shape) for kernel, _ in weights]:
-        raise _weights_error(path, phrase("it is not a network of `linkwright vision train`"))
+        raise _weights_error(path, phrase("`linkwright vision train` did not create it"))
     blocks = {block.convolution: block for block in network.modules() if isinstance(block, Convolution)}
     with torch.no_grad():
         for layer, (kernel, bias) in zip(convolutions, weights, strict=True):
@@ -89,7 +89,7 @@ def _read(path: Path) -> tuple[tuple[str, ...], list[tuple[Tensor, Tensor]]]:
         or not inputs
         or not all(len(input_names) == 2 and set(input_names) <= tensors.keys() for input_names in inputs)
     ):
-        raise _weights_error(path, phrase("it is not a network of `linkwright vision train`"))
+        raise _weights_error(path, phrase("`linkwright vision train` did not create it"))
     weights = [(torch.tensor(tensors[kernel]).float(), torch.tensor(tensors[bias]).float()) for kernel, bias in inputs]
     return names, weights
 
@@ -116,9 +116,10 @@ def _set_bias(layer: nn.Conv2d | nn.BatchNorm2d, bias: Tensor) -> None:
 
 
 def _restore_normalisation(network: Network, blocks: Sequence[Convolution], images: Iterable[Tensor]) -> None:
-    """Split scale and statistics off the kernels into the normalisations, without changing the results.
+    """Move scale and statistics from the kernels into the normalisations.
 
-    Then each output's kernel has norm 1, which the optimizer needs because all its steps have the same length.
+    The results stay the same. Then each output's kernel has norm 1, which the optimizer needs because all its steps
+    have the same length.
     """
     sums = {block.norm: torch.zeros(3, block.norm.num_features, dtype=torch.float64) for block in blocks}
 

@@ -105,7 +105,7 @@ def assign(boxes: Tensor, logits: Tensor, centres: Tensor, objects: Tensor) -> A
 
 
 def loss(boxes: Tensor, logits: Tensor, centres: Tensor, objects: Tensor) -> tuple[Tensor, Tensor]:
-    """Return the loss of a batch. The arguments are those of `assign`.
+    """Return the loss of a batch, given the arguments of `assign`.
 
     Returns:
         The total loss; and the box loss and the score loss, shape (2,), without gradients.
@@ -113,7 +113,7 @@ def loss(boxes: Tensor, logits: Tensor, centres: Tensor, objects: Tensor) -> tup
     targets = assign(boxes, logits, centres, objects)
     normalizer = targets.scores.sum().clamp(1.0)
     score_loss = functional.binary_cross_entropy_with_logits(logits, targets.scores, reduction="none")
-    # Empty cells with high scores weigh most; empty cells with low scores are right already and weigh almost nothing.
+    # Empty cells with high scores weigh most. Empty cells with low scores are already correct and weigh almost nothing.
     weights = torch.where(targets.scores > 0, targets.scores, 0.75 * logits.sigmoid().detach() ** 2)
     score_loss = (score_loss * weights * ~targets.is_ignored[..., None]).sum() / normalizer
     box_weights = targets.scores.sum(2)[targets.is_assigned]

@@ -1,4 +1,4 @@
-"""The network: a small anchor-free detector of plain convolutions that two CPU cores train in an hour.
+"""The network: a small anchor-free detector that two CPU cores train in an hour.
 
 A backbone of half-stages (as in CSPNet, Wang and others 2019) computes features for cells of 8, 16 and 32 pixels. A
 pyramid passes coarse features to the fine ones and back (PANet, Liu and others 2018). One head per scale predicts for
@@ -47,7 +47,10 @@ class Convolution(nn.Module):
         self.norm = nn.BatchNorm2d(outputs, eps=1e-3, momentum=0.03)
 
     def forward(self, features: Tensor) -> Tensor:
-        """Map features of shape (batch, inputs, height, width) to (batch, outputs, height / stride, width / stride)."""
+        """Apply the convolution, the normalisation and SiLU.
+
+        The shape (batch, inputs, height, width) becomes (batch, outputs, height / stride, width / stride).
+        """
         return functional.silu(self.norm(self.convolution(features)), inplace=True)
 
 
@@ -73,7 +76,7 @@ class HalfStage(nn.Module):
 
 
 class Pooling(nn.Module):
-    """Spatial pyramid pooling (SPPF): the concatenated results of zero to three chained poolings."""
+    """Spatial pyramid pooling (SPPF): the joined results of zero to three chained poolings."""
 
     def __init__(self, channels: int) -> None:
         super().__init__()
@@ -101,7 +104,10 @@ class Head(nn.Module):
         nn.init.constant_(self.box[-1].bias, 1.0)
 
     def forward(self, features: Tensor) -> Tensor:
-        """Return the log distances of the four sides, then the class logits, shape (batch, n, cells)."""
+        """Return the log distances of the four sides, and the class logits.
+
+        The shape is (batch, 4 + classes, cells).
+        """
         shared = self.shared(features)
         boxes, scores = self.box[0](shared), self.scores[0](shared)
         # bfloat16 has 8 significant bits, so the side distances would be off by up to 1 %.
@@ -163,7 +169,7 @@ def _upsample(features: Tensor) -> Tensor:
 
 @cache
 def cells(width: int, height: int, device: torch.device = _CPU) -> tuple[Tensor, Tensor]:
-    """Return the centres and strides of the cells of all scales, for an image of a size in pixels.
+    """Return the centres and strides of the cells of all scales, for an image size in pixels.
 
     Returns:
         The centres in pixels, shape (cells, 2), and the strides in pixels, shape (cells, 1).

@@ -18,10 +18,11 @@ _NEWTON_SCHULZ_STEPS = 5
 
 
 class Optimizer:
-    """An optimizer that updates convolution kernels with Muon (Jordan and others 2024), and the rest with AdamW.
+    """An optimizer that updates convolution kernels with Muon, and other weights with AdamW.
 
-    Muon makes each update of a kernel nearly orthogonal: all directions of its inputs and outputs change equally, even
-    those with small gradients. In the same number of steps, a network learns much more than with AdamW alone.
+    Muon (Jordan and others 2024) makes each update of a kernel nearly orthogonal: all directions of its inputs and
+    outputs change equally, even those with small gradients. In the same number of steps, a network learns much more
+    than with AdamW alone.
 
     Args:
         network: the network to train.
@@ -76,7 +77,7 @@ class Optimizer:
 
 
 def orthogonalize(gradient: Tensor) -> Tensor:
-    """Return a matrix near to a kernel, with all singular values about 1 (Newton-Schulz iteration).
+    """Return a matrix near to a kernel, with singular values of about 1 (Newton-Schulz).
 
     Args:
         gradient: shape (outputs, inputs, height, width); its rows are the outputs.

@@ -112,7 +112,7 @@ def gone_guid(sample: Data) -> bytes:
         parameters, _ = _list(sample.payload)
         key = parameters.get(v.PID_ENDPOINT_GUID) or parameters.get(v.PID_PARTICIPANT_GUID)
     if not key or len(key[0]) < 16:
-        raise MalformedError("the end of an unnamed entity")
+        raise MalformedError("a disposed entity has no GUID")
     return key[0][:16]
 
 
@@ -163,5 +163,5 @@ def _list(payload: bytes) -> tuple[Parameters, str]:
 def _required_value(parameters: Parameters, pid: int, size: int) -> bytes:
     values = parameters.get(pid)
     if not values or len(values[0]) < size:
-        raise MalformedError(f"nothing under {pid:#06x}")
+        raise MalformedError(f"parameter {pid:#06x} is missing or too short")
     return values[0]

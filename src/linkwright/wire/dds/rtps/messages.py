@@ -81,7 +81,7 @@ class Heartbeat:
 class Gap:
     """GAP: some samples are not for a reader, or are no longer available.
 
-    These are the samples from `start` to before `base`, and those in `other_numbers`.
+    These are the samples from `start` to before `base`, and the samples in `other_numbers`.
     """
 
     source: bytes
@@ -189,7 +189,7 @@ def _read_data(kind: int, flags: int, order: str, body: bytes, context: _Context
         first, _, fragment, size = struct.unpack_from(order + "IHHI", body, 20)
         has_data = True
         if not first or not fragment:
-            raise MalformedError("a fragment without a place")
+            raise MalformedError("a fragment without a sequence number or a fragment number")
     inline: Parameters = {}
     if flags & _INLINE:
         inline, offset = read_parameters(body, offset, order)
@@ -251,7 +251,10 @@ def fragment_count(payload: bytes) -> int:
 def data_fragment(
     reader: bytes, writer: bytes, number: int, payload: bytes, fragment_number: int, inline: bytes = b""
 ) -> bytes:
-    """Build DATA_FRAG with one fragment of a payload. Fragments are counted from 1."""
+    """Build DATA_FRAG with one fragment of a payload.
+
+    Fragments are counted from 1.
+    """
     head = _fragment_head(reader, writer, number, len(payload), fragment_number)
     fragment = payload[(fragment_number - 1) * FRAGMENT : fragment_number * FRAGMENT]
     return _submessage(_DATA_FRAG, _INLINE if inline else 0, head + inline + fragment)

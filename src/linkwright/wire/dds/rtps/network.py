@@ -129,7 +129,10 @@ class Network:
                 return packet, source
 
     def send(self, packets: Iterable[Packet]) -> None:
-        """Send messages. A packet that the system refuses is lost, and readers request it again."""
+        """Send messages.
+
+        A packet that the system refuses is lost, and readers request it again.
+        """
         burst = 0
         for packet, addresses in packets:
             burst += len(packet)

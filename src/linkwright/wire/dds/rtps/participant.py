@@ -51,7 +51,7 @@ from linkwright.wire.guarded_calls import guarded
 _LEASE_S = 10.0
 _ANNOUNCEMENT_INTERVAL_S = 3.0
 _SEARCH_INTERVALS_S = (0.0, 0.05, 0.1, 0.2, 0.4, 0.8, 1.6, 3.0)
-"""Seconds between the messages that search for a participant; the last interval is repeated."""
+"""Seconds between the messages that search for a participant. The last interval is repeated."""
 
 _MAX_EARLY_SAMPLES = 64
 """The maximum number of stored samples whose writers are not known yet."""

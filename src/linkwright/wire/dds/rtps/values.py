@@ -9,7 +9,7 @@ Address = tuple[str, int]
 """An IPv4 address and a port."""
 
 PREFIX = 12
-"""The number of bytes of a GUID that identify the participant; four more identify its entity."""
+"""The number of bytes of a GUID that identify the participant. Four more identify its entity."""
 
 UNKNOWN = bytes(4)
 PARTICIPANT = b"\x00\x00\x01\xc1"
@@ -99,7 +99,7 @@ def read_parameters(data: bytes, offset: int, order: str) -> tuple[Parameters, i
             break
         values.setdefault(pid, []).append(data[offset : offset + size])
         offset += size
-    raise MalformedError("a list of parameters without its end")
+    raise MalformedError("a parameter list without a sentinel")
 
 
 def text(value: str) -> bytes:
@@ -120,10 +120,10 @@ def read_text(value: bytes, order: str) -> str:
         MalformedError: the string is truncated.
     """
     if len(value) < 4:
-        raise MalformedError("a string without its length")
+        raise MalformedError("a string without a length")
     (size,) = struct.unpack_from(order + "I", value)
     if size > len(value) - 4:
-        raise MalformedError("a string that is cut short")
+        raise MalformedError("a truncated string")
     return value[4 : 4 + size].rstrip(b"\0").decode(errors="replace")
 
 
@@ -133,7 +133,10 @@ def locator(address: Address) -> bytes:
 
 
 def read_locators(values: list[bytes], order: str) -> list[Address]:
-    """Return the UDPv4 addresses among locators. Others, such as shared memory, are ignored."""
+    """Return the UDPv4 addresses among locators.
+
+    Others, such as shared memory, are ignored.
+    """
     addresses = []
     for value in values:
         if len(value) >= 24:
@@ -146,7 +149,7 @@ def read_locators(values: list[bytes], order: str) -> list[Address]:
 def related_identity(guid: bytes, number: int) -> bytes:
     """Return inline QoS that identifies the related sample by a GUID and a sequence number.
 
-    The GUID is that of the related sample's writer or reader. The inline QoS has the forms that all versions of Fast
+    The GUID belongs to the related sample's writer or reader. The inline QoS has the forms that all versions of Fast
     DDS understand.
     """
     value = guid + _IDENTITY.pack(number >> 32, number & 0xFFFF_FFFF)
@@ -164,5 +167,5 @@ def read_related_identity(inline: Parameters, order: str) -> tuple[bytes, int] |
 
 
 def is_reader(guid: bytes) -> bool:
-    """Return whether a GUID is that of a reader (9.3.1.2)."""
+    """Return whether a GUID belongs to a reader (9.3.1.2)."""
     return bool(guid[15] & 0x04)

@@ -1,4 +1,7 @@
-"""RTPS writers. They ensure that every reader receives every sample (DDSI-RTPS 2.5, 8.4.9)."""
+"""RTPS writers, which ensure that every reader receives every sample.
+
+Source: DDSI-RTPS 2.5, 8.4.9.
+"""
 
 from __future__ import annotations
 
@@ -78,7 +81,10 @@ class Writer:
         return self._readers.keys()
 
     def has_answered(self, reader: bytes) -> bool:
-        """Return whether a reader has answered. An answer shows that it has matched this writer."""
+        """Return whether a reader has answered.
+
+        An answer shows that it has matched this writer.
+        """
         reader_state = self._readers.get(reader)
         return reader_state is not None and reader_state.heard
 
@@ -96,7 +102,10 @@ class Writer:
         return self._history_packets(reader, reader_state)
 
     def unmatch(self, reader: bytes) -> None:
-        """Remove a reader. No more samples are written to it."""
+        """Remove a reader.
+
+        No more samples are written to it.
+        """
         self._readers.pop(reader, None)
         self._forget_acknowledged()
 

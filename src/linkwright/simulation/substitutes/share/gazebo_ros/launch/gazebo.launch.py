@@ -18,8 +18,8 @@ def generate_launch_description():
     folder = get_package_share_path("gazebo_ros") / "launch"
     return LaunchDescription(
         [
-            DeclareLaunchArgument("gui", default_value="true", description="Whether there is a window"),
-            DeclareLaunchArgument("server", default_value="true", description="Whether there is a server"),
+            DeclareLaunchArgument("gui", default_value="true", description="Whether to open a window"),
+            DeclareLaunchArgument("server", default_value="true", description="Whether to start a server"),
             IncludeLaunchDescription(
                 PythonLaunchDescriptionSource(str(folder / "gzserver.launch.py")),
                 condition=IfCondition(LaunchConfiguration("server")),

@@ -28,7 +28,7 @@ def generate_launch_description():
         [
             *(DeclareLaunchArgument(name, default_value="", description="Not used") for name in IGNORED),
             DeclareLaunchArgument(
-                "gui_required", default_value="false", description="Whether to shut down when the window ends"
+                "gui_required", default_value="false", description="Whether to shut down when the window closes"
             ),
             OpaqueFunction(function=start),
         ]

@@ -1,0 +1,172 @@
+"""Editor functions for ``setup.py``: programs, and the files that are installed."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+from linkwright.language.completion import Completion, ItemKind
+from linkwright.language.format import Document, Format, Symbol, SymbolKind, Target
+from linkwright.language.hover import Explanation
+from linkwright.language.links import FileReference
+from linkwright.language.offers import explain_file, offer_files
+from linkwright.language.python_text import Group, Item, Text, python_text
+from linkwright.packages.programs.source_programs import module_file
+from linkwright.packages.readers.entry_points import text_of
+
+_NAME = "setup.py"
+_ENTRY = re.compile(r"^\s*(?P<name>[^=\s]+)\s*=\s*(?P<module>[\w.]*)(?:\s*:\s*(?P<function>\w*))?")
+_FUNCTION = re.compile(r"^(?:async )?def ([A-Za-z]\w*)\s*\(", re.MULTILINE)
+_ARGUMENTS = {
+    "name": "the name of the package, as in package.xml",
+    "version": "the version, as in package.xml",
+    "packages": "the Python packages to install",
+    "data_files": "other files to install, by their folder",
+    "install_requires": "the Python packages that it needs",
+    "zip_safe": "whether it can be run from an archive",
+    "maintainer": "the name of the maintainer",
+    "maintainer_email": "the address of the maintainer",
+    "description": "the purpose of the package, as in package.xml",
+    "license": "the licence, as in package.xml",
+    "tests_require": "the Python packages that the tests need",
+    "entry_points": "the programs: console_scripts with NAME = MODULE:FUNCTION",
+}
+_WORD_BEFORE = re.compile(r"[^\W\d]\w*\Z")
+_MAX_MODULES = 300
+
+
+def _entry_at(document: Document, offset: int) -> tuple[Text, re.Match[str] | None] | None:
+    """Return the program declaration at an offset with its parts, or None."""
+    found = python_text(document.text).string_at(offset)
+    if found is None:
+        return None
+    text, item = found
+    outer = item.group.parent
+    first = outer.parts[0] if outer is not None and outer.parts else None
+    is_script = isinstance(first, Text) and first.value.endswith("_scripts") and item.group.opening in ("[", "(")
+    return (text, _ENTRY.match(text.value)) if is_script else None
+
+
+def _modules(folder: Path) -> Iterator[str]:
+    """Yield the modules of the Python packages in a folder."""
+    for package in sorted(folder.glob("*/__init__.py")):
+        for file in sorted(package.parent.rglob("*.py"))[:_MAX_MODULES]:
+            if file.name != "__init__.py":
+                yield ".".join(file.relative_to(folder).with_suffix("").parts)
+
+
+def _complete(document: Document, offset: int) -> Iterator[Completion]:
+    entry = _entry_at(document, offset)
+    folder = document.file.parent
+    if entry is not None:
+        yield from _program(entry[0], offset, folder)
+        return
+    found = python_text(document.text).string_at(offset)
+    if found is None:
+        yield from _arguments(document, offset)
+        return
+    text, item = found
+    if _is_installed(item):
+        yield from offer_files(folder, text.value[: offset - text.start], offset)
+    elif item.keyword == "name":
+        yield Completion(folder.name, ItemKind.PACKAGE, text.start)
+
+
+def _program(text: Text, offset: int, folder: Path) -> Iterator[Completion]:
+    typed = text.value[: offset - text.start]
+    name, equals, rest = typed.partition("=")
+    module, colon, function = rest.strip().partition(":")
+    if colon:
+        file = module_file(folder, module.strip())
+        names = _FUNCTION.findall(text_of(file)) if file is not None else []
+        for each in sorted(names, key=lambda each: each != "main"):
+            yield Completion(each, ItemKind.FUNCTION, offset - len(function.lstrip()), module)
+    elif equals:
+        modules = [*_modules(folder)]
+        for each in sorted(modules, key=lambda each: each.rpartition(".")[2] != name.strip()):
+            yield Completion(each, ItemKind.FILE, offset - len(module))
+    else:
+        for each in _modules(folder):
+            script = each.rpartition(".")[2]
+            yield Completion(f"{script} = {each}:main", ItemKind.FUNCTION, text.start)
+
+
+def _arguments(document: Document, offset: int) -> Iterator[Completion]:
+    """Yield the arguments of ``setup`` that are not given yet."""
+    call = python_text(document.text).call_at(offset)
+    typed = _WORD_BEFORE.search(document.text, document.text.rfind("\n", 0, offset) + 1, offset)
+    start = offset if typed is None else typed.start()
+    if call is None or call.function != "setup" or not document.text[:start].rstrip().endswith(("(", ",")):
+        return
+    given = {item.keyword for item in call.items}
+    for name, meaning in _ARGUMENTS.items():
+        if name not in given:
+            yield Completion(f"{name}=", ItemKind.ATTRIBUTE, start, "setup", meaning)
+
+
+def _is_installed(item: Item) -> bool:
+    """Return whether an item is a file in ``data_files``, in a list or a glob."""
+    around: Item | None = item
+    depth = 0
+    while around is not None and around.keyword != "data_files":
+        around, depth = around.group.parent, depth + 1
+    group: Group = item.group
+    return around is not None and (group.function == "glob" or (group.opening == "[" and depth > 1))
+
+
+def _explain(document: Document, offset: int) -> Explanation | None:
+    entry = _entry_at(document, offset)
+    target = next(iter(_define(document, offset)), None)
+    text, parts = entry or (None, None)
+    if text is not None and parts is not None:
+        module, function = parts["module"], parts["function"] or ""
+        place = "" if target is None else f"\n\n`{target.file}`"
+        return Explanation(f"**{parts['name']}**: `{module}:{function}`{place}", text.start, text.end)
+    found = python_text(document.text).string_at(offset)
+    if found is not None and target is not None:
+        return Explanation(explain_file(target.file), found[0].start, found[0].end)
+    return None
+
+
+def _define(document: Document, offset: int) -> Iterator[Target]:
+    entry = _entry_at(document, offset)
+    folder = document.file.parent
+    if entry is not None:
+        parts = entry[1]
+        file = module_file(folder, parts["module"]) if parts is not None else None
+        if parts is not None and file is not None:
+            names = _FUNCTION.finditer(text_of(file))
+            place = next((found.span(1) for found in names if found[1] == parts["function"]), (0, 0))
+            yield Target(file, *place)
+        return
+    found = python_text(document.text).string_at(offset)
+    if found is not None and _is_installed(found[1]):
+        path = _file(folder, found[0].value)
+        if path is not None:
+            yield Target(path)
+
+
+def _file(folder: Path, name: str) -> Path | None:
+    try:
+        return folder / name if name and "\0" not in name and (folder / name).is_file() else None
+    except OSError:
+        return None
+
+
+def _links(document: Document) -> Iterator[FileReference]:
+    for text, item in python_text(document.text).strings:
+        path = _file(document.file.parent, text.value) if _is_installed(item) else None
+        if path is not None:
+            yield FileReference(text.start, text.end, path)
+
+
+def _symbols(document: Document) -> Iterator[Symbol]:
+    for text, _ in python_text(document.text).strings:
+        _, parts = _entry_at(document, text.start) or (text, None)
+        if parts is not None:
+            yield Symbol(parts["name"], SymbolKind.FUNCTION, text.start, text.end, (), parts["module"])
+
+
+SETUP_FILES = Format(lambda file: file.name == _NAME, _complete, _explain, _define, _links, _symbols)
+"""``setup.py``."""

@@ -1,0 +1,205 @@
+"""The parameters and topics in the Python and C++ sources of the workspace."""
+
+from __future__ import annotations
+
+import re
+import time
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from functools import partial
+from pathlib import Path
+from typing import NamedTuple
+from weakref import WeakKeyDictionary
+
+from linkwright.language.format import Document, NotYetKnownError
+from linkwright.language.includes import real
+from linkwright.language.workspace import Workspace
+from linkwright.lint.targets import walk
+
+_SOURCES = (".py", ".cpp", ".hpp", ".cc", ".cxx", ".h")
+_MAX_FILES = 3000
+_MAX_TEXT = 300_000
+_SECONDS = 10.0
+"""How long the sources are used before they are searched and read again."""
+_DECLARATION = re.compile(
+    r"""declare_parameter\s{0,9}(?:<([\w:<> ]{1,80})>)?\s{0,9}\(\s{0,99}["']([\w.]+)["']"""
+    r"""\s{0,99}(?:,\s{0,99}([^,()\n]{1,200}))?"""
+)
+_ENDPOINT = re.compile(
+    r"""\b(?:create_(?P<kind>publisher|subscription|service|client)|advertise|subscribe|Action(?P<side>Server|Client))"""
+    r"""\s{0,9}(?:<(?P<type>[\w:<> ]{1,80})>)?\s{0,9}\(\s{0,99}(?:(?:self|this)\s{0,9},\s{0,99})?"""
+    r"""(?:(?P<message>[A-Za-z_][\w.]{0,80})\s{0,9},\s{0,99})?["'](?P<name>[\w~/]{1,120})["']"""
+)
+_TYPES = {
+    "int": "integer",
+    "int64_t": "integer",
+    "double": "double",
+    "float": "double",
+    "bool": "bool",
+    "std::string": "string",
+    "std::vector<std::string>": "string_array",
+    "std::vector<double>": "double_array",
+    "std::vector<int64_t>": "integer_array",
+    "std::vector<bool>": "bool_array",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class DeclaredParameter:
+    """A parameter that a source declares.
+
+    Attributes:
+        name: the name with dots.
+        type: the ROS 2 type, or empty if it is unknown.
+        default: the text of the default, or empty if it has none.
+        file: the source.
+        start: the offset of the name.
+    """
+
+    name: str
+    type: str
+    default: str
+    file: Path
+    start: int
+
+
+@dataclass(frozen=True, slots=True)
+class DeclaredTopic:
+    """A topic, service or action that a source creates.
+
+    Attributes:
+        name: the name in the source.
+        type: the type as written in the source, or empty.
+        role: the role of the node, such as ``publisher`` or ``action server``.
+        file: the source.
+        start: the offset of the name.
+    """
+
+    name: str
+    type: str
+    role: str
+    file: Path
+    start: int
+
+
+class _Source(NamedTuple):
+    """A source that declares something.
+
+    Attributes:
+        text: its text.
+        parameters: the parameters that it declares.
+        topics: the topics, services and actions that it creates.
+    """
+
+    text: str
+    parameters: tuple[DeclaredParameter, ...]
+    topics: tuple[DeclaredTopic, ...]
+
+
+@dataclass(slots=True)
+class _Sources:
+    found: dict[Path, _Source]
+    time: float
+    cache: dict[Path, tuple[object, _Source]]
+
+
+_sources: WeakKeyDictionary[Workspace, _Sources] = WeakKeyDictionary()
+
+
+def declared_parameters(document: Document, node: str) -> list[DeclaredParameter]:
+    """Return the parameters that the sources of a node declare.
+
+    The sources of a node contain its name as a string. If none does, all sources of the workspace are used.
+
+    Args:
+        document: the file of the request.
+        node: the name of the node.
+
+    Raises:
+        NotYetKnownError: the sources were never read, and the document does not wait.
+    """
+    of_node: list[DeclaredParameter] = []
+    others: list[DeclaredParameter] = []
+    for text, parameters, _ in _known(document).values():
+        (of_node if f'"{node}"' in text or f"'{node}'" in text else others).extend(parameters)
+    return of_node or others
+
+
+def declared_topics(document: Document, folder: Path) -> list[DeclaredTopic]:
+    """Return the topics, services and actions in the sources below a folder, or in one source.
+
+    Args:
+        document: the file of the request.
+        folder: the folder of a package, or a source.
+
+    Raises:
+        NotYetKnownError: the sources were never read, and the document does not wait.
+    """
+    return [topic for file, each in _known(document).items() if file.is_relative_to(folder) for topic in each.topics]
+
+
+def _known(document: Document) -> dict[Path, _Source]:
+    """Return the sources that declare something."""
+    sources = _sources.get(document.project)
+    if sources is not None and time.monotonic() - sources.time <= _SECONDS:
+        return sources.found
+    if document.waits:
+        sources = _sources[document.project] = _read(document.project, document.texts, sources)
+    elif sources is None:
+        raise NotYetKnownError
+    else:
+        document.refreshes.append(partial(_known, replace(document, waits=True)))
+    return sources.found
+
+
+def _read(project: Workspace, texts: Mapping[Path, str], before: _Sources | None) -> _Sources:
+    """Read the sources that have changed since they were read before."""
+    files = [real(file) for folder in project.index.packages for file in walk(folder, _SOURCES)[0]][:_MAX_FILES]
+    cache = {} if before is None else before.cache
+    found: dict[Path, _Source] = {}
+    for file in files:
+        try:
+            state: object = texts.get(file) or file.stat().st_mtime_ns
+        except OSError:
+            continue
+        entry = cache.get(file)
+        if entry is None or entry[0] != state:
+            entry = cache[file] = state, _source(project.text(file, texts) or "", file)
+        if entry[1].text:
+            found[file] = entry[1]
+    return _Sources(found, time.monotonic(), cache)
+
+
+def _source(text: str, file: Path) -> _Source:
+    """Return the declarations in a source, or an empty source if there are none."""
+    if len(text) > _MAX_TEXT:
+        return _Source("", (), ())
+    source = _Source(text, tuple(_declarations(text, file)), tuple(_topics(text, file)))
+    return source if source.parameters or source.topics else _Source("", (), ())
+
+
+def _topics(text: str, file: Path) -> Iterator[DeclaredTopic]:
+    for match in _ENDPOINT.finditer(text):
+        role = match["kind"] or (f"action {match['side'].lower()}" if match["side"] else "")
+        kind = (match["type"] or match["message"] or "").strip()
+        yield DeclaredTopic(match["name"], kind.replace("::", "/"), role or "topic", file, match.start("name"))
+
+
+def _declarations(text: str, file: Path) -> Iterator[DeclaredParameter]:
+    for match in _DECLARATION.finditer(text):
+        default = (match[3] or "").strip()
+        yield DeclaredParameter(match[2], _type_of(match[1] or "", default), default, file, match.start(2))
+
+
+def _type_of(written: str, default: str) -> str:
+    """Derive the type of a parameter from its C++ type, or from the text of its default."""
+    cpp_type = _TYPES.get(written.replace(" ", ""))
+    if cpp_type is not None:
+        return cpp_type
+    if default.lower() in ("true", "false"):
+        return "bool"
+    if default[:1] in ("'", '"'):
+        return "string"
+    if re.fullmatch(r"-?\d+", default):
+        return "integer"
+    return "double" if re.fullmatch(r"-?[\d.]+(e-?\d+)?f?", default) else ""

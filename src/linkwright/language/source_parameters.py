@@ -1,0 +1,26 @@
+"""The parameters that the sources of a node declare, as parameters of the catalogue."""
+
+from __future__ import annotations
+
+from linkwright.language.format import Document
+from linkwright.language.node_topics import NodeProgram
+from linkwright.language.parameter_catalogue import ParameterInfo
+from linkwright.language.source_declarations import declared_parameters
+
+
+def parameters_in_sources(document: Document, program: NodeProgram) -> tuple[ParameterInfo, ...]:
+    """Return the parameters that the sources of a program declare, if the program is known.
+
+    Args:
+        document: the launch file.
+        program: the program.
+
+    Raises:
+        NotYetKnownError: the sources of the workspace were never read, and the document does not wait.
+    """
+    found: dict[str, ParameterInfo] = {}
+    for declared in declared_parameters(document, program.executable) if program.executable else ():
+        default = declared.default.strip("\"'") or None
+        info = ParameterInfo(declared.name, declared.type, default, f"`{declared.file.name}`")
+        found.setdefault(declared.name, info)
+    return tuple(found.values())

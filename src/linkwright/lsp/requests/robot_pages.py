@@ -1,0 +1,63 @@
+"""The command that shows a robot in a page, which follows the texts and the cursor of the editor."""
+
+from __future__ import annotations
+
+from lsprotocol import types
+from pygls.exceptions import JsonRpcException
+
+from linkwright.diagnostics import phrase
+from linkwright.diagnostics.translation import localized
+from linkwright.language.includes import real
+from linkwright.lint.targets import DESCRIPTIONS
+from linkwright.lsp.server import LinkwrightServer, path_of
+
+SHOW_ROBOT = "linkwright.showRobot"
+
+
+async def show_robot(server: LinkwrightServer, uri: str, *, opens: bool) -> str:
+    """Start the page of the description that a file belongs to, and return its address.
+
+    Args:
+        server: the server.
+        uri: the URI of a description, or of a file that one includes.
+        opens: whether to open the page in the user's browser.
+
+    Raises:
+        JsonRpcException: RequestFailed, the file is not a description, or its page cannot be served.
+    """
+    path, project, texts = path_of(uri), server.project, server.texts()
+    if path is None or project is None or not path.name.endswith(DESCRIPTIONS):
+        raise _failed(localized(phrase("only the robots of URDF, xacro and SDF files can be shown")))
+    await server.when_indexed()
+    entry = (await server.in_thread(lambda: project.index.entries(real(path), texts)))[0]
+    try:
+        address = await server.robot_views.address(entry, texts)
+    except OSError as error:
+        raise _failed(str(error)) from None
+    if address is None:
+        raise _failed(
+            localized(phrase("the page of '{file}' has ended; run linkwright view to see why", file=entry.name))
+        )
+    if opens:
+        await _open(server, address)
+    return address
+
+
+async def _open(server: LinkwrightServer, address: str) -> None:
+    window = server.client_capabilities.window
+    shows = window is not None and window.show_document is not None and window.show_document.support
+    shown = shows and await server.window_show_document_async(types.ShowDocumentParams(address, external=True))
+    if not shown or not shown.success:
+        server.window_show_message(types.ShowMessageParams(types.MessageType.Info, address))
+
+
+def _failed(message: str) -> JsonRpcException:
+    return JsonRpcException(message, code=int(types.LSPErrorCodes.RequestFailed))
+
+
+def add_requests(server: LinkwrightServer) -> None:
+    """Add the requests of this module to a server."""
+
+    @server.command(SHOW_ROBOT)
+    async def show(server: LinkwrightServer, uri: str, opens: bool = True) -> str:
+        return await show_robot(server, uri, opens=opens)

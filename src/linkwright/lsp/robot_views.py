@@ -1,0 +1,139 @@
+"""The pages that show robots beside the text: a process of ``linkwright view`` for each description."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import os
+import re
+import sys
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+from linkwright.lint.targets import DESCRIPTIONS
+
+_ADDRESS = re.compile(rb"https?://\S+")
+_VALUE_FILES = (".yaml", ".yml")
+"""Endings of files that descriptions load."""
+
+
+class RobotView:
+    """The page of a description, which follows the texts and the cursor of the editor.
+
+    Args:
+        opened: called with the file, line and column, both from 1, of each element that the user selects in the page.
+    """
+
+    def __init__(self, opened: Callable[[Path, int, int], object]) -> None:
+        self._opened = opened
+        self._process: asyncio.subprocess.Process | None = None
+        self._reading: asyncio.Task[None] | None = None
+        self._address: asyncio.Future[str | None] = asyncio.get_running_loop().create_future()
+
+    async def start(self, file: Path) -> str | None:
+        """Start the process, and return the address of the page; None if the process has ended.
+
+        Raises:
+            OSError: the process cannot be started.
+        """
+        self._process = await asyncio.create_subprocess_exec(
+            *(sys.executable, "-m", "linkwright", "view", str(file), "--no-open", "--editor"),
+            stdin=asyncio.subprocess.PIPE,
+            stdout=asyncio.subprocess.PIPE,
+            stderr=asyncio.subprocess.DEVNULL,
+            env={**os.environ, "PYTHONSAFEPATH": "1"},  # a file queue.py of the workspace is not to be imported
+        )
+        self._reading = asyncio.get_running_loop().create_task(self._read(self._process))
+        return await self.address()
+
+    async def address(self) -> str | None:
+        """Return the address of the page, once it is served; None if the process has ended."""
+        return await asyncio.shield(self._address)
+
+    @property
+    def is_running(self) -> bool:
+        """Whether the process runs."""
+        return self._process is not None and self._process.returncode is None
+
+    def send(self, message: Mapping[str, Any]) -> None:
+        """Send a message, see `linkwright.hosting.text_editor`."""
+        if self._process is not None and self._process.stdin is not None and self.is_running:
+            with suppress(OSError, RuntimeError):
+                self._process.stdin.write(json.dumps(message).encode() + b"\n")
+
+    def close(self) -> None:
+        """End the process."""
+        if self._process is not None and self.is_running:
+            with suppress(ProcessLookupError):
+                self._process.terminate()
+
+    async def _read(self, process: asyncio.subprocess.Process) -> None:
+        assert process.stdout is not None, "it is a pipe"
+        with suppress(ValueError):  # a line that is longer than any of ours
+            async for line in process.stdout:
+                if line.startswith(b"{"):
+                    self._receive(line)
+                elif not self._address.done() and (found := _ADDRESS.search(line)):
+                    self._address.set_result(found[0].decode())
+        if not self._address.done():
+            self._address.set_result(None)
+
+    def _receive(self, line: bytes) -> None:
+        with suppress(ValueError, KeyError, TypeError):
+            place = json.loads(line)["open"]
+            self._opened(Path(place["file"]), int(place["line"]), int(place["column"]))
+
+
+class RobotViews:
+    """The running pages, by description.
+
+    Args:
+        opened: called with the file, line and column of each element that the user selects in a page.
+    """
+
+    def __init__(self, opened: Callable[[Path, int, int], object]) -> None:
+        self._opened = opened
+        self._views: dict[Path, RobotView] = {}
+
+    async def address(self, file: Path, texts: Mapping[Path, str]) -> str | None:
+        """Return the address of the page of a description; None if the page cannot be shown.
+
+        Args:
+            file: the description. Its page is started unless it runs.
+            texts: the open texts.
+
+        Raises:
+            OSError: the process cannot be started.
+        """
+        known = self._views.get(file)
+        if known is not None and known.is_running:
+            return await known.address()
+        view = self._views[file] = RobotView(self._opened)
+        address = await view.start(file)
+        view.send(_texts(texts))
+        return address
+
+    def texts_changed(self, texts: Callable[[], Mapping[Path, str]]) -> None:
+        """Show the open texts, which a function returns."""
+        if self._views:
+            message = _texts(texts())
+            for view in self._views.values():
+                view.send(message)
+
+    def cursor_moved(self, file: Path, line: int) -> None:
+        """Select the element at a line, from 1."""
+        for view in self._views.values():
+            view.send({"cursor": {"file": str(file), "line": line}})
+
+    def close(self) -> None:
+        """End all pages."""
+        for view in self._views.values():
+            view.close()
+
+
+def _texts(texts: Mapping[Path, str]) -> dict[str, Any]:
+    return {
+        "texts": {str(file): text for file, text in texts.items() if file.name.endswith((*DESCRIPTIONS, *_VALUE_FILES))}
+    }

@@ -1,0 +1,95 @@
+"""The lines for editors name the files of the language server, all of them, and start it."""
+
+from __future__ import annotations
+
+import fnmatch
+import json
+import re
+import sys
+from pathlib import Path
+
+import pytest
+
+from linkwright.language.files import PATTERNS
+from linkwright.language.formats import FORMATS
+from linkwright.lint.targets import XML_FILES
+from tests.docs.pages import DOCS, blocks
+
+SHOWN = {block.title: block.text for block in blocks(DOCS / "howto-editor.md") if block.title}
+ALL = {pattern for patterns in PATTERNS.values() for pattern in patterns}
+EXTENSION = DOCS.parent / "editors" / "vscode"
+
+
+def example(pattern: str) -> str:
+    """Return a path that a pattern covers."""
+    return pattern.replace("*", "a")
+
+
+def globs(text: str) -> set[str]:
+    """Return the patterns in quotes."""
+    return set(re.findall(r'"([^"\s]*(?:\*[^"\s]*|package\.xml|model\.config|setup\.py|CMakeLists\.txt))"', text))
+
+
+@pytest.mark.parametrize("title", ["init.lua", ".vimrc", "init.el", "settings.json", "linkwright.json"])
+def test_the_lines_start_the_server(title):
+    text = SHOWN[title]
+    assert re.search(r'"linkwright", "lsp"|"linkwright" "lsp"|\'command\': \'%e lsp\'', text)
+
+
+def test_neovim_attaches_to_all_files():
+    patterns = SHOWN["init.lua"].split("pattern = {", 1)[1].split("}", 1)[0]
+    assert globs(patterns) == ALL
+
+
+def test_vim_gives_each_kind_of_file_to_the_server():
+    lines = re.findall(r"BufNewFile (\S+) set filetype=(\S+)", SHOWN[".vimrc"])
+    assert {kind: tuple(patterns.split(",")) for patterns, kind in lines} == {
+        {"interface": "ros"}.get(kind, f"{kind}.ros"): patterns for kind, patterns in PATTERNS.items()
+    }
+    assert "Define('ros'" in SHOWN[".vimrc"]
+
+
+def test_emacs_opens_what_is_neither_python_nor_cmake():
+    text = SHOWN["init.el"]
+    expressions = [
+        re.compile(
+            written.replace("\\\\'", r"\Z")
+            .replace("\\\\", "\\")
+            .replace(r"\(", "(")
+            .replace(r"\)", ")")
+            .replace(r"\|", "|")
+        )
+        for written in re.findall(r'\("((?:[^"\\]|\\.)*)" \. ros-', text)
+    ]
+    for kind in ("xml", "yaml", "interface"):
+        for pattern in PATTERNS[kind]:
+            assert any(each.search(example(pattern)) for each in expressions), pattern
+
+
+def test_helix_names_the_files_of_its_own_languages():
+    assert globs(SHOWN["languages.toml"]) == {*PATTERNS["xml"], *PATTERNS["interface"], "*.rviz"}
+    if sys.version_info >= (3, 11):
+        import tomllib
+
+        assert tomllib.loads(SHOWN["languages.toml"])["language-server"]["linkwright"]["args"] == ["lsp"]
+
+
+@pytest.mark.parametrize("title", ["settings.json", "linkwright.json"])
+def test_settings_in_json_can_be_read(title):
+    assert json.loads(SHOWN[title])
+
+
+def test_the_extension_sends_all_files():
+    source = (EXTENSION / "src" / "server" / "documents.ts").read_text(encoding="utf-8")
+    lists = re.search(r"DESCRIPTIONS =([^;]*);.*?OF_PACKAGES =([^;]*);", source, re.DOTALL)
+    assert lists is not None
+    named = {name for written in lists.groups() for name in re.sub(r'[*]{2}/|["+\s{}]', "", written).split(",")}
+    assert named == {pattern.removeprefix("*/") for pattern in ALL}
+
+
+def test_the_patterns_are_those_of_the_formats():
+    for ending in XML_FILES:
+        assert any(fnmatch.fnmatch(f"a{ending}", pattern) or ending == pattern for pattern in PATTERNS["xml"]), ending
+    for pattern in (*PATTERNS["yaml"], *PATTERNS["interface"], "package.xml", "*.srdf", "*launch.py", "*/launch/*.py"):
+        assert any(known.covers(Path(example(pattern))) for known in FORMATS) or pattern == "*launch.py", pattern
+    assert any(known.covers(Path("a.launch.py")) for known in FORMATS)

@@ -1,0 +1,83 @@
+"""``CMakeLists.txt`` and ``setup.py``: completion, hover and definition."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.language.formats import Place, make_packages
+
+
+@pytest.fixture
+def cmake(tmp_path: Path):
+    folder = make_packages(tmp_path)
+    manifest = folder / "package.xml"
+    manifest.write_text(manifest.read_text().replace("<exec_depend>", "<depend>rclcpp</depend><exec_depend>"))
+    (folder / "msg").mkdir()
+    (folder / "msg/Glow.msg").write_text("bool on\n")
+
+    def place(text: str) -> Place:
+        return Place(folder / "CMakeLists.txt", text, folder.parent)
+
+    return place
+
+
+@pytest.fixture
+def setup(tmp_path: Path):
+    folder = make_packages(tmp_path).parent / "lamp_nodes"
+    (folder / "launch").mkdir()
+    (folder / "launch/lamp.launch.py").write_text("")
+    return lambda text: Place(folder / "setup.py", f"setup({text})", folder.parent)
+
+
+def test_commands_are_offered_at_the_start_of_a_line(cmake):
+    assert cmake("find_p|").labels() == ["find_package"]
+    assert cmake("set(a b)\n  ament_p|").labels() == ["ament_python_install_package", "ament_package"]
+    assert "finds a package" in cmake("find_pa|ckage(a)").hover()
+
+
+def test_packages_of_the_manifest_come_first_and_found_ones_are_left_out(cmake):
+    assert cmake("find_package(|)").labels()[0] == "rclcpp"
+    assert "rclcpp" not in cmake("find_package(rclcpp REQUIRED)\nfind_package(r|)").labels()
+    assert cmake("find_package(rclcpp REQUIRED)\nament_target_dependencies(glow |)").labels()[0] == "rclcpp"
+    assert "Starts a lamp." in cmake("find_package(lamp_br|ingup)").hover()
+    assert cmake("find_package(lamp_br|ingup)").targets() == ["package.xml:"]
+
+
+def test_paths_and_destinations_of_install(cmake):
+    assert cmake("install(DIRECTORY la|)").labels() == ["launch"]
+    assert cmake("install(\n  DIRECTORY launch # the files\n  DESTINATION sh|)").labels() == ["share/${PROJECT_NAME}"]
+    assert "parts.launch.py" in cmake("install(FILES launch/|)").labels()
+    assert cmake("install(FILES launch/parts.la|unch.py)").targets() == ["parts.launch.py:"]
+    assert cmake("install(FILES launch/parts.launch.py|)").links() == ["parts.launch.py"]
+
+
+def test_targets_and_interfaces(cmake):
+    assert cmake("add_executable(glow a.cpp)\ninstall(TARGETS gl|)").labels() == ["glow"]
+    assert cmake("add_executable(glow a.cpp)\ntarget_link_libraries(gl|ow)").targets() == ["CMakeLists.txt:glow"]
+    assert cmake('rosidl_generate_interfaces(${PROJECT_NAME} "m|")').labels() == ["msg/Glow.msg"]
+
+
+def test_programs_of_a_setup_file(setup):
+    script = 'entry_points={{"console_scripts": ["{}"]}}'
+    assert setup(script.format("bl|")).labels() == ["blink = lamp_nodes.blink:main"]
+    assert setup(script.format("blink = lamp_nodes.b|")).labels() == ["lamp_nodes.blink"]
+    assert setup(script.format("blink = lamp_nodes.blink:|")).labels() == ["main"]
+    assert setup(script.format("blink = lamp_nodes.bl|ink:main")).targets() == ["blink.py:main"]
+    assert "`lamp_nodes.blink:main`" in setup(script.format("blink = lamp_nodes.bl|ink:main")).hover()
+
+
+def test_files_and_arguments_of_a_setup_file(setup):
+    assert setup('data_files=[("share/lamp_nodes", ["launch/|"])]').labels() == ["lamp.launch.py"]
+    assert setup('data_files=[("share/lamp_nodes", ["launch/lamp.la|unch.py"])]').targets() == ["lamp.launch.py:"]
+    assert setup('name="a", entry|').labels() == ["entry_points="]
+
+
+@pytest.mark.parametrize("text", ["(|", "install(|", ')")|(', "find_package(\0|", "#(|", "add_library(\n\n|"])
+def test_any_text_of_a_build_file_is_answered(cmake, setup, text):
+    for place in (cmake(text), setup(text)):
+        place.items()
+        place.hover()
+        place.targets()
+        place.links()

@@ -1,0 +1,84 @@
+"""The page of a robot beside the text: it follows the unsaved texts and the cursor, and leads to the source."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+from collections.abc import AsyncIterator
+
+import pytest
+import pytest_asyncio
+from lsprotocol import types
+from pygls.exceptions import JsonRpcException
+
+from tests.lsp.conftest import MAIN, Editor, connected
+from tests.waiting import SECONDS
+
+FILE, PARTS_FILE = "urdf/arm.urdf.xacro", "urdf/parts.xacro"
+SHOWING = types.ClientCapabilities(
+    window=types.WindowClientCapabilities(show_document=types.ShowDocumentClientCapabilities(support=True))
+)
+
+
+@pytest_asyncio.fixture
+async def showing_editor(package, tmp_path, monkeypatch) -> AsyncIterator[Editor]:
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
+    monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path / "log"))
+    async with connected(package, SHOWING) as editor:
+        yield editor
+
+
+async def address(editor: Editor, name: str, *, opens: bool = False) -> str:
+    arguments = [editor.uri(name), opens]
+    asked = types.ExecuteCommandParams("linkwright.showRobot", arguments=arguments)
+    return await editor.client.workspace_execute_command_async(asked)
+
+
+async def message(socket, kind: str, **wanted) -> dict:
+    """Return the next message of a kind from a page's socket, with some content."""
+    async with asyncio.timeout(SECONDS):
+        async for received in socket:
+            found = json.loads(received.data) if isinstance(received.data, str) else {}
+            if found.get("type") == kind and all(found.get(key) == value for key, value in wanted.items()):
+                return found
+    raise AssertionError(f"the page was closed without '{kind}'")
+
+
+async def test_only_robots_are_shown(showing_editor):
+    with pytest.raises(JsonRpcException, match="only the robots of URDF"):
+        await address(showing_editor, "package.xml")
+
+
+@pytest.mark.slow
+async def test_the_page_follows_the_editor_and_leads_to_its_lines(showing_editor):
+    import aiohttp
+
+    editor = showing_editor
+    shown: asyncio.Queue[types.ShowDocumentParams] = asyncio.Queue()
+
+    @editor.client.feature(types.WINDOW_SHOW_DOCUMENT)
+    def _(asked: types.ShowDocumentParams) -> types.ShowDocumentResult:
+        shown.put_nowait(asked)
+        return types.ShowDocumentResult(success=True)
+
+    editor.open(FILE)
+    url = await address(editor, PARTS_FILE, opens=True)
+    assert (await shown.get()).uri == url
+    assert await address(editor, FILE) == url, "a file shows the description that includes it"
+    async with aiohttp.ClientSession() as session, session.ws_connect(url.replace("/?", "/ws?")) as socket:
+        scene = await message(socket, "robot_scene")
+        assert [link["name"] for link in scene["links"]] == ["base", "upper"]
+        await message(socket, "editor_attached")
+        editor.change(FILE, MAIN.replace("upper", "lower"))  # not saved
+        scene = await message(socket, "robot_scene")
+        assert [link["name"] for link in scene["links"]] == ["base", "lower"]
+
+        highlight = types.DocumentHighlightParams(editor.document(FILE), types.Position(2, 10))
+        await editor.client.text_document_document_highlight_async(highlight)
+        assert (await message(socket, "show_element"))["name"] == "base"
+
+        display = scene["display"]
+        await socket.send_json({"type": "element_selected", "display": display, "kind": "joint", "name": "lower_joint"})
+        async with asyncio.timeout(SECONDS):
+            asked = await shown.get()
+        assert (asked.uri, asked.selection.start.line) == (editor.uri(PARTS_FILE), 3)
