@@ -29,7 +29,8 @@ def test_a_dataset_is_made_and_counted(words, tmp_path, capsys):
     assert "Classes: ball, crate, drums" in printed.err
     assert len(list((tmp_path / "set/images").rglob("*.png"))) == 3
     assert not (tmp_path / "set/annotations").exists()
-    assert json.loads((tmp_path / "set/dataset.json").read_text())["made"][0]["options"]["fixed_properties"] == ["colours", "lens"]
+    (run,) = json.loads((tmp_path / "set/dataset.json").read_text())["made"]
+    assert run["options"]["fixed_properties"] == ["colours", "lens"]
 
 
 def test_classes_that_nothing_is_of_are_told(words, tmp_path, capsys):

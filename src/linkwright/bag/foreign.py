@@ -87,18 +87,18 @@ def readable_schema(content: bytes) -> bytes:
     return content[:_ID_SIZE] + schema_patch(0, content).get(_ID_SIZE, content[_ID_SIZE:])
 
 
-def _read_strings(content: bytes, place: int, count: int) -> list[bytes] | None:
+def _read_strings(content: bytes, offset: int, count: int) -> list[bytes] | None:
     """Return `count` consecutive length-prefixed strings, or None if the content is truncated."""
     strings = []
     for _ in range(count):
-        if place + _LENGTH.size > len(content):
+        if offset + _LENGTH.size > len(content):
             return None
-        (length,) = _LENGTH.unpack_from(content, place)
-        place += _LENGTH.size
-        if place + length > len(content):
+        (length,) = _LENGTH.unpack_from(content, offset)
+        offset += _LENGTH.size
+        if offset + length > len(content):
             return None
-        strings.append(content[place : place + length])
-        place += length
+        strings.append(content[offset : offset + length])
+        offset += length
     return strings
 
 

@@ -75,9 +75,9 @@ def report_self_wait(future: WaitableFuture) -> None:
     _reported.add((callback, location))
     client.node.logger.error(
         f"callback '{callback.co_name}' ({callback.co_filename}:{callback.co_firstlineno}) waits at {location} for the "
-        f"{client.description}, which is in the same mutually exclusive callback group: on a robot it waits forever. Give "
-        "the client a callback group of its own and use a MultiThreadedExecutor, or continue in a done callback of "
-        "call_async()"
+        f"{client.description}, which is in the same mutually exclusive callback group: on a robot it waits forever. "
+        "Give the client a callback group of its own and use a MultiThreadedExecutor, or continue in a done "
+        "callback of call_async()"
     )
 
 
