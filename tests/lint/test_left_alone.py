@@ -155,7 +155,7 @@ def test_a_parameter_that_other_macros_take_too(codes_of, more, codes):
 
 @pytest.mark.parametrize(
     ("unused", "hint"),
-    [("image_px", "use it with ${...}, or remove it"), ("imge_pz", "did you mean 'image_pz', which is used?")],
+    [("image_px", "use it with ${...}, or remove it"), ("imge_pz", "rename it to 'image_pz', which is used")],
 )
 def test_a_siblings_name_is_not_proposed_for_an_unused_property(tmp_path, unused, hint):
     properties = "".join(f'<xacro:property name="{name}" value="1"/>' for name in (unused, "image_pz"))

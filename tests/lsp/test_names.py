@@ -68,7 +68,7 @@ async def test_a_hover_explains_elements_attributes_and_names(editor):
     assert "**macro bar**" in await look(editor, "<xacro:ba", hover)
     assert "`name length`" in await look(editor, "<xacro:ba", hover)
     assert "**property reach** = `0.2`" in await look(editor, "* rea", hover)
-    assert await look(editor, "<xacro:bar na", hover) == "**parameter name**, macro bar, parts.xacro"
+    assert await look(editor, "<xacro:bar na", hover) == "**name**, xacro:bar, parts.xacro"
     assert "name" in await look(editor, "<link na", hover)
     assert await look(editor, "\n", hover) == ""
 

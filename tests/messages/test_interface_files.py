@@ -355,7 +355,7 @@ class TestIdl:
         ("text", "code", "message"),
         [
             ("union U switch (long) {};", "MSG120", "'union' is not supported in messages"),
-            ("enum E { A };", "MSG120", "'enum' cannot be used"),
+            ("enum E { A };", "MSG120", "'enum' is not supported"),
             ("module a { struct F { char c; }; };", "MSG120", "'char' is not supported in messages"),
             ("module a { struct F { long double c; }; };", "MSG120", "'long double' is not supported"),
             ("module a { struct F { sequence<sequence<long>> c; }; };", "MSG120", "sequences of sequences"),

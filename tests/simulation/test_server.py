@@ -116,7 +116,7 @@ async def test_models_come_and_go_by_services(tmp_path):
         (URDF, "a model 'one' already exists"),
         ("<robot", "<the description>:1:1"),
         ("<html/>", "the root element is <html>"),
-        ('<sdf version="1.7"><world name="w"/></sdf>', "it describes a world"),
+        ('<sdf version="1.7"><world name="w"/></sdf>', "one of the models of the world"),
         ('<robot name="a"/>', ""),
     ],
 )

@@ -175,7 +175,7 @@ def test_the_list_of_a_file_that_cannot_be_expanded(write, run):
         "warning[XAC803]: the list of arguments may be incomplete because the file cannot be expanded with the "
         "arguments given"
     )
-    assert "hint: give which:=..." in answer.err
+    assert "hint: pass which:=..." in answer.err
 
 
 def test_the_argument_is_named_that_leads_to_a_missing_file(write, run):
@@ -185,7 +185,7 @@ def test_the_argument_is_named_that_leads_to_a_missing_file(write, run):
         '<xacro:arg name="path" default="$(arg kind)/part.xacro"/><xacro:include filename="$(arg path)"/>'
         '<link name="$(arg name)"/><xacro:arg name="name" default="r"/>',
     )
-    assert run("--args", "a.xacro").err.endswith("hint: give kind:=...\n")
+    assert run("--args", "a.xacro").err.endswith("hint: pass kind:=...\n")
 
 
 def test_the_list_goes_to_a_file(write, run):

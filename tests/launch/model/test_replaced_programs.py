@@ -57,4 +57,4 @@ def test_a_parser_that_cannot_be_imported_is_named_with_its_package(installed: N
     with pytest.raises(LinkwrightError, match="the node that replaces 'sunk' cannot be imported") as caught:
         replacing_node(["sunk"], NOWHERE)
     assert caught.value.diagnostics[0].code == "NODE002"
-    assert "the Python package 'my_sea' provides it" in str(caught.value.diagnostics[0].hint)
+    assert "fix the Python package 'my_sea'" in str(caught.value.diagnostics[0].hint)

@@ -106,7 +106,7 @@ def test_a_detector_that_ends_stops_it(tmp_path):
         test.tell("/vision/go_to", "ball")
         test.advance(2.0)
         test.detector.cancel()
-        assert test.advance_until_said("no detections arrive", 5.0)
+        assert test.advance_until_said("I receive no detections", 5.0)
         assert test.commands.last.linear.x == 0.0
         assert test.distance() > 2.0
 

@@ -333,7 +333,7 @@ class VoiceCommander(SingleNode):
     def _on_silence(self) -> None:
         self._silence_timer.cancel()
         if self._driver.is_endless:
-            self._conversation.stop_driving(phrase("I hear nothing, so I stop"))
+            self._conversation.stop_driving(phrase("I hear nothing, so I am stopping"))
 
     def _check_audio_source(self) -> None:
         """Stop an endless drive that was commanded by voice if the audio source is lost."""
