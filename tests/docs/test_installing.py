@@ -22,7 +22,7 @@ OTHERS = {
     "-e street_displays",
     "-e team_rules",
     "ai-edge-litert",
-    "jupyterlab jupyterlab-lsp",
+    "jupyterlab",
     "linkwright_core-0.1.0-py3-none-any.whl",
     "path/to/linkwright",
     "path/to/linkwright/core",
