@@ -24,7 +24,7 @@ async def typed(editor, first: int, last: int) -> None:
 async def test_the_memory_does_not_grow_with_the_number_of_edits(editor):
     editor.open(FILE)
     await editor.until(FILE)
-    (server,) = psutil.Process().children()
+    (server,) = (child for child in psutil.Process().children() if child.cmdline()[-1] == "lsp")
     await typed(editor, 0, 300)
     before = server.memory_info().rss
     await typed(editor, 300, 1500)

@@ -154,7 +154,9 @@ class Meanings {
       ...(provider ? tokenRanges(doc, tokens?.data ?? [], provider.legend).map(({ from, to, names }) => markOf(names).range(from, to)) : []),
       ...this.colors.map((color) => this.swatch(doc, color)),
     ];
-    view.dispatch({ effects: arrived.of(RangeSet.of(found, true)) });
+    const decorations = RangeSet.of(found, true);
+    if (RangeSet.eq([decorations], [this.decorations])) return; // drawing the same again would close a tooltip
+    view.dispatch({ effects: arrived.of(decorations) });
   }
 
   private swatch(doc: Text, written: WrittenColor): Range<Decoration> {

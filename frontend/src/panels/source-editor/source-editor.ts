@@ -174,9 +174,9 @@ export class SourceEditor implements Documents {
   get history(): { canUndo: boolean; canRedo: boolean; undo: () => void; redo: () => void } | null {
     const document = this.changedLast;
     if (!document?.isUnsaved) return null;
-    const target = { state: document.state, dispatch: (transaction: Transaction) => this.apply(document, transaction) };
+    const dispatch = (transaction: Transaction): void => this.apply(document, transaction);
     const [canUndo, canRedo] = [undoDepth(document.state) > 0, redoDepth(document.state) > 0];
-    return { canUndo, canRedo, undo: () => undo(target), redo: () => redo(target) };
+    return { canUndo, canRedo, undo: () => undo({ state: document.state, dispatch }), redo: () => redo({ state: document.state, dispatch }) };
   }
 
   /** Returns the state of the editor, for tests. */

@@ -14,8 +14,6 @@ from linkwright.lsp.server import LinkwrightServer
 
 _LEGEND = types.SemanticTokensLegend([kind.value for kind in HighlightKind], ["definition"])
 _INDEX = {kind: number for number, kind in enumerate(HighlightKind)}
-_FIELDS = 5
-"""The number of integers in a token: relative line and column, length, type, modifiers."""
 
 
 def semantic_tokens(positions: TextPositions, highlights: Iterable[Highlight]) -> list[int]:
