@@ -1,11 +1,21 @@
-"""Unsaved texts: which one counts, and who is told of changes."""
+"""Unsaved texts: which one counts, and the calls of the listeners."""
 
 from __future__ import annotations
 
 import os
 from pathlib import Path
 
-from linkwright.descriptions.unsaved import Outcome, UnsavedText, UnsavedTexts
+from linkwright.descriptions.unsaved import Listener, Outcome, UnsavedText, UnsavedTexts
+
+
+class Editor:
+    """An editor with unsaved texts."""
+
+    def edit(self, path: str, number: int, text: str) -> None:
+        raise NotImplementedError
+
+
+ONE, TWO = Editor(), Editor()
 
 
 def real_path(path: str) -> str:
@@ -17,22 +27,23 @@ def texts_of(unsaved: UnsavedTexts) -> dict[str, str]:
 
 
 async def test_of_two_editors_the_newer_text_counts_and_without_it_the_other_one(tmp_path: Path) -> None:
-    unsaved, path = UnsavedTexts(), str(tmp_path / "a.urdf")
+    unsaved, path = UnsavedTexts([]), str(tmp_path / "a.urdf")
     real = real_path(path)
-    await unsaved.put(UnsavedText("one", path, 1, "first"))
-    await unsaved.put(UnsavedText("two", path, 1, "second"))
+    await unsaved.put(UnsavedText(ONE, path, 1, "first"))
+    await unsaved.put(UnsavedText(TWO, path, 1, "second"))
     assert texts_of(unsaved) == {real: "second"}
-    await unsaved.put(UnsavedText("one", path, 2, "third"))
+    await unsaved.put(UnsavedText(ONE, path, 2, "third"))
     assert texts_of(unsaved) == {real: "third"}
-    await unsaved.remove("one", path)
+    await unsaved.remove(ONE, path)
     assert texts_of(unsaved) == {real: "second"}
-    await unsaved.remove_all("two")
+    await unsaved.remove_all(TWO)
     assert texts_of(unsaved) == {}
 
 
 async def test_listeners_tell_what_descriptions_make_of_a_text(tmp_path: Path) -> None:
-    unsaved, path = UnsavedTexts(), str(tmp_path / "a.urdf")
-    assert await unsaved.put(UnsavedText("one", path, 1, "")) == "elsewhere"
+    listeners: list[Listener] = []
+    unsaved, path = UnsavedTexts(listeners), str(tmp_path / "a.urdf")
+    assert await unsaved.put(UnsavedText(ONE, path, 1, "")) == "elsewhere"
     heard: list[str] = []
 
     def listener(outcome: Outcome) -> None:
@@ -40,12 +51,12 @@ async def test_listeners_tell_what_descriptions_make_of_a_text(tmp_path: Path) -
             heard.append(real_path)
             return outcome
 
-        unsaved.listen(listen)
+        listeners.append(listen)
 
     listener("elsewhere")
     listener("shown")
-    assert await unsaved.put(UnsavedText("one", path, 2, "")) == "shown"
+    assert await unsaved.put(UnsavedText(ONE, path, 2, "")) == "shown"
     listener("errors")
-    assert await unsaved.remove("one", path) == "errors"
-    assert await unsaved.remove("one", path) == "elsewhere"  # it was removed before
+    assert await unsaved.remove(ONE, path) == "errors"
+    assert await unsaved.remove(ONE, path) == "elsewhere"  # it was removed before
     assert heard == [real_path(path)] * 5

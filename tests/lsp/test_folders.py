@@ -7,9 +7,10 @@ import shutil
 
 import pytest
 from lsprotocol import types
+from pygls.exceptions import JsonRpcException
 
 from linkwright.diagnostics import phrase
-from linkwright.lsp.folders import WATCHED_FILES, with_progress
+from linkwright.lsp.folders import WATCHED_FILES, show_progress
 from tests.lsp.conftest import MAIN, MANIFEST, PARTS, connected
 from tests.waiting import SECONDS
 
@@ -103,18 +104,18 @@ class Recorder:
     ("seconds", "can_show", "shown"), [(0.0, True, []), (1.0, False, []), (1.0, True, ["searching", "end"])]
 )
 async def test_long_work_shows_its_progress(seconds, can_show, shown):
-    server = Recorder(can_show=can_show)
-    await with_progress(server, phrase("searching"), asyncio.sleep(seconds))
+    server, work = Recorder(can_show=can_show), asyncio.ensure_future(asyncio.sleep(seconds))
+    await show_progress(server, phrase("searching"), work)
     assert server.shown == shown
     assert not server.tokens
 
 
-async def test_the_progress_of_work_that_fails_ends():
-    async def fail() -> None:
-        await asyncio.sleep(1)
-        raise ZeroDivisionError
+async def test_an_editor_may_refuse_the_progress():
+    async def refuse(_: str) -> None:
+        raise JsonRpcException("no")
 
-    server = Recorder(can_show=True)
-    with pytest.raises(ZeroDivisionError):
-        await with_progress(server, phrase("searching"), fail())
-    assert server.shown == ["searching", "end"]
+    server, work = Recorder(can_show=True), asyncio.ensure_future(asyncio.sleep(1))
+    server.create_async = refuse
+    await show_progress(server, phrase("searching"), work)
+    assert server.shown == []
+    work.cancel()

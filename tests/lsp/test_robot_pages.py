@@ -11,12 +11,13 @@ import pytest_asyncio
 from lsprotocol import types
 from pygls.exceptions import JsonRpcException
 
-from tests.lsp.conftest import MAIN, Editor, connected
+from tests.lsp.conftest import MAIN, PARTS, Editor, connected
 from tests.waiting import SECONDS
 
 FILE, PARTS_FILE = "urdf/arm.urdf.xacro", "urdf/parts.xacro"
 SHOWING = types.ClientCapabilities(
-    window=types.WindowClientCapabilities(show_document=types.ShowDocumentClientCapabilities(support=True))
+    window=types.WindowClientCapabilities(show_document=types.ShowDocumentClientCapabilities(support=True)),
+    workspace=types.WorkspaceClientCapabilities(apply_edit=True),
 )
 
 
@@ -82,3 +83,40 @@ async def test_the_page_follows_the_editor_and_leads_to_its_lines(showing_editor
         async with asyncio.timeout(SECONDS):
             asked = await shown.get()
         assert (asked.uri, asked.selection.start.line) == (editor.uri(PARTS_FILE), 3)
+
+
+@pytest.mark.slow
+async def test_an_edit_of_the_robot_goes_into_the_unsaved_text_of_the_editor(showing_editor):
+    import aiohttp
+
+    editor = showing_editor
+    edits: asyncio.Queue[types.WorkspaceEdit] = asyncio.Queue()
+
+    @editor.client.feature(types.WORKSPACE_APPLY_EDIT)
+    def _(asked: types.ApplyWorkspaceEditParams) -> types.ApplyWorkspaceEditResult:
+        edits.put_nowait(asked.edit)
+        return types.ApplyWorkspaceEditResult(applied=True)
+
+    text = PARTS.replace('<axis xyz="0 0 1"/>', '<axis xyz="0 0 1"/><origin xyz="0 0 0.1"/>')
+    editor.open(PARTS_FILE)
+    url = await address(editor, FILE)
+    async with aiohttp.ClientSession() as session, session.ws_connect(url.replace("/?", "/ws?")) as socket:
+        display = (await message(socket, "robot_scene"))["display"]
+        editor.change(PARTS_FILE, text)  # not saved
+        await message(socket, "robot_scene")
+        part = {"part": "joint", "name": "upper_joint", "index": 0, "xyz": [0, 0, 0.25], "rpy": None}
+
+        async def edit(number: int) -> None:
+            await socket.send_json(
+                {"type": "preview_edit", "number": number, "display": display, "together": True, **part}
+            )
+            assert (await message(socket, "edit_preview", number=number))["refusal"] is None
+            await socket.send_json({"type": "apply_edit", "number": number})
+
+        await edit(1)
+        assert not (await message(socket, "edit_written"))["is_saved"]
+        async with asyncio.timeout(SECONDS):
+            (change,) = (await edits.get()).document_changes
+        assert (change.text_document.uri, change.text_document.version) == (editor.uri(PARTS_FILE), 2)
+        assert [edit.new_text for edit in change.edits] == ["25"]
+        assert (editor.folder / PARTS_FILE).read_text() == PARTS

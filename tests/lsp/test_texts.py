@@ -100,6 +100,10 @@ async def test_build_files_have_no_symbols(editor):
     editor.open("CMakeLists.txt")
     asked = types.DocumentSymbolParams(editor.document("CMakeLists.txt"))
     assert await editor.client.text_document_document_symbol_async(asked) == []
+    (editor.folder / "notes.txt").write_text("")
+    editor.open("notes.txt")
+    asked = types.DocumentSymbolParams(editor.document("notes.txt"))
+    assert await editor.client.text_document_document_symbol_async(asked) is None
 
 
 async def test_a_file_of_another_kind_has_an_empty_list_of_colours_as_the_protocol_asks(editor):

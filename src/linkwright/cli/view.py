@@ -33,7 +33,11 @@ def configure(parser: argparse.ArgumentParser) -> None:
         action="store_true",
         help="join the ROS 2 network (ROS_DOMAIN_ID), so that other programs see the nodes",
     )
-    parser.add_argument("--editor", action="store_true", help=argparse.SUPPRESS)  # see hosting/text_editor.py
+    parser.add_argument(
+        "--editor",
+        action="store_true",
+        help="follow a text editor, which sends its texts to standard input; for the language server",
+    )
     add_viewer_options(parser)
 
 

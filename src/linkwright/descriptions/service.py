@@ -5,13 +5,13 @@ No other module decides whether a file is xacro or plain URDF.
 
 from __future__ import annotations
 
+import os
 from collections import OrderedDict
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
 from functools import cached_property
 from pathlib import Path
 
-from linkwright.descriptions.unsaved import UnsavedTexts
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Severity, display_path, has_errors, phrase
 from linkwright.diagnostics.diagnostic import TEXT_NAME, is_text
 from linkwright.loading.lean_dataclasses import dataclass
@@ -24,6 +24,7 @@ from linkwright.xmltree.nodes import seldom_collected
 from linkwright.xmltree.reader import read_bytes
 
 if TYPE_CHECKING:
+    from linkwright.descriptions.unsaved import Listener, UnsavedTexts
     from linkwright.sdf.worlds import Sdf
     from linkwright.xacro import Expansion
     from linkwright.xacro.tracing.provenance import Provenance
@@ -133,13 +134,27 @@ class DescriptionLibrary:
     parameter or topic, can then find the location of each element in the source files.
 
     Attributes:
-        unsaved: the unsaved texts of editors.
+        unsaved_listeners: the functions that are called after each change of an unsaved text.
     """
 
     def __init__(self) -> None:
-        self.unsaved = UnsavedTexts()
+        self.unsaved_listeners: list[Listener] = []
         self._descriptions: OrderedDict[str, Description] = OrderedDict()
         self._finders: dict[str, PackageFinder] = {}
+
+    @cached_property
+    def unsaved(self) -> UnsavedTexts:
+        """The unsaved texts of editors."""
+        from linkwright.descriptions.unsaved import UnsavedTexts  # most views have no editor
+
+        return UnsavedTexts(self.unsaved_listeners)
+
+    @property
+    def unsaved_texts(self) -> Mapping[str | os.PathLike[str], str]:
+        """The unsaved texts of editors, by the real paths of their files."""
+        if "unsaved" not in self.__dict__:
+            return {}
+        return {path: unsaved.text for path, unsaved in self.unsaved.texts.items()}
 
     def store(self, description: Description, text: str | None = None, packages: PackageFinder | None = None) -> str:
         """Store a description, so that it can be found by its text.

@@ -3,16 +3,29 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Awaitable, Callable, Hashable, Mapping
+from collections.abc import Awaitable, Callable, Iterable, Mapping
 
 from linkwright.loading.lean_dataclasses import NamedTuple, dataclass
-from linkwright.loading.lean_typing import Literal
+from linkwright.loading.lean_typing import Literal, Protocol
 
 Outcome = Literal["shown", "errors", "elsewhere"]
 """Whether descriptions are shown with a new text, stay as they were because of its errors, or do not contain it."""
 
 Listener = Callable[[str], Awaitable[Outcome]]
 """A function that reads descriptions again after the text of a file, given by its real path, has changed."""
+
+
+class TextOwner(Protocol):
+    """An editor with unsaved texts. It is hashable."""
+
+    def edit(self, path: str, number: int, text: str) -> None:
+        """Replace a text in the editor after the robot was edited in the scene.
+
+        Args:
+            path: the path by which the editor knows the file.
+            number: the number of the text that the edit was made for, or 0 if the editor has no unsaved text of it.
+            text: the new text, with the line ends of the file.
+        """
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,14 +39,14 @@ class UnsavedText:
         text: the text, with the line ends of the file.
     """
 
-    owner: Hashable
+    owner: TextOwner
     path: str
     number: int
     text: str
 
 
 class _Key(NamedTuple):
-    owner: Hashable
+    owner: TextOwner
     real_path: str
 
 
@@ -42,20 +55,20 @@ def with_lf(text: str) -> str:
     return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
-def _key(owner: Hashable, path: str) -> _Key:
+def _key(owner: TextOwner, path: str) -> _Key:
     return _Key(owner, os.path.realpath(path))
 
 
 class UnsavedTexts:
-    """The unsaved texts of all editors; of two texts of a file, the newer one counts."""
+    """The unsaved texts of all editors. Of two texts of a file, the newer one counts.
 
-    def __init__(self) -> None:
+    Args:
+        listeners: the functions that are called after each change.
+    """
+
+    def __init__(self, listeners: Iterable[Listener]) -> None:
         self._texts: dict[_Key, UnsavedText] = {}
-        self._listeners: list[Listener] = []
-
-    def listen(self, listener: Listener) -> None:
-        """Call a function after each change."""
-        self._listeners.append(listener)
+        self._listeners = listeners
 
     @property
     def texts(self) -> Mapping[str, UnsavedText]:
@@ -69,12 +82,12 @@ class UnsavedTexts:
         self._texts[key] = unsaved
         return await self._changed(key.real_path)
 
-    async def remove(self, owner: Hashable, path: str) -> Outcome:
+    async def remove(self, owner: TextOwner, path: str) -> Outcome:
         """Remove the editor's text of a file, which then counts as it is on the disk."""
         key = _key(owner, path)
         return "elsewhere" if self._texts.pop(key, None) is None else await self._changed(key.real_path)
 
-    async def remove_all(self, owner: Hashable) -> None:
+    async def remove_all(self, owner: TextOwner) -> None:
         """Remove all texts of an editor."""
         paths = [key.real_path for key in self._texts if key.owner == owner]
         self._texts = {key: unsaved for key, unsaved in self._texts.items() if key.owner != owner}

@@ -10,7 +10,7 @@ import asyncio
 import os
 import stat
 import threading
-from collections.abc import Awaitable, Callable, Coroutine, Iterable, Mapping, Sequence
+from collections.abc import Awaitable, Callable, Coroutine, Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -110,13 +110,7 @@ class LiveReload:
         self._is_started = True
         self._watch_files()
         if self.descriptions.reads_unsaved:
-            self.descriptions.library.unsaved.listen(self._reload_unsaved)
-
-    def set_texts(self, texts: Mapping[str | os.PathLike[str], str]) -> None:
-        """Replace the unsaved texts of a text editor, and reload the descriptions that read the changed ones."""
-        before, self.descriptions.texts = self.descriptions.texts, texts
-        changed = {path for path in {*before, *texts} if before.get(path) != texts.get(path)}
-        self._on_change({Path(path) for path in changed})
+            self.descriptions.library.unsaved_listeners.append(self._reload_unsaved)
 
     def close(self) -> None:
         """Stop watching the files."""
@@ -188,7 +182,7 @@ class LiveReload:
 
     def _is_unsaved(self, call: XacroCall) -> bool:
         """Return whether a description is read with unsaved texts, whose findings are shown and not printed."""
-        return any(self._contains(call, os.path.realpath(path)) for path in self.descriptions.unsaved_texts)
+        return any(self._contains(call, str(path)) for path in self.descriptions.unsaved_texts)
 
     def _is_broken(self, call: XacroCall) -> bool:
         return has_errors(self._findings.get(call, ()))

@@ -1,8 +1,18 @@
 """The connection of a view with a text editor, over standard input and output.
 
-Each line of input is a JSON object with one of these members: ``texts``, the unsaved texts by absolute path, which
-replace the earlier ones, and ``cursor``, an object with ``file`` and ``line`` (from 1). Each selection of an element in
-a page is a line of output: ``{"open": {"file": ..., "line": ..., "column": ...}}``. The view ends with its input.
+Each line of input is a JSON object with one of these members:
+
+- ``texts``: by absolute path, each text that is new or has changed, as an object with ``text`` and ``number``, or null
+  for a file that was closed;
+- ``cursor``: an object with ``file`` and ``line`` (from 1).
+
+Each line of output is a JSON object, too:
+
+- ``open``: the ``file``, ``line`` and ``column`` of an element that the user selected in a page;
+- ``edit``: the ``file`` and the new ``text`` after the robot was edited in a page, with the ``number`` of the text that
+  was edited, or 0 for a file without one.
+
+The view ends with its input.
 """
 
 from __future__ import annotations
@@ -14,32 +24,38 @@ import threading
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+from linkwright.descriptions.unsaved import Outcome, UnsavedText
 from linkwright.page.protocol.description import SourceRange
 from linkwright.panels.text_editor import TextEditorFeature
 
 if TYPE_CHECKING:
-    from linkwright.hosting.reload import LiveReload
     from linkwright.viewer import Viewer
 
 
 class TextEditorConnection:
     """Reads the messages of an editor in a thread, and handles them on the event loop.
 
+    It owns the unsaved texts of the editor.
+
     Args:
         viewer: the viewer whose pages are connected.
-        reload: reads descriptions again whose texts change.
         ended: called when the editor has closed the input.
     """
 
-    def __init__(self, viewer: Viewer, reload: LiveReload, ended: Callable[[], object]) -> None:
-        self._reload = reload
+    def __init__(self, viewer: Viewer, ended: Callable[[], object]) -> None:
         self._ended = ended
         self._loop = asyncio.get_running_loop()
+        self._unsaved = viewer.context.library.unsaved
+        self._tasks: set[asyncio.Task[Outcome]] = set()
         self._feature = viewer.add_feature(TextEditorFeature)
         self._feature.selected = self._open
         threading.Thread(target=self._read, name="linkwright-text-editor", daemon=True).start()
+
+    def edit(self, path: str, number: int, text: str) -> None:
+        """Send the editor a text that was edited in a page; see `TextOwner.edit`."""
+        _write({"edit": {"file": path, "number": number, "text": text}})
 
     def _read(self) -> None:
         with suppress(RuntimeError, ValueError):  # the event loop is closed, or the input is
@@ -55,12 +71,23 @@ class TextEditorConnection:
         if not isinstance(message, dict):
             return
         texts, cursor = message.get("texts"), message.get("cursor")
-        if isinstance(texts, dict):
-            self._reload.set_texts({str(path): str(text) for path, text in texts.items()})
+        for path, content in texts.items() if isinstance(texts, dict) else ():
+            task = self._loop.create_task(self._set_text(path, content))
+            self._tasks.add(task)
+            task.add_done_callback(self._tasks.discard)
         if isinstance(cursor, dict) and isinstance(cursor.get("line"), int):
             self._feature.show(Path(str(cursor.get("file"))), cursor["line"])
 
+    async def _set_text(self, path: str, content: object) -> Outcome:
+        if not isinstance(content, dict):
+            return await self._unsaved.remove(self, path)
+        number, text = content.get("number"), str(content.get("text", ""))
+        return await self._unsaved.put(UnsavedText(self, path, number if isinstance(number, int) else 0, text))
+
     def _open(self, place: SourceRange) -> None:
-        message = {"open": {"file": place.file, "line": place.line, "column": place.column}}
-        sys.stdout.write(json.dumps(message) + "\n")
-        sys.stdout.flush()
+        _write({"open": {"file": place.file, "line": place.line, "column": place.column}})
+
+
+def _write(message: dict[str, Any]) -> None:
+    sys.stdout.write(json.dumps(message) + "\n")
+    sys.stdout.flush()

@@ -229,7 +229,7 @@ class ModelView:
         if self.options.follows_editor:
             from linkwright.hosting.text_editor import TextEditorConnection
 
-            TextEditorConnection(viewer, self.reload, partial(self.shut_down, "the text editor has ended"))
+            TextEditorConnection(viewer, partial(self.shut_down, "the text editor has ended"))
 
     def _publish_fixed(self, _: str) -> None:
         self._publish_again(self._call)

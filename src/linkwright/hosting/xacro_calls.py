@@ -69,17 +69,12 @@ class Descriptions:
 
     Args:
         finder: the finder of ROS packages.
-        reads_unsaved: whether descriptions are read with the unsaved texts of editors in pages.
-
-    Attributes:
-        finder: the finder of ROS packages.
-        texts: the unsaved texts of a text editor by absolute path, which replace those of the files.
+        reads_unsaved: whether descriptions are read with the unsaved texts of editors.
     """
 
     def __init__(self, finder: PackageFinder, *, reads_unsaved: bool = False) -> None:
         self.finder = finder
         self.reads_unsaved = reads_unsaved
-        self.texts: Mapping[str | os.PathLike[str], str] = {}
         self._warnings: dict[XacroCall, tuple[Diagnostic, ...]] = {}
         self._read_ns: dict[XacroCall, int] = {}
         self._calls: dict[str, XacroCall] = {}
@@ -92,10 +87,8 @@ class Descriptions:
 
     @property
     def unsaved_texts(self) -> Mapping[str | os.PathLike[str], str]:
-        """The unsaved texts of the text editor and of the editors in pages, by path. Those in pages take precedence."""
-        if not self.reads_unsaved:
-            return self.texts
-        return {**self.texts, **{path: unsaved.text for path, unsaved in self.library.unsaved.texts.items()}}
+        """The unsaved texts with which descriptions are read, by the real paths of their files."""
+        return self.library.unsaved_texts if self.reads_unsaved else {}
 
     @property
     def library(self) -> DescriptionLibrary:
@@ -155,7 +148,7 @@ class Descriptions:
                 call.path,
                 arguments=dict(call.arguments),
                 packages=self.finder,
-                overlay=Overlay(self.unsaved_texts) if self.unsaved_texts else None,
+                overlay=Overlay(texts) if (texts := self.unsaved_texts) else None,
                 xacro=xacro,
                 partly=True,
             )

@@ -8,6 +8,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import partial
+from os.path import commonprefix
 from pathlib import Path
 from weakref import WeakKeyDictionary
 
@@ -142,17 +143,11 @@ def _likely_robots(document: Document) -> list[Path]:
     name, folder = ("", file.parent) if package is None else (package[1].name, real(package[1]))
 
     def distance(entry: Path) -> tuple[bool, int]:
-        shared = max(_common_beginning(name, part) for part in entry.parts)
+        shared = max(len(commonprefix([name, part])) for part in entry.parts)  # noqa: RUF071 - it compares characters
         return not entry.is_relative_to(folder), -shared
 
     entries = [entry for entry in document.project.index.roots(document.texts) if entry.name.endswith(_ENDINGS)]
     return sorted(entries, key=distance)[:_MAX_ROBOTS]
-
-
-def _common_beginning(name: str, other: str) -> int:
-    """Return the number of characters with which both names begin."""
-    pairs = zip(name, other, strict=False)
-    return next((number for number, (a, b) in enumerate(pairs) if a != b), min(len(name), len(other)))
 
 
 def _read(project: Workspace, texts: Mapping[Path, str], entry: Path, before: _Robot | None) -> _Robot:

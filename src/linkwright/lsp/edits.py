@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from itertools import groupby
+from os.path import commonprefix
+from pathlib import Path
 
 from lsprotocol import types
 
@@ -30,6 +32,13 @@ def document_edits(server: LinkwrightServer, edits: Iterable[Edit]) -> types.Wor
                 )
             )
     return types.WorkspaceEdit(document_changes=changes)
+
+
+def replacement(file: Path, old: str, new: str) -> Edit:
+    """Return the edit that replaces the differing part of a text."""
+    start = len(commonprefix([old, new]))  # noqa: RUF071 - it compares characters
+    end = len(commonprefix([old[start:][::-1], new[start:][::-1]]))  # noqa: RUF071 - it compares characters
+    return Edit(file, start, len(old) - end, new[start : len(new) - end])
 
 
 def new_file_edit(uri: str, text: str) -> types.WorkspaceEdit:

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Awaitable
+from typing import Any
 from uuid import uuid4
 
 from lsprotocol import types
+from pygls.exceptions import JsonRpcException
 from pygls.lsp.server import LanguageServer
 
 from linkwright.diagnostics import Phrase
@@ -23,28 +24,27 @@ WATCHED_FILES = (
 """The files on the disk that affect findings: descriptions, callers, packages and settings."""
 
 
-async def with_progress(server: LanguageServer, title: Phrase, work: Awaitable[None]) -> None:
-    """Wait for work, and show its progress in the editor if the work takes long.
+async def show_progress(server: LanguageServer, title: Phrase, work: asyncio.Future[Any]) -> None:
+    """Show the progress of work that takes long, provided that the editor can show it.
 
     Args:
         server: the server.
         title: the title of the progress.
         work: the work.
     """
-    task = asyncio.ensure_future(work)
-    await asyncio.wait([task], timeout=_PROGRESS_AFTER)
+    await asyncio.wait([work], timeout=_PROGRESS_AFTER)
     window = server.client_capabilities.window
-    if task.done() or window is None or not window.work_done_progress:
-        await task
+    if work.done() or window is None or not window.work_done_progress:
         return
     token = str(uuid4())
-    await server.work_done_progress.create_async(token)
-    server.work_done_progress.begin(token, types.WorkDoneProgressBegin(localized(title)))
     try:
-        await task
-    finally:
-        server.work_done_progress.end(token, types.WorkDoneProgressEnd())
-        server.work_done_progress.tokens.pop(token, None)
+        await server.work_done_progress.create_async(token)
+    except JsonRpcException:  # the editor does not want it
+        return
+    server.work_done_progress.begin(token, types.WorkDoneProgressBegin(localized(title)))
+    await asyncio.wait([work])
+    server.work_done_progress.end(token, types.WorkDoneProgressEnd())
+    server.work_done_progress.tokens.pop(token, None)
 
 
 async def watch_files(server: LanguageServer) -> None:

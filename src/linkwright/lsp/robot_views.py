@@ -7,10 +7,12 @@ import json
 import os
 import re
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from contextlib import suppress
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
+
+from pygls.workspace import TextDocument
 
 from linkwright.lint.targets import DESCRIPTIONS
 
@@ -19,15 +21,31 @@ _VALUE_FILES = (".yaml", ".yml")
 """Endings of files that descriptions load."""
 
 
+class TextEditor(Protocol):
+    """What a page asks of the editor."""
+
+    def go_to(self, file: Path, line: int, column: int) -> None:
+        """Show an element that the user has selected in a page; the line and the column count from 1."""
+
+    def replace_text(self, file: Path, number: int, text: str) -> None:
+        """Replace the text of a file in which the user has edited the robot in a page.
+
+        Args:
+            file: the file.
+            number: the version of the document that was edited, or 0 if the file was not open.
+            text: the new text.
+        """
+
+
 class RobotView:
     """The page of a description, which follows the texts and the cursor of the editor.
 
     Args:
-        opened: called with the file, line and column, both from 1, of each element that the user selects in the page.
+        editor: the editor.
     """
 
-    def __init__(self, opened: Callable[[Path, int, int], object]) -> None:
-        self._opened = opened
+    def __init__(self, editor: TextEditor) -> None:
+        self._editor = editor
         self._process: asyncio.subprocess.Process | None = None
         self._reading: asyncio.Task[None] | None = None
         self._address: asyncio.Future[str | None] = asyncio.get_running_loop().create_future()
@@ -82,27 +100,31 @@ class RobotView:
 
     def _receive(self, line: bytes) -> None:
         with suppress(ValueError, KeyError, TypeError):
-            place = json.loads(line)["open"]
-            self._opened(Path(place["file"]), int(place["line"]), int(place["column"]))
+            message = json.loads(line)
+            if (place := message.get("open")) is not None:
+                self._editor.go_to(Path(place["file"]), int(place["line"]), int(place["column"]))
+            if (edit := message.get("edit")) is not None:
+                self._editor.replace_text(Path(edit["file"]), int(edit["number"]), str(edit["text"]))
 
 
 class RobotViews:
     """The running pages, by description.
 
-    Args:
-        opened: called with the file, line and column of each element that the user selects in a page.
+    Attributes:
+        editor: the editor.
     """
 
-    def __init__(self, opened: Callable[[Path, int, int], object]) -> None:
-        self._opened = opened
+    editor: TextEditor
+
+    def __init__(self) -> None:
         self._views: dict[Path, RobotView] = {}
 
-    async def address(self, file: Path, texts: Mapping[Path, str]) -> str | None:
+    async def address(self, file: Path, documents: Mapping[Path, TextDocument]) -> str | None:
         """Return the address of the page of a description; None if the page cannot be shown.
 
         Args:
             file: the description. Its page is started unless it runs.
-            texts: the open texts.
+            documents: the open documents.
 
         Raises:
             OSError: the process cannot be started.
@@ -110,17 +132,16 @@ class RobotViews:
         known = self._views.get(file)
         if known is not None and known.is_running:
             return await known.address()
-        view = self._views[file] = RobotView(self._opened)
+        view = self._views[file] = RobotView(self.editor)
         address = await view.start(file)
-        view.send(_texts(texts))
+        view.send(_texts(documents))
         return address
 
-    def texts_changed(self, texts: Callable[[], Mapping[Path, str]]) -> None:
-        """Show the open texts, which a function returns."""
-        if self._views:
-            message = _texts(texts())
-            for view in self._views.values():
-                view.send(message)
+    def text_changed(self, file: Path, document: TextDocument | None) -> None:
+        """Show the text of a file, or the file on the disk if it is not open."""
+        message = _texts({file: document})
+        for view in self._views.values() if message["texts"] else ():
+            view.send(message)
 
     def cursor_moved(self, file: Path, line: int) -> None:
         """Select the element at a line, from 1."""
@@ -133,7 +154,11 @@ class RobotViews:
             view.close()
 
 
-def _texts(texts: Mapping[Path, str]) -> dict[str, Any]:
+def _texts(documents: Mapping[Path, TextDocument | None]) -> dict[str, Any]:
     return {
-        "texts": {str(file): text for file, text in texts.items() if file.name.endswith((*DESCRIPTIONS, *_VALUE_FILES))}
+        "texts": {
+            str(file): None if document is None else {"number": document.version or 0, "text": document.source}
+            for file, document in documents.items()
+            if file.name.endswith((*DESCRIPTIONS, *_VALUE_FILES))
+        }
     }

@@ -16,6 +16,7 @@ from urllib.request import url2pathname
 from lsprotocol import types
 from pygls.exceptions import JsonRpcException
 from pygls.lsp.server import LanguageServer
+from pygls.workspace import TextDocument
 
 from linkwright._version import __version__
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
@@ -28,7 +29,7 @@ from linkwright.language.values import ValuedText, values_in
 from linkwright.language.workspace import Workspace
 from linkwright.lint.targets import XML_FILES
 from linkwright.lsp.findings import as_diagnostics
-from linkwright.lsp.folders import with_progress
+from linkwright.lsp.folders import show_progress
 from linkwright.lsp.positions import UTF_16, TextPositions
 from linkwright.lsp.protocol import LeanProtocol
 from linkwright.lsp.robot_views import RobotViews
@@ -76,7 +77,8 @@ class LinkwrightServer(LanguageServer):
         self._preparing: dict[Format, asyncio.Future[object]] = {}
         self._background: dict[Path, list[Future[object]]] = {}
         self._work: asyncio.Task[None] | None = None
-        self.robot_views = RobotViews(self._go_to)
+        self._progress: asyncio.Task[None] | None = None
+        self.robot_views = RobotViews()
 
     # --- files ------------------------------------------------------------------------------------------------
 
@@ -102,14 +104,6 @@ class LinkwrightServer(LanguageServer):
         self._thread.shutdown(wait=False, cancel_futures=True)
         self.robot_views.close()
 
-    def _go_to(self, file: Path, line: int, column: int) -> None:
-        """Show a place in the editor, where it can; the line and the column count from 1."""
-        window = self.client_capabilities.window
-        if window is not None and window.show_document is not None and window.show_document.support:
-            place = types.Position(line - 1, column - 1)
-            asked = types.ShowDocumentParams(self.uri_of(file), take_focus=True, selection=types.Range(place, place))
-            self.window_show_document(asked)
-
     def file_opened(self, uri: str) -> None:
         """Store the editor's URI of a file, and schedule a check of the file."""
         path = path_of(uri)
@@ -126,7 +120,7 @@ class LinkwrightServer(LanguageServer):
         if path is not None:
             self._changed[real(path)] = None
             self._has_changes.set()
-            self.robot_views.texts_changed(self.texts)
+            self.robot_views.text_changed(real(path), self.workspace.text_documents.get(uri))
 
     def file_saved(self, uri: str) -> None:
         """Update the workspace after a file on the disk has changed."""
@@ -263,15 +257,21 @@ class LinkwrightServer(LanguageServer):
 
     def texts(self) -> dict[Path, str]:
         """Return the texts of the open files."""
+        return {path: document.source for path, document in self.documents().items()}
+
+    def documents(self) -> dict[Path, TextDocument]:
+        """Return the open documents."""
         found = {path: self.workspace.text_documents.get(uri) for path, uri in self._uris.items()}
-        return {path: document.source for path, document in found.items() if document is not None}
+        return {path: document for path, document in found.items() if document is not None}
 
     # --- checks -----------------------------------------------------------------------------------------------
 
     async def _check_changes(self, project: Workspace) -> None:
         """Check files as they change, the newest first, and each waiting subject once."""
-        search = self._attempt(project.index.refresh, Path())
-        await with_progress(self, phrase("Linkwright: searching the folders for robot descriptions"), search)
+        search = asyncio.ensure_future(self._attempt(project.index.refresh, Path()))
+        title = phrase("Linkwright: searching the folders for robot descriptions")
+        self._progress = asyncio.ensure_future(show_progress(self, title, search))
+        await search
         self._is_indexed.set()
         pending: dict[Path, set[Path]] = {}
         check_count = 0

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 from lsprotocol import types
 from pygls.exceptions import JsonRpcException
 
@@ -9,9 +11,43 @@ from linkwright.diagnostics import phrase
 from linkwright.diagnostics.translation import localized
 from linkwright.language.includes import real
 from linkwright.lint.targets import DESCRIPTIONS
+from linkwright.lsp.edits import document_edits, replacement
 from linkwright.lsp.server import LinkwrightServer, path_of
 
 SHOW_ROBOT = "linkwright.showRobot"
+
+
+class PageEditor:
+    """The editor, as the pages of robots see it. See `linkwright.lsp.robot_views.TextEditor`.
+
+    Args:
+        server: the server.
+    """
+
+    def __init__(self, server: LinkwrightServer) -> None:
+        self._server = server
+
+    def go_to(self, file: Path, line: int, column: int) -> None:
+        """Show a position in the editor, provided that it can."""
+        server, window = self._server, self._server.client_capabilities.window
+        if window is not None and window.show_document is not None and window.show_document.support:
+            position = types.Position(line - 1, column - 1)
+            selection = types.Range(position, position)
+            server.window_show_document(
+                types.ShowDocumentParams(server.uri_of(file), take_focus=True, selection=selection)
+            )
+
+    def replace_text(self, file: Path, number: int, text: str) -> None:
+        """Replace the text of a file. A text that has changed since, or that the editor cannot edit, stays."""
+        server, workspace = self._server, self._server.client_capabilities.workspace
+        document, positions = server.documents().get(file), server.positions(file)
+        version = 0 if document is None else document.version or 0
+        if positions is None or version != number or workspace is None or not workspace.apply_edit:
+            message = phrase("the edit in the page was not applied to '{file}'; repeat it", file=file.name)
+            server.window_show_message(types.ShowMessageParams(types.MessageType.Warning, localized(message)))
+            return
+        edit = document_edits(server, [replacement(file, positions.text, text)])
+        server.workspace_apply_edit(types.ApplyWorkspaceEditParams(edit))
 
 
 async def show_robot(server: LinkwrightServer, uri: str, *, opens: bool) -> str:
@@ -31,7 +67,7 @@ async def show_robot(server: LinkwrightServer, uri: str, *, opens: bool) -> str:
     await server.when_indexed()
     entry = (await server.in_thread(lambda: project.index.entries(real(path), texts)))[0]
     try:
-        address = await server.robot_views.address(entry, texts)
+        address = await server.robot_views.address(entry, server.documents())
     except OSError as error:
         raise _failed(str(error)) from None
     if address is None:
@@ -57,6 +93,7 @@ def _failed(message: str) -> JsonRpcException:
 
 def add_requests(server: LinkwrightServer) -> None:
     """Add the requests of this module to a server."""
+    server.robot_views.editor = PageEditor(server)
 
     @server.command(SHOW_ROBOT)
     async def show(server: LinkwrightServer, uri: str, opens: bool = True) -> str:

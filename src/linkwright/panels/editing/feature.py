@@ -14,12 +14,11 @@ from typing import Any
 
 from linkwright.descriptions import Description
 from linkwright.descriptions.editing import EditHistory, EditPlan, EditRefusedError, Workspace, plan_edit, read_again
-from linkwright.descriptions.unsaved import UnsavedText, with_lf
+from linkwright.descriptions.unsaved import UnsavedText
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, phrase
 from linkwright.page.audience import Page
 from linkwright.page.protocol import editing
 from linkwright.page.protocol.message import PageMessage
-from linkwright.page.protocol.source_editor import UnsavedTextEdited
 from linkwright.panels.description import item_of
 from linkwright.panels.editing.parts import files_of, parts_of, request_of
 from linkwright.panels.page_feature import FeatureHost, PageFeature
@@ -132,10 +131,7 @@ class EditingFeature(PageFeature):
         for values in (message.xyz, message.rpy):
             if values is not None and len(values) != len(_AXIS_NAMES):
                 raise EditRefusedError(Diagnostic("EDIT102", phrase("xyz and rpy must have three numbers each")))
-        unsaved: dict[str | os.PathLike[str], str] = {
-            path: unsaved.text for path, unsaved in self.context.library.unsaved.texts.items()
-        }
-        plan = await asyncio.to_thread(_plan_request, description, message, unsaved)
+        plan = await asyncio.to_thread(_plan_request, description, message, self.context.library.unsaved_texts)
         self._previewed_plans[page] = message.number, plan
         page.send(editing.EditPreview(message.number, files_of(plan), list(plan.side_effects), None))
 
@@ -190,14 +186,14 @@ def _refusal_reason(robot: Robot | None, description: Description | None) -> Phr
 
 
 def _edit_unsaved(plan: EditPlan, unsaved: Mapping[str, UnsavedText]) -> None:
-    """Send an edit to the page that has unsaved texts of its files; a file without one is edited there, too."""
+    """Send an edit to the editor that has unsaved texts of its files. A file without one is edited there, too."""
     owner = next(unsaved[path].owner for path in plan.texts if path in unsaved)
     for path, text in plan.texts.items():
         own = unsaved.get(path)
-        page = owner if own is None else own.owner
-        if isinstance(page, Page):
-            known_path, base = (path, 0) if own is None else (own.path, own.number)
-            page.send(UnsavedTextEdited(known_path, base, with_lf(text)))
+        if own is None:
+            owner.edit(path, 0, text)
+        else:
+            own.owner.edit(own.path, own.number, text)
 
 
 def elsewhere() -> Diagnostic:

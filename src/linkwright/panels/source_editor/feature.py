@@ -12,7 +12,7 @@ from typing import Any
 
 from linkwright.descriptions.editing import EditRefusedError
 from linkwright.descriptions.editing.refusals import changed_file
-from linkwright.descriptions.unsaved import UnsavedText
+from linkwright.descriptions.unsaved import UnsavedText, with_lf
 from linkwright.diagnostics import Diagnostic, Phrase, phrase
 from linkwright.diagnostics.extras import EXTRAS, install_hint
 from linkwright.page.audience import Page
@@ -46,6 +46,16 @@ class _Editor:
     open_files: dict[str, _OpenFile] = field(default_factory=dict)
 
 
+@dataclass(frozen=True, slots=True)
+class _PageTexts:
+    """The unsaved texts of a page."""
+
+    page: Page
+
+    def edit(self, path: str, number: int, text: str) -> None:
+        self.page.send(messages.UnsavedTextEdited(path, number, with_lf(text)))
+
+
 class SourceEditorFeature(PageFeature):
     """Gives each page that edits source files a language server, and the files of the workspace.
 
@@ -77,7 +87,7 @@ class SourceEditorFeature(PageFeature):
         editor = self._editors.pop(page, None)
         if editor is not None:
             editor.process.close()
-            self._start(self._unsaved.remove_all(page))
+            self._start(self._unsaved.remove_all(_PageTexts(page)))
 
     def close(self) -> None:
         """End all language servers, and stop handling requests."""
@@ -181,10 +191,10 @@ class SourceEditorFeature(PageFeature):
     async def _show_unsaved(self, page: Page, message: messages.ShowUnsavedText, on_disk: str) -> None:
         """Show descriptions with an unsaved text, and send the page what became of it."""
         if message.text is None:
-            outcome = await self._unsaved.remove(page, message.path)
+            outcome = await self._unsaved.remove(_PageTexts(page), message.path)
         else:
             text = with_line_ends(message.text, on_disk)
-            outcome = await self._unsaved.put(UnsavedText(page, message.path, message.number, text))
+            outcome = await self._unsaved.put(UnsavedText(_PageTexts(page), message.path, message.number, text))
         page.send(messages.UnsavedTextShown(message.number, message.path, outcome))
 
     async def _change(
