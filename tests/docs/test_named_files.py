@@ -21,8 +21,8 @@ PAGES = [
     REPOSITORY / "tests" / "corpus" / "README.md",
 ]
 FOLDERS = (
-    ".github", "benchmarks", "docs", "frontend/src", "frontend/test", "fuzz", "packaging", "robots", "src", "tests",
-    "tools",
+    ".github", "benchmarks", "docs", "editors", "frontend/src", "frontend/test", "fuzz", "packaging", "robots", "src",
+    "tests", "tools",
 )  # fmt: skip
 MADE = [line.strip("/") for line in (REPOSITORY / ".gitignore").read_text(encoding="utf-8").split()]
 """What make makes, which a fresh clone lacks."""
@@ -48,7 +48,10 @@ def named(page: Path) -> Iterator[str]:
 def tree() -> list[Path]:
     """All files and folders of the repository that somebody wrote."""
     inside = [
-        path for folder in FOLDERS for path in (REPOSITORY / folder).rglob("*") if "__pycache__" not in path.parts
+        path
+        for folder in FOLDERS
+        for path in (REPOSITORY / folder).rglob("*")
+        if not {"__pycache__", "node_modules"} & {*path.parts}
     ]
     return [*inside, *(REPOSITORY / folder for folder in FOLDERS), *REPOSITORY.glob("*.*"), *REPOSITORY.glob(".ci/*")]
 
@@ -75,3 +78,9 @@ def test_what_is_named_exists(page: Path) -> None:
     words = list(named(page))
     assert words
     assert [word for word in words if not exists(word)] == []
+
+
+@pytest.mark.parametrize("page", [DOCS / "architecture.md"], ids=lambda page: page.name)
+def test_each_room_is_described(page: Path) -> None:
+    rooms = {path.parent.name for path in (REPOSITORY / "src" / "linkwright").glob("*/__init__.py")}
+    assert rooms - set(re.findall(r"^\| `(\w+)` \|", page.read_text(encoding="utf-8"), re.MULTILINE)) == set()

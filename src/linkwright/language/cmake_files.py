@@ -86,7 +86,7 @@ class _Build:
 
     @cached_property
     def call(self) -> tuple[str, list[str]] | None:
-        """The command around the cursor and its words before the typed one, or None."""
+        """The command around the cursor, and its arguments before the one being typed, or None."""
         start = self.before.rfind("(")
         if start < 0 or ")" in self.before[start:]:
             return None

@@ -8,8 +8,8 @@ from pathlib import Path
 from linkwright.diagnostics import phrase
 from linkwright.diagnostics.translation import localized
 from linkwright.language.completion import Completion, ItemKind
-from linkwright.language.facts import mesh_facts, package_facts
 from linkwright.language.format import Document, Target
+from linkwright.language.hover_facts import mesh_facts, package_facts
 from linkwright.language.programs import components_of, package_names, programs_of, replaced_packages
 from linkwright.messages.definitions.interfaces import is_package_name
 from linkwright.packages.manifest import MANIFEST

@@ -8,9 +8,9 @@ from pathlib import Path
 from linkwright.diagnostics import phrase
 from linkwright.diagnostics.translation import localized
 from linkwright.language.definitions import NameDefinition, NameKind
-from linkwright.language.facts import part_facts, robots_of
 from linkwright.language.format import Document, Format, Target
 from linkwright.language.hover import Explanation
+from linkwright.language.hover_facts import part_facts, robots_of
 from linkwright.language.parameter_catalogue import controller_purpose, load_tables, node_parameters, plugins
 from linkwright.language.parameter_completion import complete_parameters, described
 from linkwright.language.parameter_sections import (

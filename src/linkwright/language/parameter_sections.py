@@ -27,10 +27,10 @@ _TYPE = ParameterInfo("type", "string", None, "the type of the controller, if th
 
 @dataclass(frozen=True, slots=True)
 class Section:
-    """The content of a key ``ros__parameters``, or a position inside it.
+    """The ``ros__parameters`` section of a node, and a position inside it.
 
     Attributes:
-        entry: the entry of ``ros__parameters``.
+        entry: the YAML entry with the key ``ros__parameters``.
         node: the name of the node, or empty for a pattern such as ``/**``.
         prefix: the keys between ``ros__parameters`` and the position, joined by dots.
         controllers: the types of the controllers that the file declares, by name.

@@ -11,10 +11,10 @@ from pathlib import Path
 from linkwright.language.completion import Completion, ItemKind
 from linkwright.language.cursor import Cursor, Spot, cursor_at
 from linkwright.language.definitions import NameDefinition, NameKind
-from linkwright.language.facts import facts_at, part_facts
 from linkwright.language.format import Document, Format, Target
 from linkwright.language.grammar import rule_at
 from linkwright.language.hover import Explanation, definitions_at
+from linkwright.language.hover_facts import facts_at, part_facts
 from linkwright.language.includes import real
 from linkwright.language.links import FileReference, file_references
 from linkwright.language.outline import Outline

@@ -12,10 +12,10 @@ from linkwright.diagnostics import Phrase
 from linkwright.diagnostics.translation import localized
 from linkwright.language.completion import Completion, ItemKind
 from linkwright.language.definitions import NameDefinition, NameKind
-from linkwright.language.facts import facts_at
 from linkwright.language.format import Document, NotYetKnownError, Target
 from linkwright.language.formats import format_of
 from linkwright.language.hover import definitions_at
+from linkwright.language.hover_facts import facts_at
 from linkwright.language.includes import real
 from linkwright.language.links import file_references
 from linkwright.language.renaming import occurrence_at, references
