@@ -53,5 +53,5 @@ def test_the_identity_cannot_be_written():
 
 @pytest.mark.parametrize("shape", [(6,), (2, 8), ()])
 def test_wrong_shapes_are_printed(shape):
-    with pytest.raises(ValueError, match=r"a pose of shape \("):
+    with pytest.raises(ValueError, match=r"a pose must have the shape \(\.\.\., 7\), not \("):
         compose(np.zeros(shape), IDENTITY)

@@ -90,10 +90,10 @@ def test_leading_axes_broadcast():
 @pytest.mark.parametrize(
     ("function", "shape", "expected"),
     [
-        (quaternion_from_rpy, (4,), r"shape \(4,\); \(\.\.\., 3\)"),
-        (rotation_matrix, (2, 3), r"shape \(2, 3\); \(\.\.\., 4\)"),
-        (quaternion_from_matrix, (4, 4), r"shape \(4, 4\); \(\.\.\., 3, 3\)"),
-        (quaternion_inverse, (), r"shape \(\); \(\.\.\., 4\)"),
+        (quaternion_from_rpy, (4,), r"shape \(\.\.\., 3\), not \(4,\)"),
+        (rotation_matrix, (2, 3), r"shape \(\.\.\., 4\), not \(2, 3\)"),
+        (quaternion_from_matrix, (4, 4), r"shape \(\.\.\., 3, 3\), not \(4, 4\)"),
+        (quaternion_inverse, (), r"shape \(\.\.\., 4\), not \(\)"),
     ],
 )
 def test_wrong_shapes_are_printed(function, shape, expected):

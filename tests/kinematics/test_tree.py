@@ -115,7 +115,7 @@ class TestArm:
     def test_wrong_shapes_are_printed(self, shape):
         with pytest.raises(ValueError) as caught:
             self.tree.forward(np.zeros(shape))
-        assert str(caught.value) == f"positions of shape {shape}; (3,) or (configurations, 3) is expected"
+        assert str(caught.value) == f"positions must have the shape (3,) or (configurations, 3), not {shape}"
 
     def test_unknown_joint(self):
         with pytest.raises(UnknownNameError) as caught:

@@ -140,7 +140,7 @@ class Player:
             ValueError: the rate is not positive, or not finite.
         """
         if not 0 < rate < inf:
-            raise ValueError(f"a rate must be positive, not {rate}")
+            raise ValueError(f"the rate must be positive and finite, not {rate}")
         self._set_reference()
         self._rate = rate
         self._logger.info(f"Set rate to {rate:.2f}")

@@ -161,7 +161,7 @@ def _parse_profile(policies: Mapping[str, Any], topic: str, source: str) -> QoSP
                 raise _overrides_error(
                     source,
                     phrase(
-                        ("policy '{name}' of topic '{topic}' cannot be '{value}'"), value=value, name=name, topic=topic
+                        "policy '{name}' of topic '{topic}' cannot be '{value}'", value=value, name=name, topic=topic
                     ),
                     hint,
                 )

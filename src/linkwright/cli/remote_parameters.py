@@ -99,7 +99,7 @@ class RemoteParameters:
                 "CLI424",
                 phrase("Parameter not set: node '{node}' has no parameter '{name}'", node=self.node, name=name),
                 hint=did_you_mean(name, declared_names)
-                or phrase(("run `linkwright param list {node}` to list its parameters"), node=self.node),
+                or phrase("run `linkwright param list {node}` to list its parameters", node=self.node),
             )
             for name in names
             if name not in declared_names

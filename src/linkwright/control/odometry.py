@@ -109,7 +109,7 @@ class OdometryTopics:
 
     @property
     def is_wanted(self) -> bool:
-        """Whether a topic has a subscription."""
+        """Whether any of the topics has a subscription."""
         for output, _ in self._outputs:  # noqa: SIM110 - see Output.is_wanted
             if output.is_wanted:
                 return True

@@ -137,7 +137,7 @@ def _examine_missing(observation: Observation, robot: RobotSeen) -> Iterator[Dia
         yield Diagnostic(
             "DOC301",
             phrase(
-                ("there is no transform of {frames}, because no node publishes transforms"),
+                "there is no transform of {frames}, because no node publishes transforms",
                 frames=_format_frames(frames),
             ),
             notes=(
@@ -176,14 +176,13 @@ def _missing_static_finding(robot: RobotSeen, joints: Sequence[Joint]) -> Diagno
     return Diagnostic(
         "DOC304",
         phrase(
-            ("there is no transform of {frames}, because no static transform was published for it"),
+            "there is no transform of {frames}, because no static transform was published for it",
             frames=_format_frames(frames),
         ),
         notes=(Note(phrase("fixed joints: {joints}", joints=listed(joint.name for joint in joints))),),
         hint=phrase(
-            "robot_state_publisher publishes them once on /tf_static when it starts: check that it runs "
-            "with this description, and that its publisher is transient local, so that late "
-            "subscriptions receive them"
+            "check that robot_state_publisher runs with this description and that its publisher of /tf_static is "
+            "transient local, because it publishes the transforms of fixed joints only once"
         ),
     )
 

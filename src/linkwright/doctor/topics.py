@@ -397,7 +397,7 @@ def examine_lifecycle(observation: Observation) -> Iterator[Diagnostic]:
             phrase("managed node {nodes} is {state}, so it does nothing yet", nodes=listed(sorted(nodes)), state=state),
             severity=Severity.WARNING,
             hint=phrase(
-                ("request the next transition: ros2 lifecycle set {node} {transition}"),
+                "request the next transition: ros2 lifecycle set {node} {transition}",
                 node=min(nodes),
                 transition=transition,
             ),

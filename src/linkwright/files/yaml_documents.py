@@ -85,7 +85,7 @@ class YamlDocument:
                 if depth > _MAX_DEPTH:
                     raise self.error(
                         phrase(
-                            ("the document is nested more than {maximum_depth} levels deep"), maximum_depth=_MAX_DEPTH
+                            "the document is nested more than {maximum_depth} levels deep", maximum_depth=_MAX_DEPTH
                         ),
                         None,
                     )

@@ -33,7 +33,7 @@ def as_array(values: ArrayLike, length: int, name: str) -> Array:
     """
     array = np.asarray(values, dtype=np.float64)
     if array.ndim == 0 or array.shape[-1] != length:
-        raise ValueError(f"{name} of shape {array.shape}; (..., {length}) is expected")
+        raise ValueError(f"{name} must have the shape (..., {length}), not {array.shape}")
     return array
 
 
@@ -160,7 +160,7 @@ def quaternion_from_matrix(matrix: ArrayLike) -> Array:
     """
     m = np.asarray(matrix, dtype=np.float64)
     if m.shape[-2:] != (3, 3):
-        raise ValueError(f"a rotation matrix of shape {m.shape}; (..., 3, 3) is expected")
+        raise ValueError(f"a rotation matrix must have the shape (..., 3, 3), not {m.shape}")
     xx, yy, zz = m[..., 0, 0], m[..., 1, 1], m[..., 2, 2]
     # The matrix gives four times the products of every two components. The row with the largest square is the best
     # conditioned.

@@ -93,7 +93,7 @@ def _obj_faults(data: bytes) -> Iterator[Phrase]:
                     yield _with_line(
                         number,
                         phrase(
-                            ("there is no vertex {index}: the mesh has {count} vertices"), index=index, count=vertices
+                            "there is no vertex {index}: the mesh has {count} vertices", index=index, count=vertices
                         ),
                     )
 
@@ -190,7 +190,7 @@ def _index_faults(mesh: Element) -> Iterator[Phrase]:
                 yield _with_element_line(
                     element,
                     phrase(
-                        ("there is no vertex {index}: the mesh has {count} vertices"),
+                        "there is no vertex {index}: the mesh has {count} vertices",
                         index=max_index,
                         count=vertex_count,
                     ),

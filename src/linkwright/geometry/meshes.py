@@ -117,7 +117,7 @@ def read_mesh(path: Path) -> TriangleMesh:
             Diagnostic(
                 "INR102",
                 message,
-                hint=phrase(("convert it to one of the formats {mesh_endings}"), mesh_endings=joined(MESH_ENDINGS)),
+                hint=phrase("convert it to one of the formats {mesh_endings}", mesh_endings=joined(MESH_ENDINGS)),
             )
         )
     try:
@@ -126,7 +126,7 @@ def read_mesh(path: Path) -> TriangleMesh:
             raise unreadable(path, phrase("it is not a regular file"))
         if file_status.st_size > MAX_FILE_SIZE:
             raise unreadable(
-                path, phrase(("it is larger than the maximum of {largest_file} MiB"), largest_file=MAX_FILE_SIZE >> 20)
+                path, phrase("it is larger than the maximum of {largest_file} MiB", largest_file=MAX_FILE_SIZE >> 20)
             )
         data = path.read_bytes()
         if extension == ".dae":

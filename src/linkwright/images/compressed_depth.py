@@ -52,7 +52,7 @@ def decode_depth(message: Any) -> RawImage:
     data = np.frombuffer(message.data, np.uint8)
     if data.size <= _HEADER.size:
         raise BadImageError(
-            phrase(("The depth image has {size} bytes, so it has no data after its header"), size=data.size)
+            phrase("The depth image has {size} bytes, so it has no data after its header", size=data.size)
         )
     _, scale, offset = _HEADER.unpack(data[: _HEADER.size].tobytes())
     payload = data[_HEADER.size :]

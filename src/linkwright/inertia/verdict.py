@@ -148,9 +148,7 @@ def _comparison_reasons(comparison: Comparison, computed: MassProperties) -> lis
     box = computed.equivalent_box()
     relative_distance = 0.0 if box is None else comparison.center_distance / float(np.linalg.norm(box))
     if relative_distance > _ROUGH_DISTANCE:
-        words = phrase(
-            ("its centre of mass is {length} from the centre of its shapes"), length=_length_text(comparison)
-        )
+        words = phrase("its centre of mass is {length} from the centre of its shapes", length=_length_text(comparison))
         reasons.append(
             _Reason(
                 Standing.DOUBTFUL if relative_distance > _DOUBTFUL_DISTANCE else Standing.ROUGH,

@@ -357,7 +357,9 @@ class KinematicTree:
         array = np.asarray(positions, dtype=np.float64)
         count = len(self.joint_names)
         if array.ndim == 0 or array.shape[-1] != count:
-            raise ValueError(f"positions of shape {array.shape}; ({count},) or (configurations, {count}) is expected")
+            raise ValueError(
+                f"positions must have the shape ({count},) or (configurations, {count}), not {array.shape}"
+            )
         if array.ndim == 1:
             return self._one_configuration.frames(self._body_positions(array))
         shape = array.shape[:-1]

@@ -82,9 +82,7 @@ def _misspelt(name: str, undeclared: Sequence[str], error: Diagnostic) -> Diagno
     """
     similar_names = nearest(name, undeclared, limit=1)
     return (
-        error.with_changes(
-            hint=phrase(("did you mean '{name}' instead of '{like}'?"), like=similar_names[0], name=name)
-        )
+        error.with_changes(hint=phrase("did you mean '{name}' instead of '{like}'?", like=similar_names[0], name=name))
         if similar_names
         else error
     )

@@ -112,7 +112,7 @@ def parse_launch_words(words: Sequence[str]) -> tuple[LaunchTarget, dict[str, st
             if files:
                 hint = phrase("the package has {names}", names=joined(files))
                 raise _incomplete_error(
-                    phrase(("'{named}' is a package: add the name of a launch file in it"), named=target_names[0]), hint
+                    phrase("'{named}' is a package: add the name of a launch file in it", named=target_names[0]), hint
                 )
         return LaunchTarget(target_names[0]), values
     return LaunchTarget(target_names[1], target_names[0]), values

@@ -27,7 +27,10 @@ if TYPE_CHECKING:
 
 
 class UniqueFindings:
-    """A collection of findings without duplicates, as from a file that two robots include."""
+    """A collection of findings that drops duplicates.
+
+    For example, the findings of a file that two robots include occur twice.
+    """
 
     def __init__(self) -> None:
         self._findings: dict[tuple[str, Span | None, str], Diagnostic] = {}

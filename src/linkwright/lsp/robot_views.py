@@ -22,7 +22,7 @@ _VALUE_FILES = (".yaml", ".yml")
 
 
 class TextEditor(Protocol):
-    """What a page asks of the editor."""
+    """The editor to which a page reports selected elements and edits."""
 
     def go_to(self, file: Path, line: int, column: int) -> None:
         """Show an element that the user has selected in a page; the line and the column count from 1."""

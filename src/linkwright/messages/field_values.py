@@ -72,7 +72,7 @@ class _Setter:
             names = joined(field.name for field in definition_of(type(message)).fields)
             self._report_invalid_value(
                 phrase(
-                    ("{what} must be a mapping of fields to values, not {values}"),
+                    "{what} must be a mapping of fields to values, not {values}",
                     what=subject,
                     values=_value_text(values),
                 ),

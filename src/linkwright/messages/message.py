@@ -283,7 +283,7 @@ def _reader_for(data: bytes, message_class: type[Any]) -> Any:
             reason = phrase("{count} bytes are too few for the header", count=len(data))
         elif data[:2] in _OTHER_ENCODINGS:
             reason = phrase(
-                ("its header declares the encoding {headers}, but ROS 2 uses plain CDR"),
+                "its header declares the encoding {headers}, but ROS 2 uses plain CDR",
                 headers=_OTHER_ENCODINGS[data[:2]],
             )
         else:

@@ -81,6 +81,6 @@ def _read(name: str, words: Sequence[str]) -> argparse.Namespace:
     except argparse.ArgumentError as error:
         raise LinkwrightError(
             Diagnostic(
-                "NODE602", phrase(("the arguments of '{name}' are invalid: {error}"), name=name, error=foreign(error))
+                "NODE602", phrase("the arguments of '{name}' are invalid: {error}", name=name, error=foreign(error))
             )
         ) from error

@@ -104,7 +104,7 @@ node must publish their transforms.
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Conversion:
-    """The conversion of joint states with a certain list of names to transforms.
+    """The conversion from joint states to transforms, for one list of joint names.
 
     Transform i is the pose of joint i of `motion` at position ``message[source[i]] * factor[i] + offset[i]``.
     """
@@ -149,8 +149,8 @@ class RobotTransforms:
         """Return the conversion to transforms for messages with these joint names.
 
         Names of joints that do not move or do not exist are ignored. A mimic joint follows the joint that it mimics,
-        unless the message contains a position for the mimic joint itself. A joint that mimics another mimic joint does
-        not move.
+        unless the message contains a position for the mimic joint itself. Chains of mimic joints are not followed: a
+        joint has no transform if the message contains neither its position nor that of the joint that it mimics.
         """
         key = tuple(names)
         conversion = self._conversions.get(key)

@@ -27,7 +27,7 @@ _COLCON_LAYOUT = ".colcon_install_layout"
 def install_prefix(share: Path) -> Path:
     """Return the install prefix of a package, given its share folder.
 
-    For a package in its sources, this is the source folder.
+    For a package that is not installed, the result is its source folder.
     """
     return share.parents[1] if is_installed(share) else share
 

@@ -136,7 +136,7 @@ class MeshIndex:
             return Located(
                 None,
                 phrase(
-                    ("the format of '{path}' is not supported; the supported formats are {known}"),
+                    "the format of '{path}' is not supported; the supported formats are {known}",
                     path=path,
                     known=supported_formats,
                 ),

@@ -140,7 +140,7 @@ class RecordingFeature(PageFeature):
         if self._running is not None and self._running.recorder is recorder:
             path = display_path(self._running.writer.path)
             self._report_errors(
-                [_finding(phrase(("recording to '{path}' was stopped because simulated time was reset"), path=path))]
+                [_finding(phrase("recording to '{path}' was stopped because simulated time was reset", path=path))]
             )
             self._stop_recording()
 

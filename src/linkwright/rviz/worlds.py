@@ -217,7 +217,7 @@ class _Builder:
 
 
 def _maps(workflow: Workflow) -> tuple[str, ...]:
-    """Return the image files of a material except the colour image, in the order of `Surface`."""
+    """Return the texture files of a material except the albedo map, in the order of `Surface`."""
     surface_maps = (workflow.normal_map, workflow.roughness_map, workflow.metalness_map)
     return (*surface_maps, workflow.emissive_map, workflow.ambient_occlusion_map)
 

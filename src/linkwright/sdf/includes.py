@@ -169,7 +169,7 @@ class _Resolver:
             return replace(entity, name=include.name or entity.name, pose=include.pose or entity.pose)
         self._report(
             "SDF160",
-            phrase(("'{uri}' is left out because it does not contain a model"), uri=include.uri),
+            phrase("'{uri}' is left out because it does not contain a model", uri=include.uri),
             include,
             None,
         )

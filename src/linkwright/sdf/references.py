@@ -112,9 +112,7 @@ def _check_cycles(elements: tuple[Frame | Link | Joint | Model, ...], frames: Fr
         if not cycle or frozenset(cycle) in reported:
             continue
         reported.add(frozenset(cycle))
-        message = phrase(
-            ("the poses of these frames depend on each other in a cycle: {value}"), value=" -> ".join(cycle)
-        )
+        message = phrase("the poses of these frames depend on each other in a cycle: {value}", value=" -> ".join(cycle))
         first_element = frames.elements_by_name.get(cycle[0])
         yield _error(
             "SDF142",

@@ -185,9 +185,7 @@ class SdfReport(Findings):
     def twice(self, element: Element, first: Element) -> None:
         """Report an element that has the same name as an earlier sibling."""
         notes: Sequence[Note] = (Note(phrase("first defined here"), first.span()),)
-        message = phrase(
-            ("two elements of the same parent are named '{name}'"), name=element.attributes.get("name", "")
-        )
+        message = phrase("two elements of the same parent are named '{name}'", name=element.attributes.get("name", ""))
         if element.tag == first.tag:
             kind = element.tag
             message = phrase(

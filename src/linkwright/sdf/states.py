@@ -70,7 +70,7 @@ class Deletions:
 
 @dataclass(frozen=True, slots=True)
 class State:
-    """A world's state that Gazebo classic saved, and that overrides the rest of the file.
+    """A saved state of Gazebo classic, overriding the poses in the rest of the world file.
 
     Attributes:
         world_name: the name of the world.

@@ -129,7 +129,7 @@ def load_scenario(path: Path) -> Scenario:
         spans = [_span(path, candidate.__code__.co_firstlineno) for candidate in functions]
         message = (
             phrase(
-                ("'{path}' contains {count} scenarios, but must contain one"),
+                "'{path}' contains {count} scenarios, but must contain one",
                 count=len(functions),
                 path=display_path(path),
             )

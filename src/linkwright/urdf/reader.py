@@ -72,7 +72,7 @@ def _drop_unreadable_parts(values: dict[str, Any], findings: UrdfReport) -> None
         values[rule.target] = readable
     if first_unreadable is not None:
         note = phrase(
-            ("urdfdom drops these parts of {owner}: {lost}"), owner=owner_name(element), lost=joined(lost_parts)
+            "urdfdom drops these parts of {owner}: {lost}", owner=owner_name(element), lost=joined(lost_parts)
         )
         findings.annotate(_first_error(*first_unreadable, element, findings.version), Note(note))
 

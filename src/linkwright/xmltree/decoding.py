@@ -111,7 +111,7 @@ def _decode(data: bytes, encoding: str, name: str, reason: Phrase) -> Decoded:
         return Decoded(data.decode(encoding), encoding)
     except LookupError:
         message = phrase(
-            ("'{name}' declares the encoding '{encoding}', which is not supported"), name=name, encoding=encoding
+            "'{name}' declares the encoding '{encoding}', which is not supported", name=name, encoding=encoding
         )
         raise LinkwrightError(Diagnostic("XML104", message, hint=phrase("save the file as UTF-8"))) from None
     except UnicodeDecodeError as error:

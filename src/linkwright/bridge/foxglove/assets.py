@@ -78,5 +78,5 @@ def _content(package: str, share: Path, relative: PurePosixPath) -> bytes:
     if not path.is_file() or path.suffix.lower() not in _ENDINGS:
         raise AssetRefusedError("the file is neither a mesh nor an image")
     if path.stat().st_size > _MAX_SIZE:
-        raise AssetRefusedError("the file is too large")
+        raise AssetRefusedError(f"the file is larger than {_MAX_SIZE // 2**20} MiB")
     return path.read_bytes()

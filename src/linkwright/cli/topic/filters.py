@@ -65,8 +65,6 @@ def compile_filter(text: str) -> Callable[[Any], bool]:
             # listed functions.
             return bool(eval(code, {"__builtins__": {}, **_NAMES, "m": message}))  # noqa: S307
         except Exception as error:  # noqa: BLE001 - the user's expression may raise anything
-            raise fault(
-                phrase(("the filter cannot be evaluated for a message: {error}"), error=foreign(error))
-            ) from None
+            raise fault(phrase("the filter cannot be evaluated for a message: {error}", error=foreign(error))) from None
 
     return matches

@@ -226,7 +226,7 @@ class Controller(ABC, Generic[P]):
         """
 
     def step(self, time_ns: int, period_s: float) -> None:
-        """Run an update: first `update_references` if no controller commands them, then `update`."""
+        """Run `update`, preceded by `update_references` if no controller commands the references."""
         self.time_ns = time_ns
         if not self.is_chained and self.references:
             self.update_references(time_ns, period_s)

@@ -26,7 +26,7 @@ def variances(name: str, values: tuple[float, ...]) -> Variances:
     if len(values) != _AXES:
         raise ControllerError(
             phrase(
-                ("'{name}' must have {needed} numbers, but it has {count}"), name=name, needed=_AXES, count=len(values)
+                "'{name}' must have {needed} numbers, but it has {count}", name=name, needed=_AXES, count=len(values)
             )
         )
     return values

@@ -144,13 +144,13 @@ class _Reader:
         for joint_component, joint_element in zip(joints, element.elements("joint"), strict=True):
             if joint_component.name not in self._robot.joints:
                 message = phrase(
-                    ("<ros2_control> names the joint '{name}', which the robot does not have"),
+                    "<ros2_control> names the joint '{name}', which the robot does not have",
                     name=joint_component.name,
                 )
                 self._report("CTL113", message, joint_element, did_you_mean(joint_component.name, self._robot.joints))
             elif joint_component.mimic is not None and joint_component.mimic.joint not in names:
                 message = phrase(
-                    ("the mimicked joint '{name}' is not in this <ros2_control>"), name=joint_component.mimic.joint
+                    "the mimicked joint '{name}' is not in this <ros2_control>", name=joint_component.mimic.joint
                 )
                 self._report("CTL114", message, joint_element, did_you_mean(joint_component.mimic.joint, names))
         return HardwareDescription(

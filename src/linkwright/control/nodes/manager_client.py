@@ -164,9 +164,7 @@ def parse_arguments(parser: argparse.ArgumentParser, words: Sequence[str]) -> ar
     """
 
     def refuse(message: str) -> NoReturn:
-        text = phrase(
-            ("{program} cannot parse its arguments: {message}"), program=parser.prog, message=foreign(message)
-        )
+        text = phrase("{program} cannot parse its arguments: {message}", program=parser.prog, message=foreign(message))
         raise LinkwrightError(Diagnostic("NODE831", text, hint=foreign(parser.format_usage().strip())))
 
     # If a required option is missing, argparse in Python up to 3.12 ends the program even with exit_on_error=False.

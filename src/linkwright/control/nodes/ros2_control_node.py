@@ -110,9 +110,7 @@ class Ros2ControlNode(SingleNode):
             self._node.get_logger().warning("'update_rate' parameter not set, using default value.")
             return _DEFAULT_RATE
         if not isinstance(value, int) or isinstance(value, bool) or not 0 < value <= 100_000:
-            message = phrase(
-                ("the update_rate must be an integer from 1 to 100000 (Hz), but it is {value}"), value=value
-            )
+            message = phrase("the update_rate must be an integer from 1 to 100000 (Hz), but it is {value}", value=value)
             raise LinkwrightError(Diagnostic("NODE830", message, hint=phrase("write 'update_rate: 100'")))
         return value
 

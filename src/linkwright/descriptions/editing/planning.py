@@ -230,7 +230,8 @@ class _Planner:
     ) -> Snapshot | None:
         """Return the description after one edit of several literal numbers in an attribute.
 
-        The result is None if other parts would change, too.
+        The result is None if the file must not be edited, if the attribute would not get the requested values, or if
+        other parts would change, too.
         """
         if self._allowed(os.path.realpath(place.source.name)) is not None:
             return None
@@ -362,5 +363,6 @@ class _Planner:
 
 
 def _not_written_finding(element: Element) -> Diagnostic:
-    message = phrase("<{tag}> is not written as a separate element in a file", tag=element.tag)
-    return Diagnostic("EDIT103", message, element.span(), source=element.source)
+    message = phrase("<{tag}> cannot be edited, because no source file contains it as an element", tag=element.tag)
+    hint = phrase("edit the xacro code that generates it")
+    return Diagnostic("EDIT103", message, element.span(), hint=hint, source=element.source)

@@ -76,11 +76,11 @@ def _attempt_note(attempt: Attempt) -> Note:
     text = " ".join(attempt.text_range.text.split())
     if attempt.is_choice:
         return Note(
-            phrase(("'{text}' is a factor that selects a side, so it is not changed"), text=text),
+            phrase("'{text}' is a factor that selects a side, so it is not changed", text=text),
             attempt.text_range.span,
         )
     return Note(
-        phrase(("'{text}' also determines {what}"), text=text, what=_joined_names(attempt.side_effects)),
+        phrase("'{text}' also determines {what}", text=text, what=_joined_names(attempt.side_effects)),
         attempt.text_range.span,
     )
 

@@ -160,10 +160,10 @@ class Workers:
         self._jobs.put(job)
 
     def close(self, timeout_sec: float | None = None) -> bool:
-        """Let the threads end after the submitted jobs, and wait for them.
+        """Stop the threads after the submitted jobs, and wait for the threads to end.
 
         Args:
-            timeout_sec: the maximum wait, in seconds; None for no limit.
+            timeout_sec: the maximum wait for each thread, in seconds; None for no limit.
 
         Returns:
             Whether all have ended. A thread that calls this method does not wait for itself.
@@ -173,8 +173,10 @@ class Workers:
         for _ in threads:
             self._jobs.put(None)
         other_threads = [thread for thread in threads if thread is not threading.current_thread()]
+        deadline_ns = deadline_after(timeout_sec)
         for thread in other_threads:
-            thread.join(timeout_sec)
+            remaining_ns = None if deadline_ns is None else max(0, deadline_ns - time.monotonic_ns())
+            thread.join(None if remaining_ns is None else remaining_ns / NANOSECONDS_PER_SECOND)
         return not any(thread.is_alive() for thread in other_threads)
 
     def _work(self) -> None:

@@ -34,7 +34,7 @@ from linkwright.graph.parameters.parameter import ParameterFileNotFoundError, Pa
 PARAMETERS_KEY = "ros__parameters"
 _TYPE_NAMES = {bool: "bool", int: "integer", float: "double", str: "string"}
 _FORM_HINT = phrase(
-    ("write a mapping from node names to '{parameters_key}', and below it a mapping from parameter names to values"),
+    "write a mapping from node names to '{parameters_key}', and below it a mapping from parameter names to values",
     parameters_key=PARAMETERS_KEY,
 )
 
@@ -182,7 +182,7 @@ class _Reader:
                 if not self._is_event("MappingStart"):
                     raise self._error(
                         phrase(
-                            ("'{key}' has a value, but only parameters below '{parameters_key}' can have values"),
+                            "'{key}' has a value, but only parameters below '{parameters_key}' can have values",
                             key=key,
                             parameters_key=PARAMETERS_KEY,
                         ),

@@ -366,9 +366,9 @@ class _TerminalProtocol(asyncio.Protocol):
 
 
 def _open_pseudo_terminals() -> list[tuple[int, int]]:
-    """Return newly opened pseudo-terminals for stdout and stderr, if the system has them.
+    """Open pseudo-terminals for stdout and stderr, if the system supports them.
 
     Returns:
-        The file descriptors of the outer and inner end of each one; an empty list if the system has none.
+        The master and slave file descriptors of each pseudo-terminal; an empty list without such support.
     """
     return [os.openpty(), os.openpty()] if hasattr(os, "openpty") else []

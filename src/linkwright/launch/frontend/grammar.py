@@ -122,7 +122,7 @@ class _Reader:
         self._at += 2
         match = _NAME.match(self._text, self._at)
         if match is None:
-            self._fail(phrase("'$(' is not followed by a name"), phrase("write \\$( for the literal characters"))
+            self._fail(phrase("'$(' is not followed by a name"), phrase("write \\$( for a literal $("))
         self._at = match.end()
         arguments = []
         while True:
@@ -175,7 +175,7 @@ class _Reader:
             hint = hint or phrase(r"put quotes around it, or write \(")
         self._fail(
             phrase(
-                ("there is an unexpected {character} after '{text}'"),
+                "there is an unexpected {character} after '{text}'",
                 character=repr(character),
                 text=self._text[: self._at][-20:],
             ),

@@ -55,9 +55,7 @@ def instantiate_action(entity: Entity, parser: Parser) -> Action:
             raise error_at(
                 place,
                 "LAUNCH118",
-                phrase(
-                    ("action '{type_name}' is not valid: {error}"), type_name=entity.type_name, error=foreign(error)
-                ),
+                phrase("action '{type_name}' is not valid: {error}", type_name=entity.type_name, error=foreign(error)),
                 ros_error=error,
             ) from error
 

@@ -93,7 +93,7 @@ def get_launch_description_from_python_launch_file(launch_file_path: str | os.Pa
 def get_launch_description_from_frontend_launch_file(
     launch_file_path: str | os.PathLike[str], *, parser: Any = None
 ) -> LaunchDescription:
-    """Load the description of an XML or YAML launch file."""
+    """Load the launch description from an XML or YAML launch file."""
     if parser is None:
         return load_markup_launch_file(Path.cwd() / launch_file_path)
     entity, file_parser = parser.load(launch_file_path)

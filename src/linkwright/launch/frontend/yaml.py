@@ -257,7 +257,7 @@ def load(text: str, name: str) -> Any:
         raise LinkwrightError(
             Diagnostic(
                 "LAUNCH108",
-                phrase(("launch file '{name}' is not valid YAML: {error}"), name=name, error=foreign(error)),
+                phrase("launch file '{name}' is not valid YAML: {error}", name=name, error=foreign(error)),
             )
         ) from error
     finally:

@@ -90,7 +90,7 @@ def generate_load_controller_launch_description(
 ) -> LaunchDescription:
     """Return a launch description that spawns one controller.
 
-    The parameters have the order that they have in ROS 2 Humble.
+    The arguments are in the same order as in ROS 2 Humble.
 
     Args:
         controller_name: the name of the controller.

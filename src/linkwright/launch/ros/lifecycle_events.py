@@ -65,7 +65,7 @@ class ChangeState(Event):
             transitions_text = ", ".join(f"{name}: {number}" for number, name in TRANSITIONS.items())
             ros_error = ValueError(f"given transition_id of '{transition_id}', expected one of {{{transitions_text}}}")
             message = phrase(
-                ("there is no lifecycle transition with the ID {transition_id}"), transition_id=repr(transition_id)
+                "there is no lifecycle transition with the ID {transition_id}", transition_id=repr(transition_id)
             )
             raise error_at(
                 Place.of_caller(),

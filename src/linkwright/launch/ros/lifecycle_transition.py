@@ -61,7 +61,7 @@ class LifecycleTransition(Action):
                 raise error_at(
                     self.place,
                     "LAUNCH138",
-                    phrase(("'{name}' is empty"), name=argument_name),
+                    phrase("'{name}' is empty", name=argument_name),
                     ros_error=ValueError(text),
                 )
         self._names = [normalize_to_list_of_substitutions(name) for name in lifecycle_node_names]

@@ -65,7 +65,7 @@ class ParameterFile(Placed):
             raise error_at(
                 self.place,
                 "LAUNCH133",
-                phrase(("the arguments of ParameterFile are not valid: {error}"), error=foreign(error)),
+                phrase("the arguments of ParameterFile are not valid: {error}", error=foreign(error)),
                 ros_error=error,
             ) from error
 

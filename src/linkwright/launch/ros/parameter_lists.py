@@ -141,9 +141,7 @@ def _normalize_value(value: Any, key: Any) -> Any:
         return _normalize_sequence(value, key)
     shown_name = key if isinstance(key, str) else "..."
     if isinstance(value, Path):
-        message = phrase(
-            ("the value of parameter '{shown}' is a Path, which is not a parameter type"), shown=shown_name
-        )
+        message = phrase("the value of parameter '{shown}' is a Path, which is not a parameter type", shown=shown_name)
         raise error_at(
             Place.of_caller(),
             "LAUNCH132",

@@ -94,7 +94,7 @@ class NodeParameters:
                 continue
             names = rules.patterns
             message = phrase(
-                ("parameter file '{path}' has no section for node '{node}'"), path=display_path(source.path), node=node
+                "parameter file '{path}' has no section for node '{node}'", path=display_path(source.path), node=node
             )
             hint = did_you_mean(node, names) or phrase("it has sections for {names}", names=joined(names))
             _warn(context, "LAUNCH149", message, hint, place)

@@ -49,7 +49,7 @@ class _SingleNodeAction(Action, ABC):
     def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
         """Return the class and keyword arguments for the tag.
 
-        The attributes are the text options.
+        Each option in `TEXTS` may be an attribute of the tag.
         """
         _, kwargs = super().parse(entity, parser)
         for name in cls.TEXTS:

@@ -91,7 +91,7 @@ class MissingInertial(Rule):
                 [
                     Note(
                         phrase(
-                            ("the links that are fixed to it do not have one, either: {rest}"),
+                            "the links that are fixed to it do not have one, either: {rest}",
                             rest=quoted_names(fixed_links),
                         )
                     )

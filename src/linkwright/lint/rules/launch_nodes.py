@@ -221,7 +221,7 @@ def _used_packages(package: PackageContext) -> dict[str, Note]:
                 )
         for share in file.shares:
             first_uses.setdefault(
-                share.text, Note(phrase(("'{text}' is searched for here"), text=share.text), share.span)
+                share.text, Note(phrase("'{text}' is searched for here", text=share.text), share.span)
             )
         for match in re.finditer(r"""Command\(\s*\[?\s*["']xacro\b""", file.source.text):
             span = file.source.span(match.end() - len("xacro"), match.end())

@@ -140,7 +140,7 @@ def _is_beside_mujoco(folder: Path) -> bool:
 
 
 class MachineSpecificPath(Rule):
-    """A mesh URI that contains a folder of one computer or of one ROS distribution.
+    """A mesh URI with an absolute path into a home folder or into one ROS distribution.
 
     ## Why
 
@@ -173,9 +173,7 @@ class MachineSpecificPath(Rule):
                 corrected = f"package://{installed_match[1]}" if installed_match else _as_package_uri(path)
                 corrected = corrected or _in_known_package(subject, path)
                 message = (
-                    phrase(
-                        ("the mesh URI contains the folder of one ROS distribution, '{home}'"), home=machine_folder[1]
-                    )
+                    phrase("the mesh URI contains the folder of one ROS distribution, '{home}'", home=machine_folder[1])
                     if installed_match
                     else phrase("the mesh URI contains a folder of one computer, '{home}'", home=machine_folder[1])
                 )

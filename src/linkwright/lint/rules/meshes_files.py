@@ -286,7 +286,7 @@ class OutsidePackage(Rule):
                 share = subject.finder.find(package)
                 if share is not None and not normalized.is_relative_to(normalized_path(share)):
                     message = phrase(
-                        ("the path of the mesh '{uri}' leaves the package '{package}'"), uri=uri, package=package
+                        "the path of the mesh '{uri}' leaves the package '{package}'", uri=uri, package=package
                     )
             elif normalized.is_file() and enclosing_package(normalized.parent) is None:
                 message = phrase("the mesh '{uri}' is not in a package", uri=uri)

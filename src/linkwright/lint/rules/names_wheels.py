@@ -271,7 +271,7 @@ class WheelAxesOpposed(Rule):
         for left, right in pairs(list(wheels(subject))):
             if dot(left.axis, right.axis) < -_AXIS_TOLERANCE and right.joint.element is not None:
                 note = Note(
-                    phrase(("'{name}' turns in the opposite direction"), name=left.joint.name), _span_of(left.joint)
+                    phrase("'{name}' turns in the opposite direction", name=left.joint.name), _span_of(left.joint)
                 )
                 message = phrase(
                     "'{name}' and '{joint_name}' turn in opposite directions at velocities of the same sign",

@@ -227,7 +227,7 @@ class DependencyRepeated(ManifestRule):
                 first_dependency.element.attributes, dependency.element.attributes
             ):
                 note = Note(
-                    phrase(("the first <{tag}> is here"), tag=first_dependency.tag), first_dependency.element.span()
+                    phrase("the first <{tag}> is here", tag=first_dependency.tag), first_dependency.element.span()
                 )
                 message = phrase("the dependency on '{name}' is listed twice", name=dependency.name)
                 fix = remove_element(dependency.element)

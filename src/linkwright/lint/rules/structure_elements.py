@@ -138,7 +138,7 @@ def _nearest_parents(parent_tags: Sequence[str], place: Place) -> Sequence[str]:
 
 
 class UnknownElement(Rule):
-    """An element of another format inside a link or joint, where URDF does not define it.
+    """An element inside a link or joint that URDF does not define, such as one of SDF.
 
     ## Why
 

@@ -55,7 +55,7 @@ async def show_robot(server: LinkwrightServer, uri: str, *, opens: bool) -> str:
 
     Args:
         server: the server.
-        uri: the URI of a description, or of a file that one includes.
+        uri: the URI of a description, or of a file that a description includes.
         opens: whether to open the page in the user's browser.
 
     Raises:

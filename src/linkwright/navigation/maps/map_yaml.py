@@ -99,7 +99,7 @@ class _Reader:
         root = self._document.root
         if not isinstance(root, yaml.MappingNode):
             message = phrase(
-                ("the YAML file of a map must be a mapping with the keys {names}"), names=", ".join(_REQUIRED)
+                "the YAML file of a map must be a mapping with the keys {names}", names=", ".join(_REQUIRED)
             )
             raise self._error(message, root)
         for key, value in root.value:

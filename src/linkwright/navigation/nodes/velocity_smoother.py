@@ -149,7 +149,7 @@ class _ManagedSmoother(ManagedNode):
         lengths = {len(value(name)) for name in _LIMITS}
         if lengths not in ({len(_PLANAR)}, {len(_AXES)}):
             return phrase(
-                ("{names} must all have 3 entries (x, y, yaw), or must all have 6 entries"), names=joined(list(_LIMITS))
+                "{names} must all have 3 entries (x, y, yaw), or must all have 6 entries", names=joined(list(_LIMITS))
             )
         for name, sign in (("max_velocity", 1), ("min_velocity", -1), ("max_accel", 1), ("max_decel", -1)):
             if any(item * sign < 0.0 for item in value(name)):

@@ -230,7 +230,7 @@ class _Watch:
         """
         if not self._cancel_client.service_is_ready():
             return phrase(
-                ("the goal could not be cancelled: no node provides the action '{name}'"), name="navigate_to_pose"
+                "the goal could not be cancelled: no node provides the action '{name}'", name="navigate_to_pose"
             )
         response = await self._call(self._cancel_client)
         if response is None:

@@ -42,7 +42,12 @@ def relative_pose(b_in_a: Floats, c_in_a: Floats) -> Floats:
 
 
 def transform_points(pose: Floats, points: Floats) -> Floats:
-    """Transform points, of shape (n, 2), out of the frame whose pose, of shape (3,), is `pose`."""
+    """Transform points from the frame at `pose` to the frame in which `pose` is given.
+
+    Args:
+        pose: the pose of the points' frame, shape (3,).
+        points: shape (n, 2).
+    """
     cos, sin = np.cos(pose[2]), np.sin(pose[2])
     result: Floats = points @ np.array(((cos, sin), (-sin, cos))) + pose[:2]
     return result

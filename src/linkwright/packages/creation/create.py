@@ -144,7 +144,7 @@ def _check_license(identifier: str) -> list[Diagnostic]:
             identifier=identifier,
         )
         hint = did_you_mean(identifier, identifiers) or phrase(
-            ("the licenses with a text are {known}"), known=joined(identifiers)
+            "the licenses with a text are {known}", known=joined(identifiers)
         )
     return [Diagnostic("PKG210", message, severity=Severity.WARNING, hint=hint)]
 

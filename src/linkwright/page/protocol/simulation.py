@@ -193,7 +193,7 @@ class ControlSimulation(PageMessage):
 class SpawnModel(PageMessage):
     """A request to add a model or robot to the simulation.
 
-    The model is named by a file path, or by a ``package://`` or ``model://`` address.
+    The model is identified by a file path, or by a ``package://`` or ``model://`` URI.
     """
 
     address: str

@@ -51,7 +51,7 @@ def configuration_path(text: str, folder: Path) -> Path:
         hint = phrase("choose a name that ends in '{ending}'", ending=EXTENSION)
         raise LinkwrightError(
             Diagnostic(
-                "RVIZ105", phrase(("'{text}' is not a valid file name for an RViz configuration"), text=text), hint=hint
+                "RVIZ105", phrase("'{text}' is not a valid file name for an RViz configuration", text=text), hint=hint
             )
         )
     return path

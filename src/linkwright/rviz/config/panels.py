@@ -77,7 +77,7 @@ class PanelsConfig:
         if unknown_sections:
             names = ", ".join(f"'{section.text('Name') or section.text('Class')}'" for section in unknown_sections)
             message = phrase(
-                ("the page cannot show these panels, but they stay in the file: {names}"),
+                "the page cannot show these panels, but they stay in the file: {names}",
                 names=names,
             )
             report(Diagnostic("RVIZ204", message, unknown_sections[0].span(), Severity.WARNING, source=document.source))

@@ -227,7 +227,7 @@ class PropertyStore:
         except ValueError as error:
             value = fallback_value(spec)
             message = phrase(
-                ("'{name}': {error}; {value} is used instead"), name=spec.name, error=error, value=repr(value)
+                "'{name}': {error}; {value} is used instead", name=spec.name, error=error, value=repr(value)
             )
             self._report(Diagnostic("RVIZ201", message, scalar.span, Severity.WARNING, source=self._section.source))
             return value

@@ -373,7 +373,7 @@ def _check_depth(text: str, source: SourceText) -> None:
                 mark = event.start_mark
                 span = source.span(source.offset(mark.line + 1, mark.column + 1)) if mark else None
                 message = phrase(
-                    ("the document is nested more than {maximum_depth} levels deep"), maximum_depth=MAX_DEPTH
+                    "the document is nested more than {maximum_depth} levels deep", maximum_depth=MAX_DEPTH
                 )
                 raise LinkwrightError(Diagnostic("RVIZ102", message, span, source=source))
         elif isinstance(event, yaml.CollectionEndEvent):

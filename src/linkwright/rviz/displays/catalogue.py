@@ -39,7 +39,7 @@ class UnsupportedDisplay(ViewerDisplay):
     def enabled_changed(self) -> None:
         """Show in the status that displays of this class are not drawn, if the display is enabled."""
         text = phrase(
-            ("Displays of class '{name}' are not supported: they stay in the file but are not drawn"),
+            "Displays of class '{name}' are not supported: they stay in the file but are not drawn",
             name=self.config.cls,
         )
         self.set_status([StatusRow("Class", "warn", text)])

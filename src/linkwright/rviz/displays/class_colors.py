@@ -72,7 +72,7 @@ def read_class_colors(path: str) -> dict[str, Color]:
     if not isinstance(document, dict) or not all(_is_color(color) for color in document.values()):
         raise ValueError(
             phrase(
-                ("'{path}' is not a table of colours: write entries such as 'ball: {{r: 255, g: 0, b: 0}}'"), path=path
+                "'{path}' is not a table of colours: write entries such as 'ball: {{r: 255, g: 0, b: 0}}'", path=path
             )
         )
     return {str(name).lower(): (color["r"], color["g"], color["b"]) for name, color in document.items()}

@@ -241,7 +241,7 @@ class _Grid:
         if name not in names:
             layer_names = quoted_names(names) if names else phrase("none")
             raise BadGridError(
-                phrase(("The map has no layer '{name}'; its layers are {known}"), name=name, known=layer_names)
+                phrase("The map has no layer '{name}'; its layers are {known}", name=name, known=layer_names)
             )
         array = self._message.data[names.index(name)]
         numbers = np.asarray(array.data, dtype=np.float32)

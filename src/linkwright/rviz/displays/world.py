@@ -251,7 +251,7 @@ class WorldDisplay(TopicDisplay):
             return
         except FrameError as error:
             self.set_status_row(
-                _WORLD_ROW, "error", phrase(("The pose of '{name}' cannot be determined"), name=error.name)
+                _WORLD_ROW, "error", phrase("The pose of '{name}' cannot be determined", name=error.name)
             )
             return
         self.context.meshes.replace(self.id, index.folders)
@@ -377,7 +377,7 @@ class WorldDisplay(TopicDisplay):
                 _FRAME_ROW,
                 "warn",
                 phrase(
-                    ("tf has neither '{world}' nor a frame of a model: the world is placed at the Fixed Frame"),
+                    "tf has neither '{world}' nor a frame of a model: the world is placed at the Fixed Frame",
                     world=WORLD,
                 ),
             )

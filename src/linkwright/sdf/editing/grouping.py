@@ -236,7 +236,7 @@ def _release_edits(
     if reference_frame not in ("", MODEL):
         raise EditError(
             phrase(
-                ("'{name}' cannot leave the group: its pose is relative to '{frame}'"),
+                "'{name}' cannot leave the group: its pose is relative to '{frame}'",
                 name=old_name,
                 frame=reference_frame,
             )

@@ -163,9 +163,7 @@ class WorldText:
             return WorldText(text, self.path, self.finder, self.reserved)
         except LinkwrightError as error:
             diagnostic = error.diagnostics[0]
-            raise EditError(
-                phrase(("the result would not be valid SDF: {reason}"), reason=diagnostic.message)
-            ) from None
+            raise EditError(phrase("the result would not be valid SDF: {reason}", reason=diagnostic.message)) from None
 
     def free_name(self, preferred_name: str, used_names: AbstractSet[str] | None = None) -> str:
         """Return the preferred name if it is free, or else with the first free number.

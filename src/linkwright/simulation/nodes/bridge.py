@@ -284,7 +284,7 @@ def parse_bridge_argument(argument: str) -> BridgedTopic:
         raise LinkwrightError(
             Diagnostic(
                 "NODE820",
-                phrase(("'{word}' does not describe a topic to bridge; it needs a name and two types"), word=argument),
+                phrase("'{word}' does not describe a topic to bridge; it needs a name and two types", word=argument),
                 hint=hint,
             )
         )

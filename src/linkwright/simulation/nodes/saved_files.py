@@ -65,7 +65,7 @@ async def _load_world(path: str, launcher: Node, services: Services) -> list[Dia
     response = await client.call_async(request)
     if response is not None and response.result.result != response.result.RESULT_OK:
         message = phrase(
-            ("the changed world was not loaded: {reason}; the simulation continues unchanged"),
+            "the changed world was not loaded: {reason}; the simulation continues unchanged",
             reason=foreign(response.result.error_message),
         )
         return [Diagnostic("SIM153", message)]

@@ -137,9 +137,7 @@ class ClassicAckermann(SimulatedPlugin[AckermannParameters]):
         )
         if not (self._track > 0.0 and self._base > 0.0):
             raise self.parameter_error(
-                phrase(
-                    ("plugin '{plugin}': its wheels have the same position; place them apart"), plugin=self.place.name
-                )
+                phrase("plugin '{plugin}': its wheels have the same position; place them apart", plugin=self.place.name)
             )
 
     def _on_command(self, twist: Any) -> None:

@@ -36,7 +36,10 @@ class DetachableJointParameters:
 
 
 class GzDetachableJoint(SimulatedPlugin[DetachableJointParameters]):
-    """The substitute for ``gz-sim-detachable-joint-system``: attaches a link of another model."""
+    """The substitute for ``gz-sim-detachable-joint-system``.
+
+    It attaches a link of another model to a link of its own model, and detaches it on request.
+    """
 
     PARAMETERS = DetachableJointParameters
 

@@ -69,7 +69,7 @@ class GzAckermann(SimulatedPlugin[SteeringParameters]):
         if not (min(sizes) > 0.0 and parameters.left_joint and parameters.right_joint) and not parameters.steering_only:
             raise self.parameter_error(
                 phrase(
-                    ("plugin '{plugin}' needs wheel joints on both sides, and positive dimensions"),
+                    "plugin '{plugin}' needs wheel joints on both sides, and positive dimensions",
                     plugin=self.place.name,
                 )
             )

@@ -152,7 +152,7 @@ class GzJointPosition(_JointController[PositionParameters]):
         if parameters.joint_index:
             raise self.parameter_error(
                 phrase(
-                    ("plugin '{plugin}': only the first axis of a joint is simulated; remove <joint_index>"),
+                    "plugin '{plugin}': only the first axis of a joint is simulated; remove <joint_index>",
                     plugin=self.place.name,
                 )
             )

@@ -213,7 +213,7 @@ class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
         if len(rotors) < 4 or np.linalg.matrix_rank(allocation) < 4:
             raise self.parameter_error(
                 phrase(
-                    ("plugin '{plugin}': its rotors cannot control thrust and all three torques"),
+                    "plugin '{plugin}': its rotors cannot control thrust and all three torques",
                     plugin=self.place.name,
                 )
             )
@@ -230,7 +230,7 @@ class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
             return float(_text(rotor, tag))
         except ValueError as error:
             message = phrase(
-                ("plugin '{plugin}': each <rotor> needs a number in <{tag}>"), plugin=self.place.name, tag=tag
+                "plugin '{plugin}': each <rotor> needs a number in <{tag}>", plugin=self.place.name, tag=tag
             )
             raise self.parameter_error(message) from error
 

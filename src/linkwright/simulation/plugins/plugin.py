@@ -282,9 +282,7 @@ class SimulatedPlugin(Generic[P]):
         if code == "SIM133":
             message = phrase("plugin '{plugin}': there is no link '{name}'", plugin=self.place.name, name=name)
         else:
-            message = phrase(
-                ("plugin '{plugin}': there is no movable joint '{name}'"), plugin=self.place.name, name=name
-            )
+            message = phrase("plugin '{plugin}': there is no movable joint '{name}'", plugin=self.place.name, name=name)
         span, source = (element.span(), element.source) if element is not None else (None, None)
         raise LinkwrightError(Diagnostic(code, message, span, hint=did_you_mean(name, names), source=source))
 

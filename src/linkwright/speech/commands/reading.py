@@ -39,7 +39,7 @@ class Keys:
             key_name = str(key.value) if isinstance(key, yaml.ScalarNode) else ""
             if allowed_names is not None and key_name not in allowed_names:
                 hint = did_you_mean(key_name, allowed_names) or phrase(
-                    ("use one of {names}"), names=", ".join(allowed_names)
+                    "use one of {names}", names=", ".join(allowed_names)
                 )
                 raise self.error(phrase("{what} has no '{key}'", what=what, key=key_name), key, hint)
             if key_name in self._values:

@@ -130,7 +130,7 @@ def _read_interface(session: Any, path: Path) -> tuple[str, int, tuple[str, ...]
         raise _model_error(path, phrase("its input must be one array of [1, n], not {shape}", shape=foreign(shape)))
     if inputs[0].type != "tensor(float)":
         raise _model_error(
-            path, phrase(("the type of its input must be float32, not {type}"), type=foreign(inputs[0].type))
+            path, phrase("the type of its input must be float32, not {type}", type=foreign(inputs[0].type))
         )
     names = _parse_names(session.get_modelmeta().custom_metadata_map.get("names", ""))
     classes = outputs[0].shape[-1] if outputs[0].shape else None

@@ -140,7 +140,7 @@ def name_problem(name: str) -> Phrase | None:
     if len(name) > _MAX_NAME_LENGTH:
         return phrase("it has more than {most} characters", most=_MAX_NAME_LENGTH)
     if not name.isprintable():
-        return phrase("it contains characters that cannot be shown")
+        return phrase("it contains non-printable characters")
     return None
 
 
@@ -170,7 +170,7 @@ def _parse_words(document: Any, path_text: str) -> dict[str, tuple[Take, ...]]:
         raise _damaged_error(
             path_text,
             phrase(
-                ("its version is '{version}', but only version {known} is supported"), version=version, known=_VERSION
+                "its version is '{version}', but only version {known} is supported", version=version, known=_VERSION
             ),
         )
     words = document.get("words")
@@ -181,7 +181,7 @@ def _parse_words(document: Any, path_text: str) -> dict[str, tuple[Take, ...]]:
         name = word.get("name") if isinstance(word, dict) else None
         if not isinstance(name, str) or name_problem(name) is not None or name in takes_by_name:
             raise _damaged_error(
-                path_text, phrase(("word {number} has no valid name, or the name of an earlier word"), number=number)
+                path_text, phrase("word {number} has no valid name, or the name of an earlier word", number=number)
             )
         takes = word.get("takes")
         if not isinstance(takes, list) or not 1 <= len(takes) <= MAX_TAKES:

@@ -71,7 +71,7 @@ def parse_wav(data: bytes, name: str) -> Samples:
         raise _wav_error(
             name,
             phrase(
-                ("its samples are {kind} with {bits} bits, which is not supported"),
+                "its samples are {kind} with {bits} bits, which is not supported",
                 kind=format_name,
                 bits=wav_format.bits,
             ),

@@ -203,9 +203,7 @@ class DatasetFolder:
             card.get("height"),
             card.get("formats"),
         ) != expected:
-            message = phrase(
-                ("the dataset in '{folder}' has other classes, image sizes or label formats"), folder=folder
-            )
+            message = phrase("the dataset in '{folder}' has other classes, image sizes or label formats", folder=folder)
             hint = phrase("its classes are {names}", names=", ".join(map(str, card.get("classes") or ())))
             raise LinkwrightError(Diagnostic("VISION206", message, hint=hint))
         for split, content in lists.items():

@@ -158,7 +158,7 @@ def _image_input(file: Path, inputs: Sequence[Any]) -> tuple[str, type[np.floati
     element_type = _ELEMENT_TYPES.get(inputs[0].type) if len(inputs) == 1 else None
     if len(shape) == 4 and isinstance(shape[0], int) and shape[0] > 1:
         message = phrase(
-            ("the input of the network in '{file}' is a batch of {count} images, not 1"), file=file.name, count=shape[0]
+            "the input of the network in '{file}' is a batch of {count} images, not 1", file=file.name, count=shape[0]
         )
         raise LinkwrightError(Diagnostic("VISION105", message, hint=phrase("export it with a batch size of 1")))
     if element_type is None or len(shape) != 4 or shape[1] != 3:

@@ -33,11 +33,9 @@ def create_session(file: Path, device: str) -> tuple[Any, list[Phrase]]:
     if gpu is None or (with_cuda and CUDA in session.get_providers()):
         return session, []
     if with_cuda:
-        note = phrase(
-            ("CUDA does not work with '{device}' on this machine; the network runs on the CPU"), device=device
-        )
+        note = phrase("CUDA does not work with '{device}' on this machine; the network runs on the CPU", device=device)
     else:
         note = phrase(
-            ("this installation of onnxruntime does not support '{device}'; the network runs on the CPU"), device=device
+            "this installation of onnxruntime does not support '{device}'; the network runs on the CPU", device=device
         )
     return session, [note]

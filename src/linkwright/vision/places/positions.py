@@ -32,7 +32,7 @@ class Place:
 
     Attributes:
         centre: x, y, z in metres, in the camera's optical frame.
-        width, height, depth: the size along the image's x and y, and along the view, metres.
+        width, height, depth: the size in metres, along the image's x and y axes and along the optical axis.
     """
 
     centre: tuple[float, float, float]

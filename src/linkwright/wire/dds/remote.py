@@ -427,7 +427,10 @@ def is_process_running(process: int) -> bool:
 
 
 def _is_zombie(process: int) -> bool:
-    """Return whether a process has ended but its parent has not waited for it. Only on Linux."""
+    """Return whether a process is a zombie: it has ended, but its parent has not waited for it.
+
+    On systems other than Linux, the result is always False.
+    """
     try:
         stat = Path(f"/proc/{process}/stat").read_bytes()
     except OSError:

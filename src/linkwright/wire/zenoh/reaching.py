@@ -132,7 +132,7 @@ def _tls_obstacle(address: str, connection: socket.socket, host: str, tls: Mappi
             context.load_verify_locations(authority)
     except ssl.SSLError:
         return phrase(
-            ("'{path}' does not contain the certificate of a certificate authority in PEM format"), path=authority
+            "'{path}' does not contain the certificate of a certificate authority in PEM format", path=authority
         )
     try:
         if certificate and key and tls.get("enable_mtls"):

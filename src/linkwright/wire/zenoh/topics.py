@@ -87,9 +87,9 @@ class OutgoingTopic:
     def close(self) -> None:
         """Withdraw the publisher.
 
-        A publisher that stores messages for late joiners is dropped without `undeclare`, which withdraws it as well.
-        Its `undeclare` would hold the GIL for up to 10 s while waiting for a thread of Zenoh that may itself be
-        waiting for the GIL in a callback.
+        A publisher that stores messages for late joiners is not undeclared. Dropping the last reference withdraws it,
+        too, whereas `undeclare` would hold the GIL for up to 10 s while waiting for a thread of Zenoh that may itself
+        be waiting for the GIL in a callback.
         """
         self.abandon()
         if self._listener is not None:

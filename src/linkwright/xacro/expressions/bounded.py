@@ -149,7 +149,7 @@ def _bounded_function(name: str) -> Callable[..., Any]:
 
     def guarded(*numbers: Any) -> Any:
         if len(numbers) > _MAX_NUMBERS:
-            raise RefusalError(phrase(("'{name}' receives more than {count:,} numbers"), name=name, count=_MAX_NUMBERS))
+            raise RefusalError(phrase("'{name}' receives more than {count:,} numbers", name=name, count=_MAX_NUMBERS))
         return function(*numbers)
 
     return guarded
@@ -158,9 +158,7 @@ def _bounded_function(name: str) -> Callable[..., Any]:
 def _sumprod(left: Iterable[Any], right: Iterable[Any]) -> Any:
     pairs = list(zip(left, right, strict=True))
     if len(pairs) > _MAX_NUMBERS and not all(isinstance(number, float) for pair in pairs for number in pair):
-        raise RefusalError(
-            phrase(("'{name}' receives more than {count:,} numbers"), name="sumprod", count=_MAX_NUMBERS)
-        )
+        raise RefusalError(phrase("'{name}' receives more than {count:,} numbers", name="sumprod", count=_MAX_NUMBERS))
     return sum(one * other for one, other in pairs)
 
 

@@ -317,9 +317,7 @@ def formatted(value: Any, conversion: int, specification: str) -> str:
         if len(digits) > MAX_DIGITS or (digits.isdecimal() and int(digits) > MAX_DIGITS):
             raise RefusalError(phrase("the width or precision is larger than {max_digits:,}", max_digits=MAX_DIGITS))
     if value.__class__ not in _FORMATTABLE_TYPES and value.__class__.__module__ != "datetime":
-        raise TypeError(
-            phrase(("a value of type '{kind}' cannot be formatted with ':'"), kind=value.__class__.__name__)
-        )
+        raise TypeError(phrase("a value of type '{kind}' cannot be formatted with ':'", kind=value.__class__.__name__))
     return format(value, specification)
 
 

@@ -80,7 +80,7 @@ def _factorial(n: Any) -> int:
     if isinstance(n, int) and n > _MAX_FACTORIAL:
         raise RefusalError(
             phrase(
-                ("the factorial of a number above {largest_factorial:,} is too large"),
+                "the factorial of a number above {largest_factorial:,} is too large",
                 largest_factorial=_MAX_FACTORIAL,
             )
         )
@@ -94,7 +94,7 @@ def _of_two(name: str) -> Callable[..., int]:
         if isinstance(n, int) and n > _MAX_FACTORIAL:
             raise RefusalError(
                 phrase(
-                    ("'{name}' receives a number above {largest_factorial:,}"),
+                    "'{name}' receives a number above {largest_factorial:,}",
                     name=name,
                     largest_factorial=_MAX_FACTORIAL,
                 )

@@ -181,7 +181,7 @@ def _reject_other_tags(construct: Callable[[Any, str, Any], float]) -> Callable[
                 None,
                 None,
                 phrase(
-                    ("the YAML tag '!{tag}' is not supported; the supported tags are {known}"),
+                    "the YAML tag '!{tag}' is not supported; the supported tags are {known}",
                     tag=tag,
                     known=supported_tags,
                 ),

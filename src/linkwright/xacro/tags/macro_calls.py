@@ -34,7 +34,7 @@ def define_macro(expander: Expander, site: Site) -> None:
     if name.startswith(PREFIX):
         name = name[len(PREFIX) :]
         message = phrase(
-            ("the definition of the macro '{name}' has the prefix 'xacro:', but only calls have this prefix"), name=name
+            "the definition of the macro '{name}' has the prefix 'xacro:', but only calls have this prefix", name=name
         )
         expander.session.warn("XAC411", message, node.attribute_span("name"), phrase('write name="{name}"', name=name))
     try:
@@ -297,7 +297,7 @@ class _Call:
     def _report_unused_block(self, macro: Macro, block: Element) -> None:
         count = sum(parameter.is_block for parameter in macro.parameters)
         message = phrase(
-            ("the macro '{name}' has no block parameter for the element <{tag}>"), tag=block.tag, name=macro.name
+            "the macro '{name}' has no block parameter for the element <{tag}>", tag=block.tag, name=macro.name
         )
         hint = counted("it takes one block", "it takes {count} blocks", count) if count else phrase("it takes no block")
         note = self._definition(macro)

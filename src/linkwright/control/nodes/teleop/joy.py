@@ -111,9 +111,7 @@ class JoyNode(SingleNode):
         path = self._settings.device()
         if path is None:
             device_label = self._settings.requested_device()
-            self._wait(
-                localized(phrase(("the joystick {wanted} is not connected; waiting for it"), wanted=device_label))
-            )
+            self._wait(localized(phrase("the joystick {wanted} is not connected; waiting for it", wanted=device_label)))
             return
         try:
             self._device = JoystickDevice(path, self._on_events, self._on_unplugged)

@@ -150,7 +150,7 @@ class TeleopTwistKeyboard(SingleNode):
         elif self._direction != STILL and not self._has_warned:
             self._has_warned = True
             message = phrase(
-                ("no node subscribes to {topic}; run `linkwright doctor` for details"), topic=self._topic.name
+                "no node subscribes to {topic}; run `linkwright doctor` for details", topic=self._topic.name
             )
             self._node.get_logger().warning(localized(message))
 

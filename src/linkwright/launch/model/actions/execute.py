@@ -259,7 +259,7 @@ class ExecuteLocal(Action):
             return shlex.split(text)
         except ValueError as error:
             message = phrase(
-                ("argument '{text}' cannot be split into words: {error}"), text=text, error=str(error).lower()
+                "argument '{text}' cannot be split into words: {error}", text=text, error=str(error).lower()
             )
             raise error_at(self.place, "LAUNCH118", message, ros_error=error) from error
 

@@ -84,7 +84,7 @@ class ForEach(Action):
                     self.place,
                     "LAUNCH151",
                     phrase(
-                        ("values '{text}' of the loop are not valid YAML: {error}"),
+                        "values '{text}' of the loop are not valid YAML: {error}",
                         text=text.strip(),
                         error=foreign(error),
                     ),

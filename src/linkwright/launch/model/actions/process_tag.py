@@ -85,7 +85,7 @@ def _read_non_negative(entity: Entity, name: str) -> float | None:
     if value is not None and value < 0.0:
         text = f"Attribute {name} of Entity node expected to be a non-negative value but got `{value}`"
         message = phrase(
-            ("attribute '{name}' of '{type_name}' must not be negative"), name=name, type_name=entity.type_name
+            "attribute '{name}' of '{type_name}' must not be negative", name=name, type_name=entity.type_name
         )
         raise error_at(entity.place, "LAUNCH118", message, ros_error=ValueError(text))
     return value

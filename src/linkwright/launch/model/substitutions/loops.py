@@ -70,7 +70,7 @@ class ForEachVar(DeclaredSubstitution, tag="for-var", shown="{kind}(name={name},
         raise error_at(
             self.place,
             "LAUNCH123",
-            phrase(("the loop has no value named '{name}'"), name=name),
+            phrase("the loop has no value named '{name}'", name=name),
             hint,
             ros_error=ros_error,
         )

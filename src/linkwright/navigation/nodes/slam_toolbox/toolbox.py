@@ -364,5 +364,5 @@ class Toolbox:
 
 
 def _planar_pose(pose: Transform) -> Floats:
-    """Convert a pose in space to x, y and yaw."""
+    """Return the x, y and yaw of a 3D pose."""
     return np.array((pose[0], pose[1], rpy_from_quaternion(pose[3:])[2]))

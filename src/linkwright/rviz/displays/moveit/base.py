@@ -145,7 +145,7 @@ class MoveItDisplay(StoredMarkersDisplay):
             self.set_status_row(_URDF_ROW, "error", problem)
         elif self.robot is None:
             self.set_status_row(
-                _URDF_ROW, "warn", phrase(("No description was received on topic '{topic}' yet"), topic=topic)
+                _URDF_ROW, "warn", phrase("No description was received on topic '{topic}' yet", topic=topic)
             )
 
     def _on_description(self, message: Any) -> None:

@@ -186,7 +186,7 @@ class PosableRobot:
             if not math.isfinite(position):
                 raise UnusableStateError(
                     phrase(
-                        ("The position of joint '{name}' must be finite, but is {position}"),
+                        "The position of joint '{name}' must be finite, but is {position}",
                         name=name,
                         position=position,
                     )

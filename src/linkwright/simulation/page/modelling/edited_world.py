@@ -164,9 +164,7 @@ class EditedWorld:
         if target == self.path and self._content is not None:
             if self.is_outdated:
                 raise EditError(
-                    phrase(
-                        ("'{path}' was changed by another program: save the world to another file"), path=str(target)
-                    )
+                    phrase("'{path}' was changed by another program: save the world to another file", path=str(target))
                 )
         elif name is None:
             raise EditError(phrase("this world has no file yet: enter the name of a file"))
@@ -216,7 +214,7 @@ class EditedWorld:
             path = Path()
         if "\0" in name or not is_world(path.name) or path.suffix == _XACRO_SUFFIX:
             raise EditError(
-                phrase(("'{name}' is not the name of a world file: it must end in .world or .sdf"), name=name)
+                phrase("'{name}' is not the name of a world file: it must end in .world or .sdf", name=name)
             )
         return path
 

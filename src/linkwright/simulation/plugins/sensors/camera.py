@@ -97,7 +97,7 @@ class CameraPlugin(SensorPlugin[P], Generic[P]):
             encoding = DEFAULT_ENCODING
             if camera.image.format.upper() not in DEPTH_FORMATS:
                 warning = phrase(
-                    ("'{format}' is not a supported image format; bgr8 is used instead"), format=camera.image.format
+                    "'{format}' is not a supported image format; bgr8 is used instead", format=camera.image.format
                 )
                 self.node.logger.warning(warning)
         pose = compose(self.sensor.pose, transform_of(camera.pose.pose))

@@ -41,7 +41,7 @@ def load_weights(network: Network, names: Sequence[str], path: Path, images: Ite
     channels, expected = len(weights[0][0]), network.shape.channels
     if len(weights) == len(convolutions) and channels != expected:
         reason = phrase(
-            ("its first layer has {channels} channels, but this network has {wanted}"),
+            "its first layer has {channels} channels, but this network has {wanted}",
             channels=channels,
             wanted=expected,
         )
