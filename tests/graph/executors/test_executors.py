@@ -19,6 +19,7 @@ from linkwright.graph.executors import (
     SingleThreadedExecutor,
     TimeoutException,
 )
+from linkwright.graph.executors.multi_threaded import Workers
 from linkwright.graph.loop.future import Future
 from linkwright.messages import String
 from tests.waiting import SECONDS, is_waiting, wait_until
@@ -586,3 +587,14 @@ class TestOwnExecutors:
     def test_many_threads_are_one_too_few(self):
         with pytest.warns(UserWarning, match="single thread"):
             MultiThreadedExecutor(1)
+
+
+def test_a_pool_of_busy_threads_waits_for_one_timeout_in_all():
+    go_on = threading.Event()
+    workers = Workers(4, "busy", lambda: None)
+    for _ in range(4):
+        workers.submit(go_on.wait)
+    begin = time.monotonic()
+    assert not workers.close(0.5)
+    assert 0.5 <= time.monotonic() - begin < 1.5
+    go_on.set()
