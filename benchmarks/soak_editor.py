@@ -15,7 +15,7 @@ import statistics
 import sys
 import tempfile
 import time
-from contextlib import suppress
+from collections import Counter
 from pathlib import Path
 
 import psutil
@@ -33,6 +33,9 @@ _MAX_GROWTH_MB = 10.0
 _MAX_GROWTH_SHARE = 0.1
 _MAX_SECONDS = 30.0
 """The longest time that an answer may take."""
+
+_REFUSALS = (types.LSPErrorCodes.ContentModified, types.LSPErrorCodes.RequestFailed)
+"""The codes of errors that are answers, such as that a text has changed meanwhile."""
 
 _PIECES = (
     "<link",
@@ -85,6 +88,7 @@ class Typist:
         self._texts: dict[Path, str] = {}
         self._version = 0
         self.edits = 0
+        self.errors: Counter[str] = Counter()
         self.seconds: list[float] = []
 
     async def step(self) -> None:
@@ -134,8 +138,11 @@ class Typist:
         at_position = _AT_POSITION.get(method)
         parameters = at_position(document, position) if at_position else _OF_DOCUMENT[method](document)
         begin = time.monotonic()
-        with suppress(JsonRpcException):  # "a text has changed meanwhile" is an answer
+        try:
             await asyncio.wait_for(self._client.protocol.send_request_async(method, parameters), 2 * _MAX_SECONDS)
+        except JsonRpcException as error:
+            if error.code not in _REFUSALS:
+                self.errors[f"{method}: {error.message}"] += 1
         self.seconds.append(time.monotonic() - begin)
 
 
@@ -162,13 +169,14 @@ async def run(folder: Path, files: list[Path], seconds: float, seed: int) -> lis
             print(f"{passed:8.0f} {typist.edits:8} {samples[-1][1]:4.0f}", flush=True)
     await client.shutdown_async(None)
     client.exit(None)
+    await client.stop()
     warm = [memory for at, memory in samples if _WARM_UP_SHARE <= at / seconds < 2 * _WARM_UP_SHARE]
     last = [memory for at, memory in samples if at / seconds >= 1 - _WARM_UP_SHARE]
     before, after = statistics.median(warm), statistics.median(last)
     slowest, middle = max(typist.seconds), statistics.median(typist.seconds)
     print(f"memory: {before:.0f} MB after the warm-up, {after:.0f} MB at the end")
     print(f"answers: {len(typist.seconds)}, median {1000 * middle:.0f} ms, slowest {1000 * slowest:.0f} ms")
-    faults = []
+    faults = [f"{count} times {error}" for error, count in typist.errors.most_common()]
     if after - before > max(_MAX_GROWTH_MB, _MAX_GROWTH_SHARE * before):
         faults.append(f"the memory has grown by {after - before:.0f} MB")
     if slowest > _MAX_SECONDS:
