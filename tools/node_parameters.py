@@ -277,6 +277,7 @@ async def _table() -> str:
     for owner, parameters in nodes.items():
         _describe(owner, parameters, texts)
     for owner, plugin in plugins.items():
+        plugin["purpose"] = texts["PLUGINS"][owner]
         _describe(owner, plugin["parameters"], texts)
     content = {"nodes": nodes, "plugins": plugins}
     text = json.dumps(content, indent=1, ensure_ascii=False).replace(_ITEM, "*").replace(_PART, "*")

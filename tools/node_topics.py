@@ -38,9 +38,10 @@ _GIVEN = frozenset({"a", "b", "THE_ITEM"})
 _OF_EVERY_NODE = ("/rosout", "/parameter_events", "~/describe_parameters", "~/get_param", "~/list_parameters")
 _MORE: Mapping[str, list[tuple[str, str, str]]] = {
     "robot_state_publisher/robot_state_publisher": [("joint_states", "sensor_msgs/msg/JointState", "subscription")],
+    "teleop_twist_keyboard/teleop_twist_keyboard": [("cmd_vel", "geometry_msgs/msg/Twist", "publisher")],
     "controller_manager/ros2_control_node": [("~/robot_description", "std_msgs/msg/String", "subscription")],
 }
-"""Names that a node creates only when it has what it needs."""
+"""Names that a node creates only when it has what it needs, such as a terminal."""
 
 
 def _type_name(kind: Any) -> str:
@@ -90,12 +91,11 @@ def _order(key: tuple[str, str]) -> tuple[bool, bool, str]:
 def _endpoints() -> Iterator[tuple[str, dict[str, Any]]]:
     """Yield the package and executable of each node, with the name of the node and what it creates."""
     for package, executable in sorted(EXECUTABLES):
-        if executable.endswith(_LEFT_OUT) or package.startswith(_PACKAGES_LEFT_OUT):
-            continue
         found: dict[tuple[str, str], list[str]] = {}
         names: list[str] = []
-        with _recording(found, names):
-            _start((package, executable), _NEEDED.get(executable, {}), ParameterRules())
+        if not executable.endswith(_LEFT_OUT) and not package.startswith(_PACKAGES_LEFT_OUT):
+            with _recording(found, names):
+                _start((package, executable), _NEEDED.get(executable, {}), ParameterRules())
         for name, kind, role in _MORE.get(f"{package}/{executable}", ()):
             found.setdefault((name, role), [name, kind, role])
         if found:

@@ -226,6 +226,7 @@ def test_hardware_and_its_parameters_are_explained(explained):
 
 
 def test_parameters_of_macros_and_functions_are_explained(explained):
+    assert "**side** (required)" in explained('<xacro:wheel side="left">', '<xacro:wheel si|de="left">')
     assert "= `0.02`" in explained('<xacro:wheel side="left">', '<xacro:wheel side="left" wid|th="1">')
     assert "**parameter side**" in explained('name="${side}_wheel"', 'name="${si|de}_wheel"')
     assert "square root" in explained("${radius / 2}", "${sq|rt(radius)}")
@@ -233,6 +234,14 @@ def test_parameters_of_macros_and_functions_are_explained(explained):
 
 def test_an_element_in_a_macro_call_is_explained(explained):
     assert "rad" in explained("<origin/><a/>", '<origin rp|y="0 0 0"/><a/>')
+
+
+def test_an_angle_is_shown_in_degrees(explained):
+    joint = '<joint name="j" type="{}"><limit lower="{}"/><origin rpy="0 {} 1.5708"/></joint>'
+    assert "-1.5708 rad = -90°" in explained("<!-- here -->", joint.format("revolute", "-1.57|08", "0"))
+    assert "°" not in explained("<!-- here -->", joint.format("prismatic", "-1.57|08", "0"))
+    assert "0 -0.7854 1.5708 rad = 0° -45° 90°" in explained("<!-- here -->", joint.format("fixed", "0", "-0.78|54"))
+    assert "°" not in explained("<!-- here -->", joint.format("fixed", "0", "${p|i}"))
 
 
 def test_the_tables_have_what_the_rules_know():

@@ -50,6 +50,24 @@ def test_a_file_is_included_by_its_own_robot_alone(folder, index, package):
     assert names(folder, index.related(file, {})) == [f"{package}/urdf/robot.xacro", f"{package}/urdf/wheel.xacro"]
 
 
+def test_related_files_begin_with_the_file_itself_and_what_it_includes(tmp_path):
+    arms = "".join(f'<xacro:include filename="{name}.xacro"/>' for name in ("left", "right", "middle"))
+    write(
+        tmp_path / "arms",
+        left=WHEEL,
+        right=WHEEL,
+        middle=WHEEL,
+        one=f"<robot>{arms}</robot>",
+        two=f"<robot>{arms}</robot>",
+    )
+    found = IncludeIndex([real(tmp_path)])
+    found.refresh()
+    folder = real(tmp_path) / "arms" / "urdf"
+    related = found.related(folder / "one.xacro", {})
+    assert [file.stem for file in related] == ["one", "middle", "right", "left"]
+    assert found.related(folder / "left.xacro", {})[0] == folder / "left.xacro"
+
+
 def test_a_package_that_is_not_known_is_none_of_the_known(folder, index):
     file = folder / "tool" / "urdf" / "robot.xacro"
     assert index.related(file, {}) == [file]

@@ -141,6 +141,11 @@ def test_remappings_begin_with_the_topics_of_the_node(at):
     assert at(two).labels() == []
 
 
+def test_an_executable_shows_its_topics(at):
+    found = at('<node pkg="teleop_twist_keyboard" exec="teleop_twist_key|board"/>').hover()
+    assert "**cmd_vel** `geometry_msgs/msg/Twist`, publisher" in found
+
+
 def test_remappings_of_an_own_node_are_in_its_sources(at):
     node = '<node pkg="lamp_nodes" exec="blink"><remap from="{}"/></node>'
     place = at(node.format("|"))

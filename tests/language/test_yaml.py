@@ -37,6 +37,7 @@ MANAGER = """controller_manager:
 """
 DRIVE = MANAGER + "drive:\n  ros__parameters:\n    "
 ARM = MANAGER + "arm:\n  ros__parameters:\n    joints:\n    - left_wheel_joint\n    - x\n    "
+MPPI = "controller_server:\n  ros__parameters:\n    F:\n      plugin: nav2_mppi_controller::MPPI|Controller\n"
 COSTMAP = """local_costmap:
   local_costmap:
     ros__parameters:
@@ -167,6 +168,7 @@ def test_a_launch_file_in_yaml_is_no_parameter_file():
         (ARM + "gains:\n      x:\n        p|: 1", ("gains.x.p", "double")),
         (COSTMAP.replace("radius", "").replace("::Infl", "::In|fl"), ("inflation_radius", "local_costmap")),
         (COSTMAP + "        inflation_rad|ius: 1.0", ("inflation_layer.inflation_radius", "0.55", "metres")),
+        (MPPI, ("plugin of controller_server: follows a path by model predictive path integral control",)),
     ],
 )
 def test_explanations_in_a_parameter_file(typing, marked, words):

@@ -68,7 +68,7 @@ async def test_a_hover_explains_elements_attributes_and_names(editor):
     assert "**macro bar**" in await look(editor, "<xacro:ba", hover)
     assert "`name length`" in await look(editor, "<xacro:ba", hover)
     assert "**property reach** = `0.2`" in await look(editor, "* rea", hover)
-    assert await look(editor, "<xacro:bar na", hover) == "**name**, xacro:bar, parts.xacro"
+    assert await look(editor, "<xacro:bar na", hover) == "**name** (required), xacro:bar, parts.xacro"
     assert "name" in await look(editor, "<link na", hover)
     assert await look(editor, "\n", hover) == ""
 
@@ -114,6 +114,45 @@ async def test_a_hover_tells_about_links_joints_meshes_and_packages(editor, pack
     joint = await hover("urdf/parts.xacro", PARTS, "${name}_jo")
     assert "**joint upper_joint**" in joint
     assert "- continuous joint from `base` to `upper`" in joint
+
+
+async def test_the_facts_about_a_link_are_those_of_its_own_file(editor, package):
+    """Macros of several arms in one package give the same names to their links, as in xarm_description."""
+    arm = (
+        '<robot xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:macro name="{0}"><link name="elbow"><inertial>'
+        '<mass value="{1}"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>'
+        "</xacro:macro></robot>"
+    )
+    one = '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="r">{}</robot>'
+    included = "".join(f'<xacro:include filename="{name}.xacro"/>' for name in ("first", "second"))
+    masses = {"first": 1.5, "second": 2.5, "third": 3.5}
+    for name, mass in masses.items():
+        (package / "urdf" / f"{name}.xacro").write_text(arm.format(name, mass))
+    (package / "urdf" / "a.urdf.xacro").write_text(one.format(f"{included}<xacro:second/>"))
+    (package / "urdf" / "b.urdf.xacro").write_text(one.format(f"{included}<xacro:first/>"))
+    (package / "urdf" / "c.urdf.xacro").write_text(
+        one.format('<xacro:include filename="third.xacro"/><link name="elbow"/>')
+    )
+    shown = {}
+    for name, mass in masses.items():
+        editor.open(f"urdf/{name}.xacro")
+        at = types.Position(0, arm.format(name, mass).index('"elbow"') + 2)
+        asked = types.HoverParams(editor.document(f"urdf/{name}.xacro"), at)
+        shown[name] = (await editor.client.text_document_hover_async(asked)).contents.value
+    assert "- mass 1.5 kg" in shown["first"]
+    assert "- mass 2.5 kg" in shown["second"]
+    assert "**link elbow**" not in shown["third"]
+
+
+async def test_a_hover_of_a_material_shows_its_color(editor):
+    material = '<material name="orange">\n    <color rgba="1 0.5 0 1"/></material>'
+    use = '<link name="tip"><visual><geometry/><material name="orange"/></visual></link>'
+    text = MAIN.replace("</robot>", f"{material}{use}</robot>")
+    editor.open(FILE, text)
+    before = text[: text.rindex("orange") + 2]
+    at = types.Position(before.count("\n"), len(before) - before.rfind("\n") - 1)
+    found = await editor.client.text_document_hover_async(types.HoverParams(editor.document(FILE), at))
+    assert "**material orange** = `1 0.5 0 1`" in found.contents.value
 
 
 async def test_an_editor_can_filter_each_completion(editor):

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import Enum
 from pathlib import Path
 
+from linkwright.loading.deferred import lazy_pattern
 from linkwright.xmltree.tokens import Kind, TokenAttribute, tokens
 
 
@@ -31,6 +33,7 @@ _TAGS = {
     "joint": NameKind.JOINT,
     "material": NameKind.MATERIAL,
 }
+_COLOUR = lazy_pattern(r"""(?:(?!</material).)*?<color\b[^>]*?\brgba\s*=\s*["']([^"']*)["']""", re.DOTALL)
 _DETAILS = {NameKind.MACRO: "params", NameKind.PROPERTY: "value", NameKind.ARGUMENT: "default", NameKind.JOINT: "type"}
 
 
@@ -43,7 +46,8 @@ class NameDefinition:
         name: the name as written, which may contain expressions.
         file: the file.
         start: the offset of the name in the text of the file.
-        detail: the parameters of a macro, the value of a property, the default of an argument, the type of a joint.
+        detail: the parameters of a macro, the value of a property, the default of an argument, the type of a
+            joint, or the ``rgba`` of a material.
         owner: the macro whose content defines the name, or empty outside macros and for properties of a wider scope.
     """
 
@@ -73,6 +77,9 @@ def definitions_in(text: str, file: Path) -> Iterator[NameDefinition]:
             detail, scope = given.get(_DETAILS.get(kind, "")), given.get("scope")
             owner = "" if not macros or (scope is not None and scope.value) else macros[-1]
             written = (detail.value or "") if detail else ""
+            if kind is NameKind.MATERIAL:
+                colour = _COLOUR.match(text, token.end)
+                written = colour[1] if colour else ""
             yield NameDefinition(kind, name.value, file, name.value_start, written, owner)
         if kind is NameKind.MACRO and not token.is_empty_element:
             macros.append("" if name is None else name.value or "")

@@ -10,6 +10,7 @@ from linkwright.diagnostics import LinkwrightError, phrase
 from linkwright.diagnostics.translation import localized
 from linkwright.inertia.mesh_library import MeshLibrary
 from linkwright.language.definitions import NameKind
+from linkwright.language.includes import real
 from linkwright.language.links import file_references
 from linkwright.language.occurrences import Occurrence
 from linkwright.language.renaming import occurrence_at
@@ -75,10 +76,27 @@ def _parts(
         whole = next((value for value in values if (value.start, value.end) == (part.start, part.end)), None)
         names = [] if whole is None else [name.strip("'\"") for name in whole.values()]
     robots = [*robots_of(project, texts, part.file)]
+    own = [robot for robot in robots if _is_made_by(robot, part, project.text(part.file, texts) or "")]
+    if own or part.is_definition:
+        robots = own  # another file may give another robot a link of this name
     for name in names[:_MAX_PARTS]:
         facts = next((facts for robot in robots if (facts := part_facts(robot, part.kind, name))), None)
         if facts is not None:
             yield f"**{part.kind.value} {name}**\n\n{facts}"
+
+
+def _is_made_by(robot: Robot, part: Occurrence, text: str) -> bool:
+    """Return whether the link or joint element around an occurrence creates a part of a robot."""
+    start = max(text.rfind(tag, 0, part.start) for tag in ("<link", "<joint"))
+    links, joints = robot.links.values(), robot.joints.values()
+    elements = (*(link.element for link in links), *(joint.element for joint in joints))
+    return any(
+        element is not None
+        and element.source is not None
+        and element.offset == start
+        and real(element.source.name) == part.file
+        for element in elements
+    )
 
 
 def robots_of(project: Workspace, texts: Mapping[Path, str], file: Path) -> Iterator[Robot]:

@@ -25,7 +25,7 @@ class IncludeIndex:
 
     def __init__(self, folders: Iterable[Path]) -> None:
         self._folders = [*folders]
-        self._inclusions: dict[Path, tuple[int, frozenset[Inclusion]]] = {}
+        self._inclusions: dict[Path, tuple[int, tuple[Inclusion, ...]]] = {}
         self._package_folders: dict[str, list[Path]] = {}
         self.files: tuple[Path, ...] = ()
         self.packages: tuple[Path, ...] = ()
@@ -74,7 +74,7 @@ class IncludeIndex:
         return [file for file in files if not self._above(file, includers)]
 
     def related(self, file: Path, texts: Mapping[Path, str], *, computed: bool = False) -> list[Path]:
-        """Return a file, the descriptions that include it, and all files that these include.
+        """Return a file, the files that it includes, the descriptions that include it, and their other files.
 
         Args:
             file: the file.
@@ -85,7 +85,7 @@ class IncludeIndex:
         for other in dict.fromkeys((*self.files, *texts)):
             by_name.setdefault(other.name, []).append(other)
         found: dict[Path, None] = {}
-        pending = [file, *self.entries(file, texts, computed=computed)]
+        pending = [*self.entries(file, texts, computed=computed), file]
         while pending:
             current = pending.pop()
             if current in found:
@@ -121,18 +121,18 @@ class IncludeIndex:
         found.pop(file, None)
         return [*found]
 
-    def _included(self, file: Path, texts: Mapping[Path, str]) -> frozenset[Inclusion]:
+    def _included(self, file: Path, texts: Mapping[Path, str]) -> tuple[Inclusion, ...]:
         text = texts.get(file)
         if text is not None:
-            return frozenset(inclusions_in(text))
+            return tuple(dict.fromkeys(inclusions_in(text)))
         try:
             changed_ns = file.stat().st_mtime_ns
             known = self._inclusions.get(file)
             if known is None or known[0] != changed_ns:
-                inclusions = frozenset(inclusions_in(file.read_text(encoding="utf-8", errors="replace")))
+                inclusions = tuple(dict.fromkeys(inclusions_in(file.read_text(encoding="utf-8", errors="replace"))))
                 known = self._inclusions[file] = (changed_ns, inclusions)
         except OSError:
-            return frozenset()
+            return ()
         return known[1]
 
 

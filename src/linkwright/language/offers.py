@@ -10,12 +10,14 @@ from linkwright.diagnostics.translation import localized
 from linkwright.language.completion import Completion, ItemKind
 from linkwright.language.format import Document, Target
 from linkwright.language.hover_facts import mesh_facts, package_facts
+from linkwright.language.node_topics import NodeProgram, described_topic, topics_of
 from linkwright.language.programs import components_of, package_names, programs_of, replaced_packages
 from linkwright.messages.definitions.interfaces import is_package_name
 from linkwright.packages.manifest import MANIFEST
 from linkwright.packages.share_layout import source_of
 
 _SHOWN_FILES = 300
+_SHOWN_TOPICS = 20
 _LAUNCH_FILES = (".launch.py", ".launch.xml", ".launch.yaml", ".launch", "_launch.py", "_launch.xml", "_launch.yaml")
 
 
@@ -81,9 +83,14 @@ def explain_package(document: Document, name: str) -> str | None:
 
 
 def explain_program(document: Document, package: str | None, name: str) -> str | None:
-    """Return the origin of an executable in Markdown, or None if it is unknown."""
+    """Return the origin, topics, services and actions of an executable in Markdown, or None if it is unknown."""
     program = programs_of(document.finder, package).get(name) if package else None
-    return None if program is None else f"**{package} {name}**: `{program.origin}`"
+    if package is None or program is None:
+        return None
+    topics = topics_of(document, [NodeProgram(package, name)])[:_SHOWN_TOPICS]
+    return f"**{package} {name}**: `{program.origin}`\n\n" + "\n".join(
+        f"- {described_topic(topic)}" for topic in topics
+    )
 
 
 def explain_file(path: Path) -> str:

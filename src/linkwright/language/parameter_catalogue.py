@@ -78,12 +78,14 @@ class Plugin:
         type: the type, such as ``nav2_costmap_2d::InflationLayer``.
         node: the node that loads it.
         listed: the parameter of the node that names its plugins.
+        purpose: what the plugin does.
         parameters: the parameters, without the name of the plugin.
     """
 
     type: str
     node: str
     listed: str
+    purpose: str
     parameters: tuple[ParameterInfo, ...]
 
 
@@ -138,7 +140,9 @@ def node_parameters(node: str) -> tuple[ParameterInfo, ...]:
 def plugins() -> Mapping[str, Plugin]:
     """Return the plugins by type, in which ``/`` replaces ``::``."""
     return {
-        kind.replace("::", "/"): Plugin(kind, entry["node"], entry["listed"], _infos(entry["parameters"], kind))
+        kind.replace("::", "/"): Plugin(
+            kind, entry["node"], entry["listed"], entry["purpose"], _infos(entry["parameters"], kind)
+        )
         for kind, entry in _table()["plugins"].items()
     }
 

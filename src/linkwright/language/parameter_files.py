@@ -129,7 +129,7 @@ def _explained_plugin(kind: str) -> str:
         return f"`{kind}`" if kind else ""
     shown = ", ".join(f"`{parameter.name}`" for parameter in plugin.parameters)
     text = localized(phrase("plugin of {node}", node=plugin.node))
-    return f"`{kind}`, {text}" + (f": {shown}" if shown else "")
+    return f"`{kind}`, {text}: {plugin.purpose}" + (f"\n\n{shown}" if shown else "")
 
 
 def _explained_value(document: Document, outline: YamlOutline, cursor: YamlCursor, word: str) -> str:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 
+from linkwright.diagnostics import phrase
+from linkwright.diagnostics.translation import localized
 from linkwright.language.completion import Completion, ItemKind, most_used, of_kind
 from linkwright.language.cursor import Cursor, Spot, cursor_at
 from linkwright.language.definitions import NameDefinition, NameKind
@@ -161,7 +163,7 @@ def _attributes(cursor: Cursor, root: ElementRule, names: Sequence[NameDefinitio
 
 def describe_parameter(parameter: Parameter, macro: NameDefinition) -> str:
     """Return a description of a parameter of a macro, in Markdown."""
-    default = "" if parameter.default is None else f" = `{parameter.default}`"
+    default = f" ({localized(phrase('required'))})" if parameter.default is None else f" = `{parameter.default}`"
     return f"**{parameter.name}**{default}, {PREFIX}{macro.name}, {macro.file.name}"
 
 

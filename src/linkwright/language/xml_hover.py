@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
+from linkwright.diagnostics.translation import localized
 from linkwright.language.cursor import Cursor, Spot, cursor_at, name_at
 from linkwright.language.definitions import NameDefinition
 from linkwright.language.expression_completion import FUNCTIONS, XACRO_FUNCTIONS, parameters_in_scope, purpose_of
@@ -67,8 +69,26 @@ def _explain_attribute(
     if attribute is None:
         return None
     value = cursor.attribute.value or ""
-    known = _explained_value(document, cursor, attribute, value) if cursor.spot is Spot.VALUE else ""
-    return Explanation(known or describe_attribute(attribute), start, end)
+    if cursor.spot is Spot.VALUE:
+        known = _explained_value(document, cursor, attribute, value)
+        if known:
+            return Explanation(known, start, end)
+        angles = _in_degrees(cursor, attribute, value)
+        if angles:
+            return Explanation(f"{localized(describe_attribute(attribute))}\n\n{angles}", start, end)
+    return Explanation(describe_attribute(attribute), start, end)
+
+
+def _in_degrees(cursor: Cursor, rule: AttributeRule, value: str) -> str:
+    """Return the angles of a value in degrees, or empty if it contains other quantities or expressions."""
+    given = {each.name: each.value for element in cursor.elements[-2:-1] for each in element.attributes()}
+    if rule.unit != "rad" and (rule.unit != "rad or m" or given.get("type") == "prismatic"):
+        return ""
+    try:
+        angles = [math.degrees(float(word)) for word in value.split()]
+    except ValueError:
+        return ""
+    return f"{value.strip()} rad = {' '.join(f'{angle:.4g}°' for angle in angles)}" if any(angles) else ""
 
 
 def _explained_value(document: Document, cursor: Cursor, rule: AttributeRule, value: str) -> str:
