@@ -103,7 +103,7 @@ class _Replacement:
         self._growth = len(after) - len(before)
 
     def moved(self, start: int, end: int) -> tuple[int, int]:
-        """Return the place of a range in the new text; what is inserted at one of its ends stays outside."""
+        """Return the place of a range in the new text. Text that is inserted at one of its ends stays outside."""
         first = start if start < self._start else self._after(start)
         last = end if end <= self._start else self._after(end)
         return first, max(first, last)

@@ -40,7 +40,7 @@ def installed_programs() -> list[Program]:
 
 
 def _path_of(name: str) -> Path | None:
-    """Return the path of a program, or None. The current folder does not count, because its files may be anybody's."""
+    """Return the path of a program, or None. A program in the current folder is not used, as it may be a stranger's."""
     folders = [Path(sys.executable).parent, *map(Path, os.get_exec_path())]
     candidates = (folder / (f"{name}.exe" if os.name == "nt" else name) for folder in folders if folder.is_absolute())
     return next((each for each in candidates if each.is_file() and os.access(each, os.X_OK)), None)
