@@ -4,7 +4,7 @@ import { smallestChange, textOf } from "../src/panels/source-editor/document-cha
 import { indentation, languageId } from "../src/panels/source-editor/languages";
 import { fitsMessage } from "../src/panels/source-editor/message-size";
 import { colorOf, hexOf, tokenRanges } from "../src/panels/source-editor/server-meanings";
-import { pathOf, positionIn, textIn } from "../src/panels/source-editor/server-places";
+import { pathOf, positionIn, rangeText } from "../src/panels/source-editor/server-places";
 import { SourceDocument } from "../src/panels/source-editor/source-document";
 
 const TEXT = "<robot>\n  <link name='a'/>\n  <link name='b'/>\n</robot>\n";
@@ -140,7 +140,7 @@ it("positions beyond a line or text are its end", () => {
 
 it("the text of a range counts in UTF-16", () => {
   const text = textOf("x = 1\n名😀 = name");
-  expect(textIn(text, { start: { line: 1, character: 6 }, end: { line: 1, character: 10 } })).toBe("name");
+  expect(rangeText(text, { start: { line: 1, character: 6 }, end: { line: 1, character: 10 } })).toBe("name");
 });
 
 it("a message with a text has at most a megabyte", () => {

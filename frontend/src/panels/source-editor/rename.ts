@@ -3,7 +3,7 @@ import { strings } from "../../strings";
 import type { Documents } from "./documents";
 import type { LanguageService } from "./language-service";
 import { confirmRename, type RenamedFile } from "./rename-preview";
-import { pathOf, placeOf, textIn, type ServerRange } from "./server-places";
+import { pathOf, placeOf, rangeText, type ServerRange } from "./server-places";
 import { applyWorkspaceEdit, editsByFile, messageOf, type WorkspaceEdit } from "./workspace-edit";
 
 /** The place of a symbol that can be renamed, with its name unless that is the text there. */
@@ -26,7 +26,7 @@ async function rename(view: EditorView, { client, message }: LanguageService, do
   const place = { textDocument: { uri: shown.uri }, position: placeOf(view.state.doc, view.state.selection.main.head) };
   const named = await client.request<object, RenamedPlace | null>("textDocument/prepareRename", place);
   if (named === null) return words.nothingToRename;
-  const oldName = "placeholder" in named ? named.placeholder : textIn(view.state.doc, named);
+  const oldName = "placeholder" in named ? named.placeholder : rangeText(view.state.doc, named);
   const newName = await askName(view, oldName);
   if (newName === null || newName === oldName) return "";
   client.sync();

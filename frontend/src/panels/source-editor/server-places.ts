@@ -20,7 +20,7 @@ export function placeOf(text: Text, position: number): ServerRange["start"] {
 }
 
 /** Returns the text of a range. */
-export function textIn(text: Text, { start, end }: ServerRange): string {
+export function rangeText(text: Text, { start, end }: ServerRange): string {
   return text.sliceString(positionIn(text, start), positionIn(text, end));
 }
 
