@@ -16,8 +16,8 @@ from __future__ import annotations
 
 import re
 from collections import defaultdict
-from collections.abc import Iterable
-from itertools import takewhile
+from collections.abc import Iterable, Mapping
+from itertools import dropwhile, takewhile
 
 from linkwright.diagnostics import Diagnostic, Note, Phrase, did_you_mean, joined, phrase
 from linkwright.loading.deferred import lazy_pattern
@@ -234,6 +234,7 @@ _OTHER_FORMATS = {
 }
 _MODEL_TAGS = frozenset({"link", "joint", "material"})
 _MAX_NAMES = 3
+_MAX_CYCLE = 8
 
 PartT = TypeVar("PartT", Link, Joint)
 
@@ -378,6 +379,7 @@ def _check_mimics(joints: dict[str, Joint], findings: UrdfReport) -> None:
 
     urdfdom does not check this.
     """
+    cycles = _mimic_cycles(joints)
     for joint in joints.values():
         if joint.mimic is None:
             continue
@@ -391,18 +393,29 @@ def _check_mimics(joints: dict[str, Joint], findings: UrdfReport) -> None:
                 "URDF180", message, element, "joint", hint=did_you_mean(target, joints.keys() - {joint.name})
             )
             continue
-        chain = [joint.name]
-        while target in joints and target not in chain:
-            chain.append(target)
-            mimic = joints[target].mimic
-            if mimic is None:
-                break
-            target = mimic.joint
-        else:
-            if target == joint.name:
-                message = phrase("joint '{name}' mimics itself", name=joint.name)
-                if len(chain) > 1:
-                    message = phrase("the mimic joints form a cycle: {value}", value=" -> ".join([*chain, target]))
-                findings.warning(
-                    "URDF181", message, element, "joint", hint=phrase("remove <mimic> from one of the joints")
-                )
+        if joint.name in cycles:
+            message = phrase("joint '{name}' mimics itself", name=joint.name)
+            if target != joint.name:
+                value = " -> ".join((*cycles[joint.name], joint.name))
+                message = phrase("the mimic joints form a cycle: {value}", value=value)
+            findings.warning("URDF181", message, element, "joint", hint=phrase("remove <mimic> from one of the joints"))
+
+
+def _mimic_cycles(joints: Mapping[str, Joint]) -> dict[str, list[str]]:
+    """Return the mimic joints on a cycle, each with the cycle from it on, shortened after some names."""
+    leaders = {joint.name: joint.mimic.joint for joint in joints.values() if joint.mimic is not None}
+    cycles: dict[str, list[str]] = {}
+    seen: set[str] = set()
+    for start in leaders:
+        path: dict[str, None] = {}
+        name = start
+        while name in leaders and name not in seen:
+            seen.add(name)
+            path[name] = None
+            name = leaders[name]
+        if name in path:
+            cycle = [*dropwhile(name.__ne__, path)]
+            twice, more = [*cycle, *cycle], ["..."] if len(cycle) > _MAX_CYCLE else []
+            shown = min(len(cycle), _MAX_CYCLE)
+            cycles.update((name, [*twice[k : k + shown], *more]) for k, name in enumerate(cycle))
+    return cycles
