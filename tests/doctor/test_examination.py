@@ -153,7 +153,7 @@ def test_a_joint_is_missing_from_the_joint_states_and_its_misspelling_is_named()
 
 def test_a_static_transform_was_never_published():
     found = only(without(WELL, "mast"), "DOC304")
-    assert found.message == "there is no transform of frame 'mast', because no static transform was published for it"
+    assert found.message == "there is no transform of frame 'mast', because no static transform was published"
     assert "'stand'" in found.notes[0].message
 
 

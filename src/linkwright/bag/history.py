@@ -42,7 +42,7 @@ K = TypeVar("K")
 
 
 class Packed(bytes):
-    """A compressed message, as the compressed bytes."""
+    """The bytes of a compressed message."""
 
     __slots__ = ()
 

@@ -55,11 +55,11 @@ class Tap:
         self._subscription = node.add(subscription)
 
     def has_more(self) -> bool:
-        """Return whether received messages have not been handled yet."""
+        """Return whether received messages are still queued."""
         return self._subscription.has_work()
 
     def close(self) -> None:
-        """Stop listening."""
+        """Destroy the subscription."""
         self._subscription.destroy()
 
 
@@ -106,7 +106,7 @@ class MirroredPublisher:
         return self._waiting is not None
 
     def put(self, data: bytes) -> None:
-        """Publish a message."""
+        """Publish a message, or queue it until a subscription is matched."""
         if self._waiting is None:
             self._publish(data)
         else:

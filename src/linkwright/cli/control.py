@@ -200,7 +200,7 @@ def _diagram(controllers: Sequence[Any]) -> str:
 
 
 _OLD_STATES = {"start": "active", "stop": "inactive", "configure": "inactive"}
-"""The current names of states that launch files from before Humble name differently."""
+"""Maps the names of states in launch files from before Humble to the current names."""
 
 
 def _current_state_name(state: str) -> str:

@@ -50,10 +50,10 @@ def _add_node_arguments(parser: argparse.ArgumentParser, *, optional: bool = Fal
         "--include-hidden-nodes", "-a", "--all", action="store_true", help="consider hidden nodes as well"
     )
     parser.add_argument(
-        "--timeout", metavar="SECONDS", type=float, default=1.0, help="how long to wait for the node (default: 1)"
+        "--timeout", metavar="SECONDS", type=float, default=1.0, help="the time to wait for the node (default: 1)"
     )
     parser.add_argument(
-        "--service-timeout", metavar="SECONDS", type=float, help="how long to wait for a response (default: no limit)"
+        "--service-timeout", metavar="SECONDS", type=float, help="the time to wait for a response (default: no limit)"
     )
 
 

@@ -21,7 +21,7 @@ GROUPS = {
     },
     "vision and voice": {
         "vision": "detect objects in images; train and evaluate detectors",
-        "dataset": "render labelled images of a world in COCO and YOLO form, to train a detector",
+        "dataset": "render labelled images of a world in COCO and YOLO format, to train a detector",
         "voice": "try speech engines on recordings, and enrol words",
         "models": "download, verify and remove models for speech and vision",
     },

@@ -189,7 +189,7 @@ def _provenance_output(inputs: Inputs, name: str, form: str) -> str:
 
     provenances = provenance_of_named(inputs, name)
     if form == "json":
-        with recursion_limit_for(inputs.limits):  # elements can be nested more deeply than that
+        with recursion_limit_for(inputs.limits):  # elements can be nested more deeply than Python's default limit
             return _json_text({"elements": [provenance_data(provenance) for provenance in provenances]})
     return "\n".join(map(provenance_text, provenances))
 

@@ -37,7 +37,7 @@ class RobotSeen:
     def root(self) -> str:
         """The name of the root link.
 
-        No joint has it as its child.
+        The root link is not the child of any joint.
         """
         return self.model.root
 

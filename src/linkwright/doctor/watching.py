@@ -330,8 +330,8 @@ class _Watcher:
     def transforms(self) -> tuple[TransformSeen, ...]:
         """Return the transforms, sorted by parent and child.
 
-        The senders of a transform are those on a single topic, because a bridge may forward transforms to another
-        topic.
+        The senders of a transform are the nodes that publish it on one topic, because a bridge may forward transforms
+        to another topic.
         """
         return tuple(
             TransformSeen(parent, child, max(map(tuple, map(sorted, senders.values())), key=len), is_static, valid)

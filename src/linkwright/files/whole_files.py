@@ -32,7 +32,8 @@ def write_whole_file(path: str | os.PathLike[str], data: str | bytes, *, mode: i
         mode: the permissions; None for the permissions of the existing file, or the usual permissions of a new file.
 
     Raises:
-        OSError: the file cannot be written; its contents are unchanged.
+        OSError: the file cannot be written. Its contents are unchanged, unless writing in place failed and the old
+            contents cannot be restored. In that case, the error names their copy.
     """
     content = data.encode("utf-8") if isinstance(data, str) else data
     target = os.path.realpath(os.fspath(path))

@@ -151,7 +151,7 @@ class NodeHost:
         self._show_findings()
 
     def stop_matching(self, matcher: Callable[[Any], bool]) -> None:
-        """End the nodes with a matching owner, as a signal would end their processes.
+        """End the nodes and viewers with a matching owner, as a signal would end their processes.
 
         Args:
             matcher: returns whether a node with a given owner is to end.

@@ -77,9 +77,9 @@ class LiveReload:
         self._callbacks[call].remove(apply)
 
     def show(self, subject: object, diagnostics: Iterable[Diagnostic]) -> None:
-        """Show findings that are already printed.
+        """Show findings in the viewer without printing them.
 
-        They replace the earlier findings about the same object.
+        The findings replace the earlier findings about the same object.
         """
         self._findings[subject] = tuple(diagnostics)
         self._show(self.findings())

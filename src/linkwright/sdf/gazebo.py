@@ -74,7 +74,7 @@ class LinkExtension:
     """The settings of a link in ``<gazebo>``.
 
     Attributes:
-        link: an SDF link with sensors, lights and whether gravity acts; its shapes, mass and pose do not apply.
+        link: an SDF link with the sensors, lights and gravity setting; its shapes, mass and pose do not apply.
         visual: settings for each visual of the link, except geometry and pose.
         collision: settings for each collision of the link, except geometry and pose.
     """
@@ -85,7 +85,7 @@ class LinkExtension:
 
 
 class Extensions:
-    """The ``<gazebo>`` elements of a robot, parsed and by ``reference``.
+    """The ``<gazebo>`` elements of a robot, grouped by the name in ``reference``.
 
     Args:
         robot: the robot with the ``<gazebo>`` elements.

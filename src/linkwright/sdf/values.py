@@ -138,7 +138,7 @@ TIME = ValueType("seconds, or seconds and nanoseconds", _time, plain)
 POSE = ValueType("6 numbers", _pose_numbers, _joined)
 
 COUNTS = {VECTOR2: 2, VECTOR3: 3, COLOR: 4, POSE: 6}
-"""How many numbers a value has, by type."""
+"""The number of components of a value, by type."""
 
 
 def choice(*names: str) -> ValueType:

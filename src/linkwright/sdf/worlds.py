@@ -154,7 +154,7 @@ def with_populations(world: World) -> World:
 
 
 def physics_of(world: World) -> Physics:
-    """Return the physics settings to use: those marked as default, or else the first.
+    """Return the physics settings that a world marks as default, or else the first settings.
 
     For a world without physics settings, return SDF's defaults.
     """

@@ -97,7 +97,8 @@ def scatter(
 ) -> str:
     """Return a scatter plot of a result against a parameter, in SVG.
 
-    It has a point for each run, and a line through the mean results of equal parameter values.
+    The plot has a point for each run, up to `_MAX_POINTS`, and a line through the mean results of equal parameter
+    values.
     """
     is_numeric = all(isinstance(value, int | float) and not isinstance(value, bool) for value in parameter_values)
     names = [] if is_numeric else list(dict.fromkeys(map(str, parameter_values)))

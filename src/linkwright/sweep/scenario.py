@@ -208,7 +208,7 @@ def _check_names(function: Callable[..., object], parameters: Mapping[str, objec
         message = phrase(
             "a parameter cannot be named {names}: the table already has this column", names=quoted_names(reserved)
         )
-        hint = phrase("give it another name")
+        hint = phrase("rename the parameter")
     elif unknown:
         message = phrase(
             "the function '{function}' does not accept {names}", function=function.__name__, names=quoted_names(unknown)
@@ -243,7 +243,7 @@ def _load_module(path: Path) -> ModuleType:
     except SyntaxError as error:
         line, column = error.lineno or 1, error.offset or 1
         span = Span(display_path(Path(error.filename or path)), line, column, line, column)
-        message = phrase("this is not valid Python: {reason}", reason=foreign(error.msg))
+        message = phrase("the file is not valid Python: {reason}", reason=foreign(error.msg))
         raise LinkwrightError(Diagnostic("SWEEP102", message, span)) from None
     except OSError as error:
         if error.filename != str(path):

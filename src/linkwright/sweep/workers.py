@@ -60,7 +60,7 @@ def run_locally(path: Path, runs: Iterable[Run], workers: int, report: Report) -
                 if attempts[run.row] < MAX_ATTEMPTS:
                     pending.appendleft(run)
                 else:
-                    report(Outcome(run.row, error=f"the process that ran it {exit_description}, twice"))
+                    report(Outcome(run.row, error=f"the process of the run {exit_description}, twice"))
     finally:
         for worker in (*busy_workers.values(), *idle_workers):
             worker.stop()

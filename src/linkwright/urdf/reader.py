@@ -103,7 +103,7 @@ def _resolve_visual(fields: dict[str, Any], materials: MaterialTable, owner: Ele
 
 
 class MaterialTable:
-    """The materials defined so far, by name, and the references to undefined ones."""
+    """The materials defined so far, by name, and the references to undefined materials."""
 
     __slots__ = ("_findings", "_undefined", "materials")
 
@@ -137,7 +137,7 @@ class MaterialTable:
     def resolve(self, material: Material, owner: Element) -> Material | None:
         """Return the material that applies to a visual, or None if it is not yet defined.
 
-        A name that is defined here for the first time is added to the table.
+        A material that the visual defines under a new name is added to the table.
         """
         is_definition = material.rgba is not None or material.texture is not None
         if not material.name:
@@ -152,7 +152,7 @@ class MaterialTable:
         return known
 
     def report_undefined(self) -> None:
-        """Report the references to materials that were not defined at that point."""
+        """Report the references to materials without a previous definition."""
         for material, owner in self._undefined:
             element = material.element
             assert element is not None
@@ -177,8 +177,8 @@ def read_material(element: Element, owner: Element, findings: UrdfReport) -> Mat
 def read_joint(element: Element, findings: UrdfReport) -> Joint:
     """Return a joint.
 
-    If it cannot be read, report this and mark the model as refused. As in urdfdom, the axis is 1 0 0 without
-    ``<axis>``, but 0 0 0 for an ``<axis>`` without 'xyz'.
+    If the joint has errors, they are reported, and the model is marked as refused. As in urdfdom, the axis is 1 0 0
+    without ``<axis>``, but 0 0 0 for an ``<axis>`` without 'xyz'.
     """
     errors_before = findings.error_count
     rule = JOINT if element.attributes.get("type") in _AXIS_TYPES else _WITHOUT_AXIS

@@ -35,7 +35,7 @@ class Engine(ABC):
     """
 
     refusal: ClassVar[type[Exception]]
-    """The exception of the wire's library, which is logged without a traceback."""
+    """The exception class of the transport's library, which is logged without a traceback."""
 
     def __init__(self, work: Work, logger: Logger) -> None:
         self._work = work

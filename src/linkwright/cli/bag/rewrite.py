@@ -76,7 +76,7 @@ def configure_convert(parser: argparse.ArgumentParser) -> None:
 
 
 def run_convert(arguments: argparse.Namespace) -> int:
-    """Convert recordings as the file with the output options requests."""
+    """Convert recordings as specified by the file with the output options."""
     from linkwright.bag.rewriting import rewrite
 
     for input_arguments in arguments.input:

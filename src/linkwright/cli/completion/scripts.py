@@ -9,7 +9,7 @@ import shlex
 from collections.abc import Sequence
 
 FILES = ":files"
-"""The line that makes the shell complete file names too."""
+"""The completion that makes the shell also complete file names."""
 
 _BASH = """\
 _linkwright_complete() {

@@ -64,7 +64,7 @@ def configure_pub(parser: argparse.ArgumentParser) -> None:
         metavar="SECONDS",
         type=float,
         default=_KEEP_ALIVE,
-        help="how long to keep running after the last message (default: %(default)s)",
+        help="the time to keep running after the last message (default: %(default)s)",
     )
     parser.add_argument("-n", "--node-name", metavar="NODE", help="the name of the publishing node")
     add_publisher_qos_arguments(parser)

@@ -47,7 +47,7 @@ def default_cancel_callback(cancel_request: ServerGoalHandle) -> CancelResponse:
 
 
 async def await_result(value: Any) -> Any:
-    """Return a callback's return value, awaited first if it is awaitable."""
+    """Return a callback's return value, after awaiting it if it is awaitable."""
     return await value if isawaitable(value) else value
 
 
@@ -265,7 +265,7 @@ class ActionServer(ActionEndpoint):
 
         - An ID selects that goal.
         - A stamp selects all goals that were accepted up to that time.
-        - An ID with a stamp selects that goal and those accepted up to that time.
+        - An ID with a stamp selects that goal and all goals that were accepted up to that time.
         - A request with neither selects all goals.
         """
         uuid = bytes(info.goal_id.uuid)

@@ -186,7 +186,7 @@ class Publisher(TopicEndpoint[M]):
         return tuple(self._receivers_by_subscription)
 
     def hold_for_outside(self, wait_until_sent: Callable[[float | None], bool]) -> None:
-        """Hold messages until `set_outside` is called.
+        """Hold messages for other processes until `set_outside` is called.
 
         The transport calls both, in this order. In ROS 2, a discovered subscription receives all messages of a
         publisher, including the first. The transport creates the writer in its own thread, shortly after the publisher

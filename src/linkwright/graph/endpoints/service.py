@@ -30,7 +30,7 @@ EVENT_TOPIC_SUFFIX = "/_service_event"
 
 
 class ServiceIntrospectionState(IntEnum):
-    """The parts of requests to publish for introspection, with rclpy's numbers and names."""
+    """The levels of service introspection, with rclpy's numbers and names."""
 
     OFF = 0
     METADATA = 1
@@ -402,7 +402,10 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
         return future.result()
 
     def remove_pending_request(self, future: Future[Any]) -> None:
-        """Cancel a request, whose future will not receive a response."""
+        """Cancel a pending request.
+
+        The future never receives a response.
+        """
         with self._lock:
             cancel = self._pending.pop(future, None)
             self._unsent = deque(

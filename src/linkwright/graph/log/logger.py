@@ -259,7 +259,7 @@ def _caller() -> FrameType:
 
 
 def log_failure(logger: Logger, operation: str, error: BaseException) -> None:
-    """Log a failure: the message of a user's mistake, the traceback of any other exception.
+    """Log a failure, with a traceback unless the user caused it.
 
     Args:
         logger: the logger.
@@ -283,7 +283,7 @@ def run_logged(logger: Logger, operation: str, callback: Callable[[], object]) -
     """
     try:
         callback()
-    except Exception as error:  # noqa: BLE001  # one callback must not take the other nodes of the process with it
+    except Exception as error:  # noqa: BLE001  # a failing callback must not stop the other nodes of the process
         log_failure(logger, operation, error)
 
 

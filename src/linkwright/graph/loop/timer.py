@@ -1,7 +1,4 @@
-"""Timers call back at a fixed period.
-
-Rates sleep until the next tick.
-"""
+"""Timers, which call back at a fixed period, and rates, which sleep until the next tick."""
 
 from __future__ import annotations
 

@@ -15,7 +15,7 @@ H = TypeVar("H")
 
 @dataclass(eq=False)
 class ParameterCallbackHandle:
-    """The handle with which a callback for one parameter of one node is removed."""
+    """The handle for removing a callback for one parameter of one node."""
 
     parameter_name: str
     node_name: str
@@ -24,7 +24,7 @@ class ParameterCallbackHandle:
 
 @dataclass(eq=False)
 class ParameterEventCallbackHandle:
-    """The handle with which a callback for all events is removed."""
+    """The handle for removing a callback for all events."""
 
     callback: Callable[[Any], object]
 

@@ -208,7 +208,8 @@ class SteppedNode:
         commands at the same time.
 
         Args:
-            stop_motion: stops the motion of the last command; returns whether there was any motion, which is logged.
+            stop_motion: stops the motion of the last command, and returns whether there was any motion. If there was, a
+                warning is logged.
         """
 
         def lost(publisher: EndpointInfo) -> None:

@@ -78,7 +78,7 @@ class Timebase(ABC):
         """Return the current system time."""
         return Time(nanoseconds=self.now_ns(), clock_type=ClockType.SYSTEM_TIME)
 
-    def attach(self, dispatcher: SettlingDispatcher) -> None:  # noqa: B027  # most need not know
+    def attach(self, dispatcher: SettlingDispatcher) -> None:  # noqa: B027  # most timebases do not need it
         """Attach the dispatcher of a graph that uses this timebase."""
 
 

@@ -40,7 +40,7 @@ class StaticTransformBroadcaster:
         self._sent_transforms: dict[str, TransformStamped] = {}
 
     def sendTransform(self, transform: TransformStamped | Sequence[TransformStamped]) -> None:  # noqa: N802
-        """Publish one transform, or several, together with those sent earlier.
+        """Publish one or several transforms, together with all transforms sent earlier.
 
         A transform replaces an earlier transform with the same child frame.
         """

@@ -179,7 +179,7 @@ class TransformBuffer:
         As in tf2's ``lookupTransform``, the pose transforms points from the source frame to the target frame.
 
         Returns:
-            Array, shape (7,), of x y z and qx qy qz qw.
+            Array, shape (7,), of x y z (metres) and qx qy qz qw.
 
         Raises:
             LookupException: one of the frames is not known, or its parents form a loop.

@@ -40,7 +40,8 @@ class Omissions:
     def skip(self, error: LinkwrightError) -> bool:
         """Return whether to skip the part of the launch that raised an error, and record it if so.
 
-        A part is skipped if missing software is the cause. After that, a part with an unset value is skipped too.
+        A part is skipped if third-party software that it needs is missing. With `skip_all`, any missing package,
+        program or file is enough. After a part has been skipped, a part with an unset value is skipped too.
 
         Returns:
             True if the part is skipped; False if the error must be reported.
@@ -76,7 +77,7 @@ class Omissions:
         *other_diagnostics, last_diagnostic = error.diagnostics
         if self._command is None or not _is_missing(error):
             return error.diagnostics
-        note = Note(phrase("to skip it and run the rest, run {command}", command=foreign(self._command)))
+        note = Note(phrase("to launch without this part, run {command}", command=foreign(self._command)))
         return (*other_diagnostics, last_diagnostic.with_changes(notes=(*last_diagnostic.notes, note)))
 
 
@@ -87,7 +88,7 @@ def add_no_skip_note(error: LinkwrightError) -> None:
     """
     *other_diagnostics, last_diagnostic = error.diagnostics
     if _is_missing(error) and last_diagnostic.span is not None:
-        note = Note(phrase("the launch file itself needs it, so no part can be skipped"))
+        note = Note(phrase("the launch file itself needs the missing software, so no part can be skipped"))
         error.diagnostics = (*other_diagnostics, last_diagnostic.with_changes(notes=(*last_diagnostic.notes, note)))
 
 

@@ -56,7 +56,7 @@ class LaunchDescriptionSource(Placed):
 
     @property
     def method(self) -> str:
-        """A text for listings that names the source of the description."""
+        """A text for listings that describes how the description is loaded."""
         return self._method
 
     def get_launch_description(self, context: LaunchContext) -> LaunchDescription:

@@ -1,4 +1,4 @@
-"""Event handlers: they visit entities when an event occurs."""
+"""Event handlers, which return the entities to visit when an event occurs."""
 
 from __future__ import annotations
 
@@ -205,8 +205,8 @@ def _as_iterable(entities: Any) -> Iterable[Any]:
 class OnExecutionComplete(OnActionEventBase):
     """Reacts when an action has completed.
 
-    A process has completed when it has ended. If no target is given, it accepts all actions except actions that
-    it returned itself, because they would cause an endless loop.
+    A process has completed when it has ended. If no target is given, the handler accepts all actions except the actions
+    that it returned itself, because these would cause an endless loop.
     """
 
     def __init__(

@@ -84,7 +84,7 @@ class ParameterBuilder:
 class MoveItConfigsBuilder(ParameterBuilder):
     """Collects parameters from the files of a MoveIt configuration package.
 
-    Each method reads a file from the given path, or by default from the usual path in the package.
+    Most methods read a file from the given path, or by default from the usual path in the package.
 
     Args:
         robot_name: the name of the robot.
@@ -289,7 +289,7 @@ class MoveItConfigsBuilder(ParameterBuilder):
         return {self.__parameter + suffix: load_yaml(self.__file(file_path, default_name))}
 
     def __models(self) -> tuple[Path, Path]:
-        """Return the paths of the URDF and the SRDF.
+        """Return the paths of the URDF and the SRDF, and store the xacro arguments of the URDF.
 
         The paths come from the file of MoveIt's Setup Assistant, or are derived from the name of the robot.
         """

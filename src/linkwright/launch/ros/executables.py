@@ -1,4 +1,4 @@
-"""Executables of packages: Linkwright's, installed ones, and ones in sources."""
+"""The executables of packages, which are part of Linkwright, installed, or in the sources of a package."""
 
 from __future__ import annotations
 
@@ -152,7 +152,7 @@ def find_installed_executable(finder: PackageFinder, package: str, name: str) ->
 def find_executable(finder: PackageFinder, package: str, name: str) -> Executable:
     """Return a program of a package.
 
-    The program has a path unless it is one of Linkwright's own.
+    The program has a path unless it is one of Linkwright's own. A script is created for an entry point in sources.
 
     Raises:
         LinkwrightError: LAUNCH131, there is no such package or executable. The error is also a LookupError, because
@@ -295,7 +295,7 @@ def _missing_in_sources_error(package: str, name: str, share: Path) -> Linkwrigh
         )
         build_hint = phrase(
             "build it with 'colcon build --packages-select {package}' and source install/setup.bash;"
-            " that needs a C++ compiler and the ROS 2 libraries it uses",
+            " the build needs a C++ compiler and the ROS 2 libraries that the program uses",
             package=package,
         )
         return mark_unavailable(_lookup_error(message, (), build_hint))

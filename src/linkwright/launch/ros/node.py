@@ -49,7 +49,7 @@ if TYPE_CHECKING:
     from linkwright.rviz import RvizConfig
 
 _CONTAINER_PACKAGE = "rclcpp_components"
-"""The package whose executables also run other nodes, to which parameter files may apply."""
+"""The package of the component containers, whose parameter files may apply to the nodes in them."""
 
 _PROCESS_VARIABLES = re.compile(r"(ROS|RCUTILS|RMW|CYCLONEDDS|ZENOH|LINKWRIGHT)_")
 """Matches environment variables of a process that change how its nodes behave.

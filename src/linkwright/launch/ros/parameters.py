@@ -96,7 +96,7 @@ class NodeParameters:
             message = phrase(
                 "parameter file '{path}' has no section for node '{node}'", path=display_path(source.path), node=node
             )
-            hint = did_you_mean(node, names) or phrase("it has sections for {names}", names=joined(names))
+            hint = did_you_mean(node, names) or phrase("the file has sections for {names}", names=joined(names))
             _warn(context, "LAUNCH149", message, hint, place)
 
     def values(self, context: LaunchContext, node: str) -> dict[str, Any]:

@@ -79,7 +79,7 @@ def parse_parameters(tags: list[Entity], parser: Parser) -> list[Any]:
                 raise _tag_error(tag, phrase("the attribute 'allow_substs' needs the attribute 'from'"))
             parameters.append(_parse_nested([tag], parser))
         else:
-            raise _tag_error(tag, phrase("it needs the attribute 'name' or 'from'"), ValueError)
+            raise _tag_error(tag, phrase("the attribute 'name' or 'from' is missing"), ValueError)
     return parameters
 
 
@@ -107,7 +107,7 @@ def _parse_nested(tags: list[Entity], parser: Parser) -> dict[Any, Any]:
         elif children:
             values[name] = _parse_nested(children, parser)
         else:
-            raise _tag_error(tag, phrase("it needs the attribute 'value' or nested parameters"))
+            raise _tag_error(tag, phrase("the attribute 'value' or nested parameters are missing"))
     return values
 
 

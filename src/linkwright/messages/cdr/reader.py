@@ -62,8 +62,6 @@ def _compile_part(structure: Structure, class_of: ClassOf, order: Order) -> Call
     """Return the function that reads a nested structure at an offset.
 
     The function is compiled on first use. It returns the object and the offset after it.
-
-    The function returns the object and the offset after it.
     """
     reader = _part_readers.get((structure.type_name, order))
     if reader is None:

@@ -207,9 +207,9 @@ class ParameterBridge(_Bridge):
             self._connect(graph, topics)
 
     def _is_service(self, argument: str) -> bool:
-        """Return whether an argument describes a service (``SERVICE@ROS_TYPE``), with a warning.
+        """Return whether an argument describes a service, and log a warning if it does.
 
-        Services are not bridged.
+        The form of such an argument is ``SERVICE@ROS_TYPE``. Services are not bridged.
         """
         name, _, types = argument.partition("@")
         is_service = "/srv/" in types.partition("@")[0]

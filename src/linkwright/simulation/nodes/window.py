@@ -7,7 +7,7 @@ from linkwright.nodes.options import NodeOptions, SingleNode, create_node
 
 
 class Window(SingleNode):
-    """The node of ``gzclient``, which does nothing until it is closed.
+    """The node of ``gzclient``, which logs where the world is shown and then stays idle.
 
     It keeps running because launch files end all other processes when it ends.
     """

@@ -85,7 +85,10 @@ class Engine(AnyEngine):
         self._interests = Interests(self._session, settings.domain_id, self._on_token)
 
     def start(self) -> None:
-        """Start the thread."""
+        """Announce the session, subscribe to tokens, and start the thread.
+
+        A client of a router subscribes only to the tokens that its endpoints need.
+        """
         self._presence_token = self._session.liveliness().declare_token(self._own_token("here"))
         if not self._is_client:
             self._interests.add_all()

@@ -40,7 +40,7 @@ class SessionOpener:
         self._logger = logger
         self._cancel_event = cancel_event
         self.waits = False
-        """Whether a session is being opened that waits for others."""
+        """Whether opening a session currently waits for a router or peers."""
 
     def open(self, config: zenoh.Config) -> zenoh.Session:
         """Open a session.
@@ -116,7 +116,7 @@ class ObstacleReporter:
                 continue
             reasons = (
                 joined(obstacles(self._config), "; ")
-                or f"{', '.join(configured_addresses(self._config))} accepts no session"
+                or f"{', '.join(configured_addresses(self._config))} does not accept a session"
             )
             if not self._end_event.is_set() and not self._is_connected():
                 self._log(reasons)

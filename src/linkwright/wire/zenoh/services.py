@@ -29,7 +29,7 @@ _RESULT_TIMEOUT_S = 30 * 24 * 3600.0
 
 
 class OutsideServer:
-    """The servers of other processes, as a client of this process calls them.
+    """The connection of a client to the servers of other processes.
 
     Implements `linkwright.graph.endpoints.service.OutsideService`.
 
@@ -68,7 +68,7 @@ class OutsideServer:
         return partial(self._forget, number)
 
     def review(self, count: int) -> None:
-        """Update whether there is a server that can be reached.
+        """Check whether a server is reachable, and update the client.
 
         Args:
             count: the number of known remote servers.
@@ -122,7 +122,7 @@ class OutsideServer:
 
 
 class IncomingService:
-    """A service of this process, as clients of other processes call it.
+    """The connection of a service to the clients of other processes.
 
     Args:
         service: the service.

@@ -28,7 +28,7 @@ _P = ParamSpec("_P")
 
 
 class _Wait:
-    """A wait until an event occurs or a condition holds.
+    """Waits until an event occurs or a condition holds.
 
     Args:
         context: the context of the launch.

@@ -188,7 +188,7 @@ class ClassicCamera(CameraPlugin[CameraParameters]):
 
     @property
     def rate(self) -> float:
-        """The number of images per simulated second that the sensor declares, or else the plugin."""
+        """The update rate that the sensor declares, or else the plugin, in images per simulated second."""
         return self.sensor.sensor.update_rate or self.parameters.update_rate
 
     def is_wanted(self) -> bool:

@@ -79,7 +79,7 @@ class GzNavsat(_Receiver[NoParameters], OneTopic[NoParameters]):
 
 
 class GzMagnetometer(OneTopic[NoParameters]):
-    """The sensor ``magnetometer`` of gz, which publishes in tesla as ros_gz_bridge does."""
+    """The sensor ``magnetometer`` of gz, which publishes the magnetic field in tesla, as ros_gz_bridge does."""
 
     def make_sensor(self) -> None:
         """Create the magnetometer for the magnetic field of the world."""

@@ -196,7 +196,7 @@ class Course:
         return evaluate(self.names, *self._detect_validation(self.averaged))
 
     def best_threshold(self, network: Network) -> float:
-        """Return the score threshold at which F1 on the validation split is greatest."""
+        """Return the score threshold at which F1 on the validation split is highest."""
         return best_f1_threshold(self.names, *self._detect_validation(network))
 
     @torch.no_grad()

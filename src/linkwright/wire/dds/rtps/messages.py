@@ -81,7 +81,7 @@ class Heartbeat:
 class Gap:
     """GAP: some samples are not for a reader, or are no longer available.
 
-    These are the samples from `start` to before `base`, and the samples in `other_numbers`.
+    These are the samples from `start` to before `base`, and the samples in `others`.
     """
 
     source: bytes
