@@ -22,7 +22,10 @@ if TYPE_CHECKING:
 
 
 _ANSWER_TIMEOUT = 5.0
-"""Seconds to wait for each node when all nodes are listed, so that an unresponsive node does not block the others."""
+"""Seconds to wait for each node when all nodes are listed.
+
+An unresponsive node does not block the others.
+"""
 _LABELS = {
     1: ("Boolean value is:", "bool_value"),
     2: ("Integer value is:", "integer_value"),

@@ -87,7 +87,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def without_options(words: list[str]) -> SimpleNamespace | None:
-    """Return the parsed arguments of a command line without options, or None if it names no file."""
+    """Return the parsed arguments of a command line without options.
+
+    The result is None if the command line names no file.
+    """
     return SimpleNamespace(file=words[0], values=words[1:], **_DEFAULTS) if words else None
 
 

@@ -11,7 +11,7 @@ from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 _MAX_DIFFERENCE_NS = 5 * NANOSECONDS_PER_SECOND
 """The difference from which a stamp is reported.
 
-tf2 keeps transforms for ten seconds, and displays wait less.
+tf2 keeps transforms for ten seconds, and displays wait for a shorter time.
 """
 _CLOCK_TOPIC = "/clock"
 

@@ -100,7 +100,7 @@ def _examine_types(observation: Observation) -> Iterator[Diagnostic]:
 def _without_universal_subscribers(types: dict[str, list[EndpointInfo]]) -> dict[str, list[EndpointInfo]]:
     """Return a topic's endpoints by type, without subscriptions of nodes that accept any type.
 
-    A node accepts all types if it subscribes to more than one type, and to all published ones. Its publishers remain.
+    A node accepts all types if it subscribes to more than one type, and to all published types. Its publishers remain.
     The result is empty if no other node subscribes.
     """
     all_endpoints = [endpoint for endpoints in types.values() for endpoint in endpoints]

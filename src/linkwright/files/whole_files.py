@@ -75,7 +75,7 @@ def _replace(target: str, content: bytes, mode: int | None) -> None:
 def _write_in_place(target: str, content: bytes) -> None:
     """Overwrite a file, and restore its old contents if writing fails.
 
-    If the old contents cannot be restored either, the copy of them is kept.
+    If the old contents cannot be restored either, their copy is kept.
     """
     with open(target, "r+b", buffering=0) as file:
         old_content = file.readall()

@@ -27,7 +27,7 @@ _NODES_GROUP = "linkwright.nodes"
 _READ_PREFIXES = (_OWN_PREFIX, "launch_ros.")
 """The prefixes of the groups that are read.
 
-They are the groups of Linkwright, and those of launch_ros, which packages also extend.
+They are the groups of Linkwright, and the groups of launch_ros, which packages also extend.
 """
 
 

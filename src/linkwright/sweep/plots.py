@@ -21,7 +21,7 @@ _POINT_RADIUS = 3.0
 class Axis:
     """An axis of a plot.
 
-    Calling it converts a value to a coordinate in the drawing.
+    Calling an axis converts a value to a coordinate in the drawing.
 
     Attributes:
         low, high: the values at both ends.
@@ -125,7 +125,7 @@ def scatter(
 def _mean_line(positions: Sequence[float], values: Sequence[float], x_axis: Axis, y_axis: Axis) -> str:
     """Return a line through the mean of the values at each position, in SVG.
 
-    It is empty if there is only one position, or if there are few values for each position.
+    The line is empty if there is only one position, or if there are few values for each position.
     """
     groups: dict[float, list[float]] = {}
     for position, value in zip(positions, values, strict=True):

@@ -24,7 +24,10 @@ _PATIENCE = 10.0
 """The timeout of a connection to the cluster, in seconds."""
 
 _scenario: Scenario | None = None
-"""The scenario that this process of the cluster has loaded. Ray uses a process for several runs."""
+"""The scenario that this process of the cluster has loaded.
+
+Ray uses a process for several runs.
+"""
 
 
 def run_on_ray(path: Path, runs: Iterable[Run], address: str, report: Report) -> None:

@@ -33,7 +33,7 @@ _DECLARATION_ATTRIBUTE = "__linkwright_scenario__"
 _MODULE_NAME = "linkwright_scenario"
 SEED = "seed"
 COLUMNS = ("row", SEED, "error")
-"""The names of the columns that every table has. No parameter or result can have these names."""
+"""The names of the columns of every table. Parameters and results cannot have these names."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,7 +59,10 @@ class Normal:
 
 
 Values = Sequence[Value] | Uniform | Normal
-"""The values of a parameter: a list, or a distribution from which one value is drawn for each seed."""
+"""The values of a parameter: a list or a distribution.
+
+One value is drawn from a distribution for each seed.
+"""
 
 
 @dataclass(frozen=True)

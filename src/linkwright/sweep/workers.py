@@ -69,7 +69,7 @@ def run_locally(path: Path, runs: Iterable[Run], workers: int, report: Report) -
 
 
 class _Worker:
-    """A process that executes one run after another, with a connection to it."""
+    """A process that executes one run after another, and the connection to it."""
 
     def __init__(self, path: Path) -> None:
         spawn = multiprocessing.get_context("spawn")

@@ -113,7 +113,7 @@ def configure_play(parser: argparse.ArgumentParser) -> None:
 
 
 def run_play(arguments: argparse.Namespace) -> int:
-    """Play a recording until it ends or the user interrupts, and return the exit status."""
+    """Play a recording until it ends or is interrupted, and return the exit status."""
     from linkwright.bag import BagReader, PlayOptions
     from linkwright.cli.session import run_in_graph
 

@@ -52,7 +52,10 @@ _PLUGINS = {
         ),
     ),
 }
-"""Linkwright's equivalents of rosbag2's plugins, by the kinds of ``ros2 bag list``. CDR needs no converter."""
+"""Linkwright's equivalents of rosbag2's plugins, by the kinds of ``ros2 bag list``.
+
+CDR needs no converter.
+"""
 
 
 def configure_convert(parser: argparse.ArgumentParser) -> None:

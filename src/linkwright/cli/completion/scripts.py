@@ -102,7 +102,10 @@ function fish_command_not_found
 end
 """,
 }
-"""The handler for unknown commands in each shell. It suggests the replacements for commands of ROS."""
+"""The handler for unknown commands in each shell.
+
+It suggests the replacements for commands of ROS.
+"""
 
 
 def script(shell: str, python: str, commands: Sequence[str]) -> str:

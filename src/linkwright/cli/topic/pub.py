@@ -22,7 +22,10 @@ if TYPE_CHECKING:
 _KEEP_ALIVE = 0.1
 _WAITING_NOTICE_PERIOD = 1.0
 _MUTUAL_DISCOVERY_DELAY = 0.15
-"""Seconds until a discovered subscription has also discovered the publisher. Earlier messages may be lost."""
+"""Seconds until a discovered subscription has also discovered the publisher.
+
+Earlier messages may be lost.
+"""
 _MessageWithStamps = tuple[Any, list[Callable[[Any], None]]]
 
 
@@ -71,7 +74,7 @@ def configure_pub(parser: argparse.ArgumentParser) -> None:
 
 
 def run_pub(arguments: argparse.Namespace) -> int:
-    """Publish the requested number of times, or until the user interrupts the command."""
+    """Publish messages the requested number of times, or until the user interrupts the command."""
     from linkwright.messages import get_message
 
     name = absolute(arguments.topic_name)

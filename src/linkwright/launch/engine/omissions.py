@@ -14,7 +14,10 @@ _MISSING_SOFTWARE_CODES = frozenset({"LAUNCH101", "LAUNCH124", "LAUNCH131", "LAU
 """The codes of findings that report missing software."""
 
 _UNSET_VALUE_CODES = frozenset({"LAUNCH121", "LAUNCH123", "LAUNCH137"})
-"""The codes of findings about unset values. Skipped parts of the launch may have set such a value."""
+"""The codes of findings about unset values.
+
+Skipped parts of the launch may have set such a value.
+"""
 
 
 class Omissions:

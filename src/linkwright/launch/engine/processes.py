@@ -28,13 +28,22 @@ if TYPE_CHECKING:
 _HAS_GROUPS = hasattr(os, "killpg")
 _KILL = getattr(signal, "SIGKILL", signal.SIGTERM)
 _DRAIN_SECONDS = 0.2
-"""The maximum seconds to read output after a process has ended, because its children may keep the streams open."""
+"""The maximum seconds to read output after a process has ended.
+
+Its children may keep the streams open.
+"""
 _MAX_LINE_LENGTH = 100_000
 """The maximum number of characters of an incomplete line."""
 _ESCALATION_SECONDS = {"SIGTERM": 0.0, "SIGKILL": 0.5}
-"""The seconds to wait before each signal after the user has repeated the interrupt, by the name of the signal."""
+"""The seconds to wait before each signal after the user has repeated the interrupt.
+
+The keys are the names of the signals.
+"""
 _TERMINALS = frozenset({"xterm", "gnome-terminal", "konsole", "terminator", "x-terminal-emulator", "xfce4-terminal"})
-"""Terminal programs that launch files use as ``prefix``, so that the process can read the keyboard."""
+"""Terminal programs that launch files use as ``prefix``.
+
+In a terminal, the process can read the keyboard.
+"""
 
 
 class RunningProcess:

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 
 _REPORT_DELAY_SECONDS = 1.0
-"""The seconds after Ctrl-C until the log names the processes that delay the end of the launch."""
+"""The seconds after Ctrl-C until the processes that delay the end are logged."""
 
 
 class LaunchSession:
@@ -385,7 +385,7 @@ class LaunchSession:
         self._react(event)
 
     def _react(self, event: events.Event) -> None:
-        """Carry out an event that ends the launch, or that stops or signals processes."""
+        """End the launch, or stop or signal processes, as the event requests."""
         if isinstance(event, events.Shutdown):
             if not self.ending:
                 self._begin_shutdown(event)

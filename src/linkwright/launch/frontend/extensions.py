@@ -28,7 +28,7 @@ from linkwright.packages.readers.entry_points import (
 )
 
 ACTIONS = "launch.frontend.launch_extension"
-"""The entry point group of modules that expose actions and substitutions when they are imported."""
+"""The entry point group of modules that expose actions and substitutions on import."""
 PARSERS = "launch.frontend.parser"
 """The entry point group of parsers. The names are the languages."""
 _GROUP_NAMES = {ACTIONS: "launch extension", PARSERS: "parser extension"}

@@ -81,13 +81,13 @@ class _Reader:
         self._place = place
 
     def template(self) -> list[Substitution]:
-        """Return the substitutions of the entire text."""
+        """Parse the entire text, and return its substitutions."""
         substitutions = self._parse_parts(until="", argument=False)
         assert self._at == len(self._text)
         return substitutions
 
     def _parse_parts(self, until: str, argument: bool) -> list[Substitution]:
-        """Return the substitutions of the text up to a closing character.
+        """Parse the text up to a closing character, and return its substitutions.
 
         Args:
             until: the closing quote, at which parsing stops; empty outside quotes.

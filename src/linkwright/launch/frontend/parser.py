@@ -33,7 +33,7 @@ class Parser:
 
     @classmethod
     def load_launch_extensions(cls) -> None:
-        """Import all modules of Linkwright and of installed packages with actions and substitutions."""
+        """Import the modules of Linkwright and of installed packages that contain actions or substitutions."""
         if Parser.extensions_loaded:
             return
         for _ in extensions.load(extensions.ACTIONS):

@@ -62,7 +62,7 @@ class BaseEventHandler:
         return text, list(_as_iterable(self.entities))
 
     def handle(self, event: Any, context: LaunchContext) -> Any:
-        """Set the event as a local of the context, and unregister a handler for a single event.
+        """Make the event a local of the context, and unregister the handler if `handle_once` is set.
 
         Subclasses extend this method to return the entities to visit.
         """

@@ -227,7 +227,7 @@ class ComposableNodeContainer(Node):
 def _is_third_party(finder: PackageFinder, package: str, plugin: str) -> bool:
     """Return whether a component belongs to third-party software that is not built here.
 
-    A name that is a misspelling of one of Linkwright's components is not third-party.
+    A misspelled name of one of Linkwright's components does not count as third-party.
     """
     from linkwright.nodes.options import COMPONENTS
 

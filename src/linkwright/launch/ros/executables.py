@@ -313,7 +313,10 @@ def _missing_in_sources_error(package: str, name: str, share: Path) -> Linkwrigh
 
 
 def _unknown_program_error(package: str, name: str, share: Path) -> LinkwrightError:
-    """Return the error for a program that the package may build, but not visibly in its sources."""
+    """Return the error for a program that the sources of a package do not name.
+
+    The package may build the program nevertheless.
+    """
     message = phrase("executable '{name}' of package '{package}' is not available", name=name, package=package)
     note = Note(phrase("the files in {share} do not show which programs the package builds", share=display_path(share)))
     build_hint = phrase(

@@ -69,7 +69,7 @@ class ParameterValue(Placed):
         return self._value_type
 
     def evaluate(self, context: LaunchContext, name: str | None = None) -> Any:
-        """Return the evaluated value in its type.
+        """Evaluate the substitutions, and return the value in the requested type.
 
         Args:
             context: the launch context for the substitutions.

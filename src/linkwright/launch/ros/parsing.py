@@ -17,7 +17,7 @@ Entities = list[Entity]
 
 
 def parse_node(entity: Entity, parser: Parser, kwargs: dict[str, Any], cls: Any) -> dict[str, Any]:
-    """Add a node's keyword arguments to a process's, and return all of them.
+    """Add a node's keyword arguments to the keyword arguments of its process, and return all.
 
     Args:
         entity: the tag.
@@ -112,7 +112,7 @@ def _parse_nested(tags: list[Entity], parser: Parser) -> dict[Any, Any]:
 
 
 def _type_error(tag: Entity, value: Any, identifier: str | None, error: Exception) -> Exception:
-    """Return the error for a ``param`` tag with a value that is not of its type.
+    """Return the error for a ``param`` tag whose value does not have the declared type.
 
     A LinkwrightError with another code than LAUNCH132 is returned unchanged.
     """

@@ -40,9 +40,9 @@ def read_command_file(path: str | Path) -> CommandSet:
     """Read a command file.
 
     Raises:
-        LinkwrightError: VOICE301, it cannot be read; VOICE302, it is invalid; VOICE303, a phrase is invalid; VOICE304,
-            two commands share a phrase; VOICE305, a message does not fit its type; VOICE306, there are more phrases
-            than engines accept.
+        LinkwrightError: VOICE301, the file cannot be read; VOICE302, its content is invalid; VOICE303, a phrase is
+            invalid; VOICE304, two commands share a phrase; VOICE305, a message does not fit its type; VOICE306, there
+            are more phrases than engines accept.
     """
     return parse_commands(read_source(Path(path), phrase("file of commands"), "VOICE301"))
 

@@ -37,7 +37,7 @@ class Goals:
     """A client of one action with at most one goal at a time.
 
     Args:
-        node: the node that sends them.
+        node: the node that sends the goals.
         type_name: the type of the action.
         name: the name of the action.
         on_end: called when a goal ends, with whether it was reached, and the server's reason or an empty string. It is
