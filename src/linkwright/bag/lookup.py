@@ -36,7 +36,7 @@ _MESSAGE_HEAD = struct.Struct("<BQHIQQ")
 
 
 class McapLookup:
-    """Finds messages of an open MCAP file that has an index.
+    """A lookup of messages in an open MCAP file that has an index.
 
     Args:
         storage: the open file.

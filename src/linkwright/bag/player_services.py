@@ -23,7 +23,7 @@ _SERVICES = (
 
 
 class PlayerServices:
-    """Offers the services that control a player, below the name of a node.
+    """The services that control a player, below the name of a node.
 
     Names, types and responses to errors follow ``rosbag2_transport::Player``.
 

@@ -19,7 +19,7 @@ _INTERVALS = 4800
 
 
 class RowLookup:
-    """Finds messages of an open SQLite file.
+    """A lookup of messages in an open SQLite file.
 
     Args:
         storage: the open file.

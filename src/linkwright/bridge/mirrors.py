@@ -64,7 +64,7 @@ class Tap:
 
 
 class MirroredPublisher:
-    """Publishes, in one network, the messages of a publisher in the other network.
+    """A publisher in one network that forwards the messages of a publisher in the other network.
 
     Messages are queued until a subscription is matched, because existing subscriptions have not discovered the
     publisher yet.
@@ -146,7 +146,7 @@ class MirroredPublisher:
 
 
 class MirroredService:
-    """Offers, in one network, a service of the other network.
+    """A service in one network that forwards requests to a service of the other network.
 
     Args:
         node: the bridge's node with the name of the service's node.

@@ -22,7 +22,7 @@ _DELAY_SECONDS = 0.8
 
 
 class Network:
-    """Joins the graph of a launch to the ROS 2 network.
+    """The connection of a launch's graph to the ROS 2 network.
 
     Args:
         session: the run whose nodes join the network.
@@ -89,7 +89,7 @@ _MAX_LISTED_NAMES = 6
 
 
 class SharedNames:
-    """Warns about node names that a launch shares with other programs in the network.
+    """A monitor of node names that a launch shares with other programs in the network.
 
     Args:
         network: the network, which provides the domain for the warning.

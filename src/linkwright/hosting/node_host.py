@@ -26,7 +26,7 @@ _SCREEN_DESTINATIONS = output_destinations("screen")[2]
 
 
 class NodeHost:
-    """Starts and ends the nodes of this process, and keeps track of them.
+    """The host of the nodes of this process, which starts and ends them.
 
     A viewer is started before the nodes that were planned with it, so that its page responds early.
     """

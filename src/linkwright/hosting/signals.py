@@ -63,7 +63,7 @@ class Session(Protocol):
 
 
 class SignalWatch:
-    """Handles signals in a ``with`` block.
+    """A context manager that handles signals in its ``with`` block.
 
     Outside of the main thread, signals are not handled.
 

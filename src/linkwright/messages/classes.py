@@ -83,7 +83,7 @@ def build_class(structure: Structure, base: type, classes: dict[str, type], modu
 
 
 class _FieldCode:
-    """Generates the code for one field."""
+    """A generator of the code for one field."""
 
     def __init__(self, field: Field, classes: dict[str, type], scope: dict[str, Any]) -> None:
         self.field = field

@@ -48,7 +48,7 @@ def to_yaml(
 
 
 class _Writer:
-    """Appends the YAML lines of one message to a list.
+    """A writer that appends the YAML lines of one message to a list.
 
     A path describes the containers around a value: ``m`` for a mapping, ``s`` for a list.
     """

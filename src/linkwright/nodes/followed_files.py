@@ -69,8 +69,6 @@ class FileFollower(Protocol):
 
         Each new version of the description is passed on. If this process did not expand the description, do nothing.
 
-        If this process did not expand the description, do nothing.
-
         Args:
             text: the description.
             name: the name of the described object; one file is watched for each name.

@@ -93,7 +93,7 @@ class ClientGoalHandle:
 
 
 class ActionClient(ActionEndpoint):
-    """Sends goals to an action server (rclpy ``ActionClient``).
+    """A client that sends goals to an action server (rclpy ``ActionClient``).
 
     Args:
         node: the node that owns the client.

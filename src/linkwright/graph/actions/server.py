@@ -52,7 +52,7 @@ async def await_result(value: Any) -> Any:
 
 
 class ActionServer(ActionEndpoint):
-    """Serves an action (rclpy ``ActionServer``).
+    """The server of an action (rclpy ``ActionServer``).
 
     The server consists of three services and two topics below ``NAME/_action/``. Callbacks may be coroutine functions.
     An execute callback that is not a coroutine function runs in the dispatcher's thread and blocks other callbacks

@@ -25,7 +25,7 @@ M = TypeVar("M")
 
 
 class Publisher(TopicEndpoint[M]):
-    """Publishes messages on a topic, from any thread (rclpy ``Publisher``).
+    """A publisher of messages on a topic, usable from any thread (rclpy ``Publisher``).
 
     ``Node.create_publisher`` creates publishers.
 

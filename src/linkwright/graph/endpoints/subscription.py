@@ -48,7 +48,7 @@ class CallbackType(Enum):
 
 
 class Subscription(TopicEndpoint[M], Entity):
-    """Receives the messages of a topic (rclpy ``Subscription``).
+    """A subscription to the messages of a topic (rclpy ``Subscription``).
 
     ``Node.create_subscription`` creates subscriptions.
 

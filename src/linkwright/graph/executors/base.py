@@ -63,7 +63,7 @@ def deadline_after(timeout_sec: float | None) -> int | None:
 
 
 class Executor:
-    """Runs the callbacks of nodes.
+    """An executor that runs the callbacks of nodes.
 
     This is the base class of all executors, including users' own.
 

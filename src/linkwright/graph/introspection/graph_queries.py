@@ -24,7 +24,7 @@ It may be called from any thread, but never by two threads at the same time.
 
 
 class SharedNameMonitor:
-    """Tracks node names of this process that other processes also use, and reports changes.
+    """A monitor of the node names of this process that other processes also use.
 
     Args:
         notify: receives the shared names when they change. None logs a warning for each name when it becomes shared.

@@ -110,7 +110,7 @@ LogSink = Callable[[LogRecord], None]
 
 
 class Logger:
-    """Logs under one name, with the methods of rclpy's loggers.
+    """A named logger with the methods of rclpy's loggers.
 
     The methods ``debug`` to ``fatal`` and `log` accept the filters ``once=True``, ``skip_first=True`` and
     ``throttle_duration_sec=SECONDS``. ``throttle_time_source_type=CLOCK`` sets the clock of the throttle. A filter

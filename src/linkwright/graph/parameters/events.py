@@ -97,7 +97,7 @@ def _remove(handle: H, handles: list[H]) -> None:
 
 
 class ParameterEventHandler:
-    """Calls callbacks for the events on ``/parameter_events``, or for single parameters in them.
+    """A registry of callbacks for the events on ``/parameter_events`` or for single parameters.
 
     Callbacks are called in the reverse order of their registration.
 

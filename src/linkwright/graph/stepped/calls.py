@@ -14,7 +14,7 @@ Failure = Callable[[Exception], object]
 
 
 class Calls:
-    """Calls the functions of a plugin, a sensor or a controller.
+    """A caller of the functions of a plugin, a sensor or a controller.
 
     Args:
         on_failure: called with the exception of a function; may call `close`.

@@ -36,7 +36,7 @@ class Alarm(Protocol):
 
 
 class AlarmSetter(Protocol):
-    """Schedules calls."""
+    """A scheduler of calls."""
 
     def call_at(self, steady_ns: int, callback: Callable[[], None]) -> Alarm:
         """Schedule a call for a steady time of the graph, in nanoseconds. Callable from any thread.
@@ -47,7 +47,7 @@ class AlarmSetter(Protocol):
 
 
 class SettlingDispatcher(Protocol):
-    """Runs the callbacks of a graph, and can wait until they are done."""
+    """A dispatcher of a graph's callbacks that can wait until they are done."""
 
     async def settle(self) -> None:
         """Wait until no work is ready, including calls that other calls make ready."""

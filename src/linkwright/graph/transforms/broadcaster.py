@@ -10,7 +10,7 @@ from linkwright.messages import TFMessage, TransformStamped
 
 
 class TransformBroadcaster:
-    """Publishes transforms that change.
+    """A publisher of transforms that change, on ``/tf``.
 
     Args:
         node: the node that publishes.
@@ -26,7 +26,7 @@ class TransformBroadcaster:
 
 
 class StaticTransformBroadcaster:
-    """Publishes transforms that do not change.
+    """A publisher of transforms that do not change, on ``/tf_static``.
 
     Each message contains all transforms that were sent so far, so that late joiners receive all of them.
 

@@ -106,7 +106,7 @@ class _Plan:
 
 
 class TransformBuffer:
-    """Stores the latest transform of each frame, as a display needs it.
+    """A buffer of the latest transform of each frame, for displays.
 
     As in tf2, a frame has one parent, and the transform that was received last applies, regardless of its sender. A
     transform with another parent therefore moves the frame to that parent. Unlike tf2 there is no history: stamps are

@@ -75,7 +75,7 @@ def _compile_part(structure: Structure, class_of: ClassOf, order: Order) -> Call
 
 
 class _ReaderCode:
-    """Generates the code of a reader.
+    """A generator of the code of a reader.
 
     In the code, `p` is the position in the data, including the header, and `e` is the end of the data.
     """

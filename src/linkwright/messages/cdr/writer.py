@@ -80,7 +80,7 @@ def _compile_part(structure: Structure) -> Callable[..., int]:
 
 
 class _WriterCode:
-    """Generates the code of a writer.
+    """A generator of the code of a writer.
 
     In the code, `p` is the position after the header, and `o` is the list of pieces.
     """

@@ -87,7 +87,7 @@ def _assemble(reader: _Reader, source: SourceText, type_name: str) -> Definition
 
 
 class _Reader:
-    """Parses the tokens of one file into structures and constants."""
+    """A parser that converts the tokens of one file to structures and constants."""
 
     def __init__(self, source: SourceText, known: KnownMessages) -> None:
         self._source = source

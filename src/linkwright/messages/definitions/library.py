@@ -294,9 +294,9 @@ class Library:
 
 
 class _TrustedMessages:
-    """Accepts every message name in files that come with Linkwright, which a test has checked.
+    """A `KnownMessages` that accepts every message name.
 
-    It has the interface of `KnownMessages`.
+    It is used for the files that come with Linkwright; a test has checked the names in them.
     """
 
     def has_message(self, type_name: str) -> bool:

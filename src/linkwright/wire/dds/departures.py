@@ -47,7 +47,7 @@ class _MissingWriter:
 
 
 class Departures:
-    """Decides whether publishers that disappeared were lost.
+    """A detector that decides whether publishers that disappeared were lost.
 
     Only the discovery thread may call the methods, except `watch`.
 

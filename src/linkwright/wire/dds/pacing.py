@@ -100,7 +100,7 @@ class Receiver:
 
 
 class Pacer:
-    """Sends the large samples of all writers of a participant, in a thread.
+    """A thread that sends the large samples of all writers of a participant.
 
     The thread starts with the first sample.
 
@@ -179,7 +179,7 @@ class Pacer:
 
 
 class PacedWriter:
-    """Writes the samples of one writer in order, and sends large ones to Fast DDS readers first.
+    """A writer that keeps its samples in order, and sends large ones to Fast DDS readers first.
 
     Args:
         guid: the writer's GUID.

@@ -425,7 +425,7 @@ class IncomingTopic(MirroredTopic):
 
 
 class _LogLimits:
-    """Limits the frequency of a topic's log messages."""
+    """Limits for the frequency of a topic's log messages."""
 
     _LOG_INTERVAL_S = 30.0
 

@@ -27,7 +27,7 @@ class UndescribableError(Exception):
 
 
 class WireTypes:
-    """Creates and caches the descriptions of types.
+    """A cache that creates the descriptions of types on first use.
 
     Any thread may use this object.
     """

@@ -45,7 +45,7 @@ class _MissingPublisher:
 
 
 class Departures:
-    """Decides whether publishers that disappeared were lost.
+    """A detector that decides whether publishers that disappeared were lost.
 
     Only the discovery thread may call the methods, except `watch`.
 

@@ -27,7 +27,7 @@ _LOG_INTERVAL_S = 10.0
 
 
 class SessionOpener:
-    """Opens sessions, with retries for as long as the configuration allows.
+    """An opener of sessions that retries for as long as the configuration allows.
 
     Zenoh itself could wait, but that wait cannot be interrupted and reports nothing.
 
@@ -80,7 +80,7 @@ class SessionOpener:
 
 
 class ObstacleReporter:
-    """Reports, from a thread, why the addresses that a session connects to cannot be reached.
+    """A thread that reports why the addresses that a session connects to cannot be reached.
 
     Args:
         config: the configuration of the session.
