@@ -164,7 +164,7 @@ def test_a_joint_has_states_that_nobody_turns_into_transforms():
         endpoints=(*WELL.endpoints, publisher(JSP, "/arm/joint_states", JOINT_STATE)),
     )
     found = only(seen, "DOC305")
-    assert "remap robot_state_publisher" in found.hint
+    assert "remap joint_states of robot_state_publisher" in found.hint
 
 
 def test_frames_with_a_prefix_are_the_robots():

@@ -25,7 +25,7 @@ _MAX_INSTANCES = 20_000
 
 
 Limits = list[tuple[int, int]]
-"""Columns of indices, each with the number that its indices must stay below."""
+"""Columns of indices, each with the exclusive upper bound of its indices."""
 FacesT = TypeVar("FacesT")
 MeshT = TypeVar("MeshT")
 MadeT_co = TypeVar("MadeT_co", covariant=True)

@@ -36,7 +36,7 @@ class ReadWorld(Protocol):
 
 
 class FileFollower(Protocol):
-    """The host of a node, which watches the node's files.
+    """A host that watches the files of its node.
 
     All methods are called on the event loop.
     """

@@ -196,11 +196,12 @@ class JointGroup:
 
 class Throttle:
     """A limit on the rate at which the transforms of the same joints are published.
+
     Times are in nanoseconds, and 0 means never. A message may be published when its stamp is at least one interval
-        after the last publication of the joint that was published least recently. Messages that repeat the previous
-        positions, such as the periodic messages of joint_state_publisher, must keep that interval from all messages.
-        Messages with new positions must keep it only from other messages with new positions, so that a repeated message
-        does not delay a move that follows it.
+    after the last publication of the joint that was published least recently. Messages that repeat the previous
+    positions, such as the periodic messages of joint_state_publisher, must keep that interval from all messages.
+    Messages with new positions must keep it only from other messages with new positions, so that a repeated message
+    does not delay a move that follows it.
 
     Args:
             interval_ns: the minimum time between two messages about the same joints.

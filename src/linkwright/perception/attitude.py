@@ -171,7 +171,7 @@ class ComplementaryFilter:
     _last_rates: Vector3 = (0.0, 0.0, 0.0)
 
     def update(self, rates: Vector3, acceleration: Vector3, magnetic: Vector3 | None, seconds: float) -> None:
-        """Update the orientation with a measurement; see `MadgwickFilter.update`."""
+        """Update the orientation with a measurement. See `MadgwickFilter.update`."""
         if self.do_bias_estimation and self._is_at_rest(rates, acceleration):
             self.bias = _add_scaled(self.bias, _add_scaled(rates, self.bias, -1.0), self.bias_alpha)
         self._last_rates = rates

@@ -26,7 +26,7 @@ from linkwright.urdf import model as urdf
 from linkwright.xmltree import Element, Text
 
 _PathsByTag = Mapping[str, tuple[str, ...]]
-"""Maps an old tag in ``<gazebo>`` to the paths of the SDF elements that it represents."""
+"""A mapping from an old tag in ``<gazebo>`` to the paths of the SDF elements that it represents."""
 
 _MODEL_TAGS: _PathsByTag = {"static": ("static",)}
 _LINK_TAGS: _PathsByTag = {
@@ -102,7 +102,7 @@ class Extensions:
     def model(self, robot: Robot) -> Model:
         """Return an SDF model from the ``<gazebo>`` elements that apply to the whole robot.
 
-        It contains plugins, and links and joints that URDF cannot express.
+        The model contains plugins, and links and joints that URDF cannot express.
         """
         model_element = _element_at(robot.element, "model", robot.name)
         for gazebo in self._by_name.get("", ()):

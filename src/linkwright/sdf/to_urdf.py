@@ -43,7 +43,7 @@ _AMBIENT_INTENSITY, _DIFFUSE_INTENSITY = 0.4, 0.8
 class _ConversionError(Exception):
     """Raised when a model cannot be converted to a robot.
 
-    It carries the reason, the element to report and a hint.
+    The exception contains the reason, the element to report and a hint.
     """
 
     def __init__(self, reason: Phrase, element: Element | None, hint: Phrase | None = None) -> None:

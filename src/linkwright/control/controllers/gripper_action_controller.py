@@ -68,7 +68,7 @@ P = TypeVar("P", bound=GripperParameters)
 class Gripper(Controller[P]):
     """The base class of gripper controllers.
 
-    It accepts goals, and decides when they end.
+    The class accepts goals, and determines when they end.
     """
 
     ACTION: ClassVar[str] = "control_msgs/action/GripperCommand"

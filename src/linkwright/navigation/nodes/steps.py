@@ -49,9 +49,9 @@ class StepNode(ManagedNode):
         self.begin_cycles(_PERIOD, self._cycle)
 
     def publish_feedback(self, server: GoalServer) -> None:
-        """Publish feedback for the active goal; called once per cycle.
+        """Publish feedback for the active goal.
 
-        By default, do nothing.
+        This is called once per cycle. By default, do nothing.
         """
 
     def result(self) -> dict[str, Any]:

@@ -89,7 +89,10 @@ class SimulationFeature(PageFeature):
         self._spawn_tasks: set[asyncio.Task[None]] = set()
 
     def opening(self) -> list[ServerMessage]:
-        """Return the state of the simulation for a new page, and begin to watch the graph for a simulator."""
+        """Return the state of the simulation for a new page.
+
+        The method also begins to watch the graph for a simulator, unless a recording is shown.
+        """
         if not self._is_listening and not self._shows_recording:
             self._is_listening = True
             self.context.graph_changes.watch(self._update_presence)

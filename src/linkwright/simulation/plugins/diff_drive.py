@@ -167,7 +167,7 @@ class _DiffDrive(SimulatedPlugin[P], Generic[P]):
     def _measured_velocity(self) -> tuple[float, float]:
         """Return the forward velocity in m/s and the yaw rate in rad/s.
 
-        They are the values at the last call of `_read_angles`.
+        The values are those at the last call of `_read_angles`.
         """
         return self._pairs[0].drive.motion(*self._wheel_velocities)
 

@@ -25,7 +25,7 @@ class VelocityControlParameters:
 class GzVelocityControl(PlanarDrive[VelocityControlParameters]):
     """The substitute for ``gz-sim-velocity-control-system``.
 
-    It controls models, but not single links.
+    The plugin controls models, but not single links.
     """
 
     PARAMETERS = VelocityControlParameters

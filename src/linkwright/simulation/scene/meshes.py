@@ -385,7 +385,10 @@ def _flat_list(values: Any, kind: Any = np.float32) -> list[Any]:
 
 
 def _version(path: Path | None) -> tuple[Path | None, int]:
-    """Return a cache key of a file; saving the file changes the key."""
+    """Return a cache key of a file.
+
+    Saving the file changes the key.
+    """
     return path, 0 if path is None else modification_time(path)
 
 

@@ -121,7 +121,7 @@ class SimulationServer:
     def findings(self) -> list[Diagnostic]:
         """The findings on the models in the world.
 
-        They may be read from any thread.
+        The findings may be read from any thread.
         """
         return [diagnostic for findings in tuple(self._findings.values()) for diagnostic in tuple(findings)]
 
@@ -240,7 +240,7 @@ class SimulationServer:
     def _attached_models(self, names: Collection[str]) -> Iterator[AddedModel]:
         """Yield the models that joints of the world attach to the named models.
 
-        They are added again, and continue at their current poses.
+        These models are added again, with their current poses and velocities.
         """
         models = self.simulation.scene.models
         for name in {
@@ -373,7 +373,7 @@ class SimulationServer:
     ) -> None:
         """Start a plugin or sensor.
 
-        It resumes from its unchanged previous instance, if `old_plugins` contains one.
+        The plugin or sensor resumes from its unchanged previous instance, if `old_plugins` contains one.
         """
         calls = Calls(lambda error: self._failed(owner, place, error))
         node = self._node(place, namespace, calls)

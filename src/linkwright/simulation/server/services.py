@@ -131,7 +131,7 @@ class Services:
     def renew(self, text: str, name: str) -> None:
         """Replace a model with the model in a description.
 
-        This may be called from any thread.
+        The method may be called from any thread.
 
         The description is read immediately. The model is replaced later in the simulation's thread, which logs errors.
 

@@ -48,7 +48,7 @@ def read_command_file(path: str | Path) -> CommandSet:
 
 
 def parse_commands(source: SourceText) -> CommandSet:
-    """Return the commands in the text of a file; see `read_command_file`."""
+    """Return the commands in the text of a file. See `read_command_file`."""
     return _Reader(source).read()
 
 

@@ -133,7 +133,7 @@ class AudioCapture(SingleNode):
 
 
 class RobotAudioCapture(AudioCapture):
-    """The node audio_capture with the topics of Linkwright's robots, in the namespace ``/audio``."""
+    """The node audio_capture for Linkwright's robots, with topics in the namespace ``/audio``."""
 
     DEFAULT_NAME = "audio_capture"
     NAMESPACE = NAMESPACE

@@ -28,7 +28,9 @@ _FILES = (CARD, "data.yaml", SHEET)
 
 
 class DatasetFolder:
-    """A dataset on disk, which is complete after `finish`, even after an interruption.
+    """A dataset on disk.
+
+    The dataset is complete after `finish`, even after an interruption.
 
     Args:
         path: the folder.

@@ -1,4 +1,4 @@
-"""A world whose objects move and change colour between images, without recompiling MuJoCo's model."""
+"""A world whose objects move and change colour without recompiling MuJoCo's model."""
 
 from __future__ import annotations
 

@@ -189,7 +189,7 @@ class Detect3DNode(SingleNode):
 
 
 class YoloDetect3DNode(Detect3DNode):
-    """The node detect_3d_node of yolo_ros, which adds ``bbox3d`` to yolo_msgs/msg/DetectionArray."""
+    """The node detect_3d_node of yolo_ros, which adds ``bbox3d`` to detections."""
 
     FORM = YOLO_FORMAT
 

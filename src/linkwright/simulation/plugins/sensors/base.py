@@ -76,7 +76,7 @@ class SensorPlugin(SimulatedPlugin[P], ABC, Generic[P]):
     def classic_frame(self) -> str:
         """Return the frame of Gazebo classic's messages.
 
-        This is the parameter ``frame_name``, or the link if the parameter is empty.
+        The frame is the parameter ``frame_name``, or the link if the parameter is empty.
         """
         frame: str = getattr(self.parameters, "frame_name", "")
         return frame.lstrip("/") or self.sensor.link.rpartition(SEPARATOR)[2]

@@ -210,7 +210,10 @@ class OldLaser(_OneLidar[LaserParameters]):
 
     @property
     def rate(self) -> float:
-        """The update rate that the sensor declares, or else the plugin, in scans per simulated second."""
+        """The number of scans per simulated second.
+
+        The rate of the sensor takes precedence over the rate of the plugin.
+        """
         return self.sensor.sensor.update_rate or self.parameters.update_rate
 
     def publish(self, scan: Scan) -> None:
