@@ -4,7 +4,7 @@ import { smallestChange, textOf } from "../src/panels/source-editor/document-cha
 import { indentation, languageId } from "../src/panels/source-editor/languages";
 import { fitsMessage } from "../src/panels/source-editor/message-size";
 import { colorOf, hexOf, tokenRanges } from "../src/panels/source-editor/server-meanings";
-import { pathOf, positionIn } from "../src/panels/source-editor/server-places";
+import { pathOf, positionIn, textIn } from "../src/panels/source-editor/server-places";
 import { SourceDocument } from "../src/panels/source-editor/source-document";
 
 const TEXT = "<robot>\n  <link name='a'/>\n  <link name='b'/>\n</robot>\n";
@@ -136,6 +136,11 @@ it("languages and indentation follow the file", () => {
 it("positions beyond a line or text are its end", () => {
   const text = textOf("ab\nc");
   expect([positionIn(text, { line: 0, character: 9 }), positionIn(text, { line: 1, character: 1 }), positionIn(text, { line: 7, character: 0 })]).toEqual([2, 4, 4]);
+});
+
+it("the text of a range counts in UTF-16", () => {
+  const text = textOf("x = 1\n名😀 = name");
+  expect(textIn(text, { start: { line: 1, character: 6 }, end: { line: 1, character: 10 } })).toBe("name");
 });
 
 it("a message with a text has at most a megabyte", () => {
