@@ -1,4 +1,4 @@
-"""Joins the ROS 2 network, and warns about node names that occur twice in it."""
+"""Join the ROS 2 network, and warn about node names that occur twice in it."""
 
 from __future__ import annotations
 
@@ -109,7 +109,10 @@ class SharedNames:
         """The findings for the page: one finding while names are shared, otherwise none."""
 
     def notice(self, names: frozenset[str]) -> None:
-        """Set the full names of the nodes that exist twice. Callable from any thread."""
+        """Set the full names of the nodes that exist twice.
+
+        Any thread may call this method.
+        """
         with suppress(RuntimeError):  # The event loop may have been closed.
             self._loop.call_soon_threadsafe(self._schedule_report, names)
 

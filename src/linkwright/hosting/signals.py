@@ -59,7 +59,10 @@ class Session(Protocol):
         """Return the maximum seconds that the processes of the run may take to end."""
 
     def kill_all(self) -> None:
-        """Kill the processes of the run immediately. Called by a signal handler."""
+        """Kill the processes of the run immediately.
+
+        A signal handler calls this method.
+        """
 
 
 class SignalWatch:

@@ -1,4 +1,4 @@
-"""Creates the classes of messages, services and actions from generated code, on first use.
+"""Create the classes of messages, services and actions from generated code, on first use.
 
 The generated constructor and setters contain only the code that the fields need. They test for the usual case inline
 (``value.__class__ is float``) and leave all other cases to `linkwright.messages.checks`. The property of a field reads

@@ -1,4 +1,4 @@
-"""Sets the fields of a message from plain data, such as the YAML of ``ros2 topic pub``."""
+"""Set the fields of a message from plain data, such as the YAML of ``ros2 topic pub``."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Writes messages as YAML that is identical to the output of ``ros2 topic echo``.
+"""Write messages as YAML that is identical to the output of ``ros2 topic echo``.
 
 The format is PyYAML's, but PyYAML takes milliseconds for a message of a few hundred numbers, which is too slow for
 /tf. Therefore this module writes the lines itself, from a plan for each class. It uses PyYAML only for strings, because

@@ -47,7 +47,10 @@ class Engine(ABC):
 
     @abstractmethod
     def wake(self) -> None:
-        """Wake the thread that processes the queue of requests. Callable from any thread."""
+        """Wake the thread that processes the queue of requests.
+
+        Any thread may call this method.
+        """
 
     @abstractmethod
     def close(self) -> None:

@@ -308,5 +308,5 @@ def _check_handle(goal: object) -> None:
 
 def _wait_for_result(future: Future[Any], timeout_sec: float | None) -> Any:
     if not future.wait(timeout_sec):
-        raise TimeoutError("no response of the action's server in time")
+        raise TimeoutError("the action server did not respond in time")
     return future.result()

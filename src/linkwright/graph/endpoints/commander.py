@@ -1,4 +1,4 @@
-"""Revokes the last command when its publisher is lost, for example to stop a drive."""
+"""Revoke the last command when its publisher is lost, for example to stop a drive."""
 
 from __future__ import annotations
 

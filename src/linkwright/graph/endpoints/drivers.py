@@ -1,4 +1,4 @@
-"""Detects and logs several publishers that command one robot at the same time."""
+"""Detect and log several publishers that command one robot at the same time."""
 
 from __future__ import annotations
 

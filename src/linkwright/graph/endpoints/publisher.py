@@ -207,7 +207,9 @@ class Publisher(TopicEndpoint[M]):
         send: Callable[[Any], None] | None,
         wait_until_acknowledged: Callable[[float | None], bool] | None = None,
     ) -> None:
-        """Set or clear the function that sends messages to other processes. Called by the transport.
+        """Set or clear the function that sends messages to other processes.
+
+        The transport calls this method.
 
         Messages that are held or stored for late joiners are sent first. No message is lost or sent twice.
 

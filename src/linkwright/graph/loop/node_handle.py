@@ -230,10 +230,16 @@ class Part(HasHandle):
     """Whether the part is removed after the other parts when its node is destroyed, because they may use it."""
 
     def begin(self) -> None:
-        """Start operating. Called after the node has added the part."""
+        """Start operating.
+
+        The node calls this method after it has added the part.
+        """
 
     def retire(self) -> None:
-        """Stop operating. Called when the node removes the part."""
+        """Stop operating.
+
+        The node calls this method when it removes the part.
+        """
         self.destroyed = True
 
     def set_dispatcher(self, dispatcher: Dispatcher | None) -> None:

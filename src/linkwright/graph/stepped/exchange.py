@@ -69,7 +69,10 @@ class Exchange:
             dispatcher.call_threadsafe(partial(self._deliver, batch))
 
     def post(self, command: Command) -> None:
-        """Queue a function to be called in the simulation's thread. Callable from any thread."""
+        """Queue a function to be called in the simulation's thread.
+
+        Any thread may call this method.
+        """
         self._commands.append(command)
         self.has_commands.set()
 

@@ -39,10 +39,10 @@ class AlarmSetter(Protocol):
     """A scheduler of calls."""
 
     def call_at(self, steady_ns: int, callback: Callable[[], None]) -> Alarm:
-        """Schedule a call for a steady time of the graph, in nanoseconds. Callable from any thread.
+        """Schedule a call for a steady time of the graph, in nanoseconds.
 
-        The callback never runs before this method returns. It must be short: it only marks entities as ready, and never
-        runs a user's code.
+        Any thread may call this method. The callback never runs before this method returns. It must be short: it only
+        marks entities as ready, and never runs a user's code.
         """
 
 

@@ -1,4 +1,4 @@
-"""Compiles the functions that deserialize structures from CDR.
+"""Compile the functions that deserialize structures from CDR.
 
 Such a function unpacks each run of fields of fixed size, also across nested structures, with one `struct` call directly
 into the slots of the objects. The checks on assignment are skipped. The function does not trust lengths in the data: no

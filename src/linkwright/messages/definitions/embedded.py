@@ -1,4 +1,4 @@
-"""Reads the message definitions that recordings contain.
+"""Read the message definitions that recordings contain.
 
 The definition of a message comes first. The definitions of its nested messages follow, each after a line of ``=`` and a
 line with the name (``MSG: geometry_msgs/Point``, or ``IDL:`` for IDL). This is the format of MCAP's ``ros2msg`` and

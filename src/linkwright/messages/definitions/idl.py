@@ -1,4 +1,4 @@
-"""Parses ``.idl`` files, limited to the part of the language that ROS interfaces use.
+"""Parse ``.idl`` files, limited to the part of the language that ROS interfaces use.
 
 The supported constructs are those that rosidl generates from ``.msg``, ``.srv`` and ``.action`` files: modules,
 structures of primitives, strings, sequences and arrays, typedefs of these, constants, and ``@default``. Other

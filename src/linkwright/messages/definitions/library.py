@@ -1,4 +1,4 @@
-"""Finds the definition of an interface by its name.
+"""Find the definition of an interface by its name.
 
 The search order is: interfaces that come with Linkwright, interfaces of the workspace, and definitions in recordings.
 """

@@ -101,7 +101,10 @@ class Engine(AnyEngine):
         self._reception.start()
 
     def wake(self) -> None:
-        """Wake the thread that processes the queue of requests. Callable from any thread."""
+        """Wake the thread that processes the queue of requests.
+
+        Any thread may call this method.
+        """
         self._control.wake()
 
     def close(self) -> None:
@@ -281,7 +284,10 @@ class Engine(AnyEngine):
         self._control.wake()
 
     def _on_waiting(self, topic: OutgoingTopic) -> None:
-        """Record a topic whose messages wait for acknowledgements. Called by any thread."""
+        """Record a topic whose messages wait for acknowledgements.
+
+        Any thread may call this method.
+        """
         if topic not in self._waiting:
             self._waiting[topic] = None
             self._control.wake()

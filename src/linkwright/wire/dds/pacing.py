@@ -1,4 +1,4 @@
-"""Sends large samples to Fast DDS readers on this machine as fast as these can receive them.
+"""Send large samples to Fast DDS readers on this machine as fast as these can receive them.
 
 Cyclone sends all packets of a sample at once. A reader of Fast DDS receives into a buffer of 208 kB, so most packets of
 an image are lost. A reliable reader requests the lost packets again, which costs milliseconds for every three packets,
@@ -122,7 +122,10 @@ class Pacer:
         return {prefix: address for prefix, address in addresses.items() if address is not None}
 
     def add(self, writer: PacedWriter) -> None:
-        """Queue a writer whose samples are to be sent. Callable from any thread."""
+        """Queue a writer whose samples are to be sent.
+
+        Any thread may call this method.
+        """
         with self._lock:
             if self._thread is None:
                 self._thread = threading.Thread(target=self._run, name="linkwright-dds-pace", daemon=True)
@@ -209,7 +212,10 @@ class PacedWriter:
         self._condition = threading.Condition(threading.RLock())  # reentrant, as in `Backlog`
 
     def write(self, sample: bytes) -> None:
-        """Write a sample immediately, or queue it behind large samples. Callable from any thread."""
+        """Write a sample immediately, or queue it behind large samples.
+
+        Any thread may call this method.
+        """
         with self._condition:
             if not self._is_pacing and not self._paced_addresses(sample):
                 self._write_now(sample)

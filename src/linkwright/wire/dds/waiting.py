@@ -61,7 +61,10 @@ class WaitingThread(threading.Thread):
         self._dds.dds_waitset_detach(self._waitset, entity)
 
     def wake(self) -> None:
-        """Wake the thread so that it calls `idle`. Callable from any thread."""
+        """Wake the thread so that it calls `idle`.
+
+        Any thread may call this method.
+        """
         self._dds.dds_set_guardcondition(self._guard, True)
 
     def stop(self, timeout: float) -> bool:

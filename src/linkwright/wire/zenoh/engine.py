@@ -1,4 +1,4 @@
-"""Creates and withdraws the mirrors of this process's endpoints in a Zenoh session.
+"""Create and withdraw the mirrors of this process's endpoints in a Zenoh session.
 
 One thread does this in the order of the requests, and updates the tables of the remote graph. Zenoh's threads pass on
 incoming traffic as bytes.
@@ -95,7 +95,10 @@ class Engine(AnyEngine):
         self._thread.start()
 
     def wake(self) -> None:
-        """Wake the thread that processes the queue of requests. Callable from any thread."""
+        """Wake the thread that processes the queue of requests.
+
+        Any thread may call this method.
+        """
         self._wake_event.set()
 
     def has_neighbours(self) -> bool:

@@ -1,4 +1,4 @@
-"""Opens a session.
+"""Open Zenoh sessions, with retries for as long as the configuration allows.
 
 Waiting for a router or peers is logged and can be interrupted.
 """

@@ -1,4 +1,4 @@
-"""Finds the reasons why a connection to an address fails.
+"""Find the reasons why a connection to an address fails.
 
 Zenoh does not report these reasons. This module therefore connects to the address with sockets and TLS, as Zenoh does.
 """

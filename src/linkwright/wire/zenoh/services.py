@@ -93,7 +93,10 @@ class OutsideServer:
         self._client.outside = None
 
     def _receive(self, number: int, reply: zenoh.Reply) -> None:
-        """Pass on the first reply to a request. Called in a thread of Zenoh."""
+        """Pass the first reply to a request on to the client.
+
+        Zenoh calls this method in one of its threads.
+        """
         sample = reply.ok
         if sample is None:
             return
@@ -155,7 +158,10 @@ class IncomingService:
             request.drop()
 
     def _receive(self, query: zenoh.Query) -> None:
-        """Pass a request to the service. Called in a thread of Zenoh."""
+        """Pass a request to the service.
+
+        Zenoh calls this method in one of its threads.
+        """
         metadata = attachment.read(None if query.attachment is None else query.attachment.to_bytes())
         body = None if query.payload is None else query.payload.to_bytes()
         if metadata is None or body is None:

@@ -166,7 +166,10 @@ class IncomingTopic:
         self._zenoh.undeclare()
 
     def _receive(self, sample: zenoh.Sample) -> None:
-        """Pass a sample to the subscription. Called in a thread of Zenoh."""
+        """Pass a sample to the subscription.
+
+        Zenoh calls this method in one of its threads.
+        """
         encoded = sample.attachment
         metadata = attachment.read(None if encoded is None else encoded.to_bytes())
         if metadata is None:

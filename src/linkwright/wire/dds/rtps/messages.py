@@ -1,4 +1,4 @@
-"""Parses incoming RTPS messages and builds outgoing ones (DDSI-RTPS 2.5, 9.4).
+"""Parse incoming RTPS messages and build outgoing ones (DDSI-RTPS 2.5, 9.4).
 
 Only the submessages that Linkwright uses are supported.
 """
