@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import random
 import re
+import sys
 import warnings
 
 import pytest
@@ -82,3 +83,47 @@ def test_any_text_around_a_comment(before, after):
         assert 0 <= directive.start < directive.end <= len(text)
         for start, end in directive.ranges or ():
             assert 0 <= start <= end <= len(text)
+
+
+def chain(count: int, mimic: str = "", loose: str = "") -> str:
+    """Return a robot whose links hang on each other; `mimic` is the content of each joint."""
+    parts = (
+        f'<link name="l{i}"/><joint name="j{i}" type="continuous"><parent link="l{i - 1}"/><child link="l{i}"/>'
+        f"{mimic.format(before=i - 1)}</joint>\n"
+        for i in range(1, count)
+    )
+    return f'<robot name="r"><link name="l0"/>{"".join(parts)}{loose}</robot>'
+
+
+def lines_run(text: str, path) -> int:
+    """Return the number of lines of Python that a check runs."""
+    path.write_text(text, encoding="utf-8")
+    count = 0
+
+    def trace(frame, event, argument):
+        nonlocal count
+        count += event == "line"
+        return trace
+
+    previous = sys.gettrace()
+    sys.settrace(trace)
+    try:
+        examine(path, settings=Settings(select=("ALL",)))
+    finally:
+        sys.settrace(previous)
+    return count
+
+
+@pytest.mark.parametrize(
+    ("mimic", "loose"),
+    [
+        ("", '<link name="a"/><link name="b"/>'),
+        ('<mimic joint="j{before}"/>', '<joint name="j0" type="fixed"/>'),
+        ('<mimic joint="j{before}"/>', '<joint name="j0" type="continuous"><mimic joint="j1"/></joint>'),
+    ],
+)
+def test_the_effort_grows_in_proportion_to_the_robot(tmp_path, mimic, loose):
+    path = tmp_path / "r.urdf"
+    lines_run(chain(5, mimic, loose), path)  # what is read once
+    small, large = (lines_run(chain(count, mimic, loose), path) for count in (100, 400))
+    assert large < 5 * small

@@ -12,7 +12,10 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, missing_extra, p
 
 _LOOPBACK = "127.0.0.1"
 _GC_THRESHOLD = 2_000
-"""The number of new objects that starts a garbage collection: garbage may contain the text of each edit."""
+"""The number of new objects that starts a garbage collection.
+
+Garbage may contain the text of each edit.
+"""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:

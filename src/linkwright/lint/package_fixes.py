@@ -1,7 +1,7 @@
 """Fixes of build files and manifests: missing dependencies, and missing install rules.
 
-The new lines have the form of the lines beside them. A file in which the location of a new line is not certain has no
-fix.
+The new lines have the format of the adjacent lines. There is no fix for a file in which the location of a new line is
+uncertain.
 """
 
 from __future__ import annotations
@@ -127,7 +127,7 @@ def _installed_folders(statement: Statement) -> tuple[Token, ...]:
 
 
 def _data_files_fix(setup: SetupFile, entries: list[str], imports: tuple[Edit, ...], *, safe: bool) -> Fix | None:
-    """Return the fix that adds entries to ``data_files``, or None if it is not a list."""
+    """Return the fix that adds entries to ``data_files``, or None if this is not possible."""
     listed = _data_files_list(setup)
     if listed is None:
         return None
@@ -153,7 +153,7 @@ def _data_files_fix(setup: SetupFile, entries: list[str], imports: tuple[Edit, .
 
 
 def _after_last(source: SourceText, last: tuple[int, int], entries: list[str]) -> Edit:
-    """Return the edit that inserts entries after the last one.
+    """Return the edit that inserts entries after the last entry.
 
     If the last entry is on its own line, so is each new entry.
     """

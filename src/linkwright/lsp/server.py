@@ -26,10 +26,11 @@ from linkwright.language.format import Document, Format
 from linkwright.language.formats import format_of
 from linkwright.language.includes import real
 from linkwright.language.values import ValuedText, values_in
-from linkwright.language.workspace import Workspace
+from linkwright.language.workspace import MAX_CHARACTERS, Workspace
 from linkwright.lint.targets import XML_FILES
 from linkwright.lsp.findings import as_diagnostics
 from linkwright.lsp.folders import show_progress
+from linkwright.lsp.large_files import findings_apart
 from linkwright.lsp.positions import UTF_16, TextPositions
 from linkwright.lsp.protocol import LeanProtocol
 from linkwright.lsp.robot_views import RobotViews
@@ -76,6 +77,7 @@ class LinkwrightServer(LanguageServer):
         self._thread = ThreadPoolExecutor(1, thread_name_prefix="check")
         self._preparing: dict[Format, asyncio.Future[object]] = {}
         self._background: dict[Path, list[Future[object]]] = {}
+        self._large: dict[Path, asyncio.Task[None]] = {}
         self._work: asyncio.Task[None] | None = None
         self._progress: asyncio.Task[None] | None = None
         self.robot_views = RobotViews()
@@ -85,8 +87,7 @@ class LinkwrightServer(LanguageServer):
     def begin(self, folders: Iterable[Path]) -> None:
         """Open the folders of the editor, and start to check changed files."""
         BoundedCache.divisor = _CACHE_DIVISOR
-        if self._work is not None:
-            self._work.cancel()
+        self._cancel_checks()
         self._is_indexed.clear()
         self._values.clear()
         previous = self.project
@@ -99,8 +100,7 @@ class LinkwrightServer(LanguageServer):
 
     def end(self) -> None:
         """Stop checking."""
-        if self._work is not None:
-            self._work.cancel()
+        self._cancel_checks()
         self._thread.shutdown(wait=False, cancel_futures=True)
         self.robot_views.close()
 
@@ -113,6 +113,11 @@ class LinkwrightServer(LanguageServer):
             known = format_of(path)
             if known is not None:
                 self._prepared(known)
+            if len(self.workspace.text_documents[uri].source) > MAX_CHARACTERS:
+                notice = phrase(
+                    "'{file}' is too large for completions and hovers: only its findings are shown", file=path.name
+                )
+                self.window_show_message(types.ShowMessageParams(types.MessageType.Info, localized(notice)))
 
     def file_changed(self, uri: str) -> None:
         """Schedule a check of a file and of the descriptions that include it."""
@@ -131,18 +136,18 @@ class LinkwrightServer(LanguageServer):
             self.file_changed(uri)
 
     def text(self, document: types.TextDocumentIdentifier) -> tuple[Path, TextPositions | None]:
-        """Return the path and the text of a document, with None unless it is readable XML."""
+        """Return the path and the text of a document, with None unless it is readable XML of usual size."""
         path = path_of(document.uri)
         if path is None or not path.name.endswith((*XML_FILES, ".xml")):
             return Path(), None
-        return path, self.positions(path)
+        return path, self._usual_positions(path)
 
     def readable(self, document: types.TextDocumentIdentifier) -> tuple[Path, TextPositions | None]:
-        """Return the path and the text of a document, with None if its format is not supported."""
+        """Return the path and the text of a document, with None if it is large or its format is not supported."""
         path = path_of(document.uri)
         if path is None or (format_of(path) is None and not path.name.endswith((*XML_FILES, ".xml"))):
             return Path(), None
-        return path, self.positions(path)
+        return path, self._usual_positions(path)
 
     async def when_prepared(self, path: Path) -> None:
         """Wait for the index, and for the imports that the format of a file needs."""
@@ -167,12 +172,12 @@ class LinkwrightServer(LanguageServer):
         return found
 
     def document(self, document: types.TextDocumentIdentifier) -> FormattedText | None:
-        """Return a document with its format, or None if it has no format or is unreadable."""
+        """Return a document with its format, or None if it has no format, or is large or unreadable."""
         path = path_of(document.uri)
         format_ = None if path is None else format_of(path)
         if path is None or format_ is None or self.project is None:
             return None
-        positions = self.positions(path)
+        positions = self._usual_positions(path)
         if positions is None:
             return None
         return FormattedText(format_, Document(self.project, self.texts(), real(path), positions.text), positions)
@@ -250,6 +255,11 @@ class LinkwrightServer(LanguageServer):
             return None
         return known[1]
 
+    def _usual_positions(self, path: Path) -> TextPositions | None:
+        """Return the positions of a file's text, or None if it is large or unreadable."""
+        positions = self.positions(path)
+        return None if positions is None or len(positions.text) > MAX_CHARACTERS else positions
+
     def uri_of(self, path: Path) -> str:
         """Return the URI of a file, in the editor's spelling if the file is open."""
         file = real(path)
@@ -304,8 +314,32 @@ class LinkwrightServer(LanguageServer):
         return False
 
     async def _check(self, project: Workspace, subject: Path, texts: dict[Path, str], changed: set[Path]) -> None:
-        """Check one subject, and publish its findings."""
+        """Check one subject, and publish its findings; those of large files when another process has found them."""
+        if any(project.is_large(file, texts) for file in (subject, *changed)):
+            previous = self._large.get(subject)
+            if previous is not None:
+                previous.cancel()
+            check = self._check_apart(project, subject, texts, changed)
+            self._large[subject] = asyncio.get_running_loop().create_task(check)
+            return
         self._publish(await self._attempt(partial(project.check, subject, texts, changed), subject) or {}, texts)
+
+    async def _check_apart(self, project: Workspace, subject: Path, texts: dict[Path, str], changed: set[Path]) -> None:
+        """Check one subject in a process of its own, and publish its findings."""
+        findings = await findings_apart(project.folders, subject, texts)
+        if self._large.get(subject) is asyncio.current_task():
+            del self._large[subject]
+        if findings is None:
+            _log.error("The check of '%s' failed", subject)
+            return
+        found = await self._attempt(partial(project.record, subject, findings, texts, changed), subject)
+        self._publish(found or {}, texts)
+
+    def _cancel_checks(self) -> None:
+        """Cancel the checks that run and those that wait."""
+        for check in (*self._large.values(), *((self._work,) if self._work is not None else ())):
+            check.cancel()
+        self._large.clear()
 
     def _publish(self, found: Mapping[Path, Sequence[Diagnostic]], texts: Mapping[Path, str]) -> None:
         """Publish the findings about files, except open files that have changed since the check."""

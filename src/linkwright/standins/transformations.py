@@ -321,7 +321,7 @@ def compose_matrix(
         shear: the factors for x-y, x-z and y-z.
         angles: the Euler angles (``sxyz``) in radians.
         translate: the translation vector.
-        perspective: the last row of the matrix.
+        perspective: the last row of the matrix of the projection.
     """
     matrix = np.eye(4)
     if perspective is not None:
@@ -341,7 +341,7 @@ def compose_matrix(
 
 
 def decompose_matrix(matrix: ArrayLike) -> tuple[Vector, list[float], list[float], Vector, Vector]:
-    """Return the scale, shear, Euler angles (``sxyz``), translation and last row of a matrix.
+    """Return the scale, shear, Euler angles (``sxyz``), translation and perspective of a matrix.
 
     This is the inverse of `compose_matrix`.
 

@@ -40,7 +40,7 @@ def refuse_enforced_security(environment: Mapping[str, str] | None = None) -> No
     No node may join the graph without security then.
 
     Args:
-        environment: the environment variables; those of this process if omitted.
+        environment: the environment variables; by default, the variables of this process.
 
     Raises:
         LinkwrightError: DDS121, security is enforced.

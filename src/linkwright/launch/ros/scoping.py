@@ -1,4 +1,4 @@
-"""Actions on all later nodes in their scope: namespaces, parameters and remappings.
+"""Actions that set the namespaces, parameters and remappings of all later nodes in a scope.
 
 As in launch_ros, the settings are stored in launch configurations, so that they end with a group.
 """

@@ -156,7 +156,7 @@ class RemoteEndpoint:
 
 
 class DepartureWatch(Protocol):
-    """Receives notifications of endpoints that disappear.
+    """A receiver of notifications about endpoints that disappear.
 
     `wire.dds.departures.Departures` implements this protocol.
     """
