@@ -227,7 +227,7 @@ class _InferenceBuilder:
             if element is None or gazebo.has_friction(self._robot, name) or self._rolls_freely(name):
                 continue
             message = phrase(
-                "link '{link}' touches the ground and is not driven: it slides without friction", link=name
+                "link '{link}' touches the ground and is not driven, so its friction is set to zero", link=name
             )
             yield Finding(_diagnostic_at(element, "DRIVE112", message), self._robot.element, (gazebo.slippery(name),))
 

@@ -82,10 +82,10 @@ _EXPECTED_ATTRIBUTES = (
 
 
 def is_expected_element(tag: str) -> bool:
-    """Return whether authors expect an element to have an effect, because its name is known.
+    """Return whether the author of an element expects an effect, because its name is known.
 
-    Known names occur in URDF or in a related format. Any other name is a private extension, such as one that a
-    vendor's software reads.
+    Known names occur in URDF or in a related format, or contain the name of a URDF element as a word. Any other name
+    is a private extension, such as one that a vendor's software reads.
     """
     return tag in _EXPECTED_ELEMENTS or not PARENT_TAGS.keys().isdisjoint(words_of(tag))
 

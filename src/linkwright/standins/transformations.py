@@ -224,7 +224,8 @@ def quaternion_slerp(
         quat0: the quaternion for fraction 0.
         quat1: the quaternion for fraction 1.
         fraction: the position between the two quaternions, from 0 to 1.
-        spin: the number of additional half turns.
+        spin: the number of additional full turns of the body. As in transformations.py, the result is a unit
+            quaternion only if the number is even.
         shortestpath: whether to take the path with the smaller angle.
     """
     q0, q1 = unit_vector(np.asarray(quat0, dtype=float)[:4]), unit_vector(np.asarray(quat1, dtype=float)[:4])

@@ -91,7 +91,7 @@ def format_text(text: str, name: str, style: Style = Style()) -> str:  # noqa: B
     formatted = byte_order_mark + layout.document(_nodes(body))
     if not _are_equal(_top_nodes(original), _top_nodes(parse(formatted, name))):
         message = phrase("'{file}' cannot be formatted without changing its meaning", file=name)
-        raise LinkwrightError(Diagnostic("XML303", message, hint=phrase("report this file as a bug")))
+        raise LinkwrightError(Diagnostic("XML303", message, hint=phrase("report this as a bug, and attach the file")))
     return formatted
 
 

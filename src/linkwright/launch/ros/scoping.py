@@ -37,7 +37,7 @@ ParseResult = tuple[type[Action], dict[str, Any]]
 @expose_action("push_ros_namespace")
 @expose_action("push-ros-namespace")
 class PushRosNamespace(Action):
-    """Adds a prefix to the namespaces of all later nodes."""
+    """Adds a prefix to the namespaces of later nodes in the same scope."""
 
     def __init__(self, namespace: SomeSubstitutionsType, **kwargs: Any) -> None:
         super().__init__(**kwargs)

@@ -53,7 +53,7 @@ def color_edits(positions: TextPositions, place: types.Range, color: types.Color
 
 
 def add_requests(server: LinkwrightServer) -> None:
-    """Add the requests of this module to a server."""
+    """Register the request handlers of this module."""
 
     def highlights(path: Path, positions: TextPositions, place: types.Range | None = None) -> types.SemanticTokens:
         found = highlights_in(positions.text, path)
