@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import random
 import re
-import sys
 import warnings
 
 import pytest
@@ -15,6 +14,7 @@ from linkwright.diagnostics import SourceText
 from linkwright.lint import Settings, examine
 from linkwright.lint.suppression import directives
 from tests.lint.cases import load_cases
+from tests.work import lines_run
 
 ODD = [
     "",
@@ -95,25 +95,6 @@ def chain(count: int, mimic: str = "", loose: str = "") -> str:
     return f'<robot name="r"><link name="l0"/>{"".join(parts)}{loose}</robot>'
 
 
-def lines_run(text: str, path) -> int:
-    """Return the number of lines of Python that a check runs."""
-    path.write_text(text, encoding="utf-8")
-    count = 0
-
-    def trace(frame, event, argument):
-        nonlocal count
-        count += event == "line"
-        return trace
-
-    previous = sys.gettrace()
-    sys.settrace(trace)
-    try:
-        examine(path, settings=Settings(select=("ALL",)))
-    finally:
-        sys.settrace(previous)
-    return count
-
-
 @pytest.mark.parametrize(
     ("mimic", "loose"),
     [
@@ -123,7 +104,12 @@ def lines_run(text: str, path) -> int:
     ],
 )
 def test_the_effort_grows_in_proportion_to_the_robot(tmp_path, mimic, loose):
-    path = tmp_path / "r.urdf"
-    lines_run(chain(5, mimic, loose), path)  # what is read once
-    small, large = (lines_run(chain(count, mimic, loose), path) for count in (100, 400))
-    assert large < 5 * small
+    settings = Settings(select=("ALL",))
+
+    def work(count: int) -> int:
+        path = tmp_path / "r.urdf"
+        path.write_text(chain(count, mimic, loose), encoding="utf-8")
+        return lines_run(lambda: examine(path, settings=settings))
+
+    work(5)  # what is read once
+    assert work(400) < 5 * work(100)
