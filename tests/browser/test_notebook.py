@@ -61,8 +61,8 @@ def lab(tmp_path: Path):
         """The server's address once it answers, from the file that it writes; empty before."""
         assert process.poll() is None, (tmp_path / "lab.log").read_text()
         for file in (tmp_path / "RUNTIME").glob("jpserver-*.json"):
-            found: str = json.loads(file.read_text())["url"]
-            with contextlib.suppress(OSError):
+            with contextlib.suppress(OSError, json.JSONDecodeError):  # the server may still be writing the file
+                found: str = json.loads(file.read_text())["url"]
                 urllib.request.urlopen(f"{found}api?token={TOKEN}").close()
                 return found
         return ""
