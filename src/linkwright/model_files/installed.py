@@ -67,7 +67,7 @@ def remove(entry: ModelEntry) -> Path:
 
 
 def manual_download_hint(entry: ModelEntry) -> Phrase:
-    """Return a hint on how to get a model without downloading it with Linkwright."""
+    """Return a hint on how to install a model from a file downloaded with a browser."""
     return phrase(
         "download {address} with a browser, then run `linkwright models get {name} --from FILE`",
         address=entry.address,

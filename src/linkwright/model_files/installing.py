@@ -17,7 +17,9 @@ from linkwright.model_files.table import ModelEntry
 
 
 def install(entry: ModelEntry, source: str | None, folder: Path | None, progress: Progress) -> Path:
-    """Get, verify and install a model, replacing an installed one.
+    """Download a model or read it from a local source, verify it, and install it.
+
+    An installed version of the model is replaced.
 
     Args:
         entry: the model.

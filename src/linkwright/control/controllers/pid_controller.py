@@ -66,7 +66,7 @@ class Parameters:
 
 
 class PidController(Controller[Parameters]):
-    """A PID controller that gets its references from ``~/reference`` or from another controller."""
+    """A PID controller with references from the topic ``~/reference`` or from another controller."""
 
     PARAMETERS = Parameters
 

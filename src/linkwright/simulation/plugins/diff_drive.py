@@ -191,7 +191,7 @@ class ClassicDiffDrive(_DiffDrive[ClassicParameters]):
     CARRIED: ClassVar[tuple[str, ...]] = (*_DiffDrive.CARRIED, "_wheel_speeds")
 
     def start(self) -> None:
-        """Create motors for the wheels, and subscribe to the commands."""
+        """Create motors for the wheels and topics for the odometry, and subscribe to the commands."""
         parameters, node = self.parameters, self.node
         count = max(len(parameters.left_joint), len(parameters.right_joint))
         separations, diameters = (
@@ -299,7 +299,7 @@ class GzDiffDrive(_DiffDrive[GzParameters]):
     PARAMETERS = GzParameters
 
     def start(self) -> None:
-        """Create motors for the wheels, and subscribe to the commands."""
+        """Create motors for the wheels and topics for the odometry, and subscribe to the commands."""
         parameters = self.parameters
         count = max(len(parameters.left_joint), len(parameters.right_joint))
         sizes = [(parameters.wheel_separation, parameters.wheel_radius)] * count

@@ -36,7 +36,7 @@ class GzDriveParameters(SpeedLimits):
 class DriveCommands:
     """The commanded velocity of a drive, with limits.
 
-    Its components are forward and left in m/s, and the yaw rate in rad/s.
+    The components of the velocity are forward and left in m/s, and the yaw rate in rad/s.
 
     Args:
         limits: the limits of velocity, acceleration and jerk.

@@ -147,7 +147,7 @@ class GzJointPosition(_JointController[PositionParameters]):
     CARRIED = ("_command",)
 
     def start(self) -> None:
-        """Find the joints, and hold them at the initial position."""
+        """Find the joints, create any servos, and subscribe to the position commands."""
         parameters, simulation = self.parameters, self.simulation
         if parameters.joint_index:
             raise self.parameter_error(

@@ -140,7 +140,7 @@ class GzJointTrajectory(SimulatedPlugin[TrajectoryParameters]):
     PARAMETERS = TrajectoryParameters
 
     def start(self) -> None:
-        """Find the joints, and subscribe to the trajectories."""
+        """Find the joints, subscribe to the trajectories, and create the topic for the progress."""
         parameters, simulation = self.parameters, self.simulation
         prefix = f"{self.place.path}::"
         self._names = parameters.joint_name or tuple(

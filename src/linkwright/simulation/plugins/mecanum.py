@@ -45,7 +45,7 @@ class GzMecanum(PlanarDrive[MecanumParameters]):
     CARRIED = ("_place",)
 
     def start(self) -> None:
-        """Create motors for the wheels, and subscribe to the commands.
+        """Create motors for the wheels and topics for the odometry, and subscribe to the commands.
 
         Raises:
             LinkwrightError: SIM134, a joint does not exist; SIM160, a dimension is not positive, or the model is fixed.

@@ -207,7 +207,7 @@ class BodyWriter:
     ) -> Iterable[Any]:
         """Add the geoms of a visual or collision to a body, name them, and return them.
 
-        `counts` counts the geoms per name, because names must be unique in a body.
+        `counts` contains the number of geoms with each name, because names must be unique in a body.
         """
         collision = isinstance(item, Collision)
         geoms = [] if isinstance(item, Collision) else self._meshes.wrapped(body, item, pose)

@@ -467,7 +467,7 @@ class SimulationServer:
 
     @contextmanager
     def _logging_failures(self, place: PluginPlace) -> Iterator[None]:
-        """Log an error that occurs in the context, so that other plugins are still started."""
+        """Log and suppress an error in the context, so that other plugins are still started."""
         try:
             yield
         except Exception as error:  # noqa: BLE001 - a plugin of any world or package may raise anything
