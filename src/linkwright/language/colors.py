@@ -13,7 +13,7 @@ _NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
 _COLOR = re.compile(rf"\s*({_NUMBER})\s+({_NUMBER})\s+({_NUMBER})(?:\s+({_NUMBER}))?\s*")
 
 
-class WrittenColor(NamedTuple):
+class ColorLiteral(NamedTuple):
     """A colour in a text.
 
     Attributes:
@@ -27,7 +27,7 @@ class WrittenColor(NamedTuple):
     rgba: tuple[float, float, float, float]
 
 
-def colors_in(text: str) -> Iterator[WrittenColor]:
+def colors_in(text: str) -> Iterator[ColorLiteral]:
     """Yield the colours that are written as plain numbers, in text order."""
     tag = ""
     for token in tokens(text):
@@ -35,20 +35,20 @@ def colors_in(text: str) -> Iterator[WrittenColor]:
             tag = token.name
             for attribute in token.attributes():
                 if attribute.name in ("rgba", "rgb"):
-                    yield from _color(attribute.value or "", attribute.value_start)
+                    yield from _parse_color(attribute.value or "", attribute.value_start)
         elif token.kind is Kind.TEXT and tag in _TAGS:
-            yield from _color(token.text, token.start)
+            yield from _parse_color(token.text, token.start)
 
 
-def written_color(rgba: tuple[float, float, float, float], *, with_alpha: bool) -> str:
+def format_color(rgba: tuple[float, float, float, float], *, with_alpha: bool) -> str:
     """Return the numbers of a colour as they are written in a description."""
     return " ".join(f"{value:.4g}" for value in rgba[: 4 if with_alpha else 3])
 
 
-def _color(value: str, start: int) -> Iterator[WrittenColor]:
-    found = _COLOR.fullmatch(value)
-    if found is None:
+def _parse_color(value: str, start: int) -> Iterator[ColorLiteral]:
+    match = _COLOR.fullmatch(value)
+    if match is None:
         return
-    red, green, blue, alpha = (float(number) for number in (*found.groups()[:3], found[4] or 1))
+    red, green, blue, alpha = (float(number) for number in (*match.groups()[:3], match[4] or 1))
     if all(0 <= part <= 1 for part in (red, green, blue, alpha)):
-        yield WrittenColor(start + found.start(1), start + found.end(4 if found[4] else 3), (red, green, blue, alpha))
+        yield ColorLiteral(start + match.start(1), start + match.end(4 if match[4] else 3), (red, green, blue, alpha))

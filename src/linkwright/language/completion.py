@@ -46,7 +46,7 @@ class Completion:
     snippet: str = ""
 
 
-def of_kind(names: Sequence[NameDefinition], kind: NameKind) -> list[NameDefinition]:
+def definitions_of_kind(names: Sequence[NameDefinition], kind: NameKind) -> list[NameDefinition]:
     """Return the definitions of a kind, one for each name."""
     found: dict[str, NameDefinition] = {}
     for name in names:
@@ -55,6 +55,6 @@ def of_kind(names: Sequence[NameDefinition], kind: NameKind) -> list[NameDefinit
     return list(found.values())
 
 
-def most_used(names: Iterable[NameDefinition], text: str) -> list[NameDefinition]:
+def sorted_by_use(names: Iterable[NameDefinition], text: str) -> list[NameDefinition]:
     """Return definitions, sorted by how often a text contains their names, the most used first."""
     return sorted(names, key=lambda name: -text.count(name.name))

@@ -21,7 +21,7 @@ _MODULES = (
     "linkwright.launch.ros",
 )
 _ARGUMENT = re.compile(r"^    (\w+): (.*(?:\n        .*)*)", re.MULTILINE)
-_USUAL = (
+_COMMON_ARGUMENTS = (
     *("package", "executable", "plugin", "name", "namespace", "output", "parameters", "remappings", "arguments"),
     *("launch_arguments", "default_value", "description", "condition"),
 )
@@ -44,7 +44,7 @@ def load_classes() -> None:
         class_arguments(name)
 
 
-def described_class(name: str) -> str | None:
+def describe_class(name: str) -> str | None:
     """Return the purpose and arguments of a launch class in Markdown, or None."""
     cls = _classes().get(name)
     if cls is None:
@@ -82,7 +82,7 @@ def first_argument(name: str) -> str | None:
 
 
 def _rank(argument: str) -> int:
-    return _USUAL.index(argument) if argument in _USUAL else len(_USUAL)
+    return _COMMON_ARGUMENTS.index(argument) if argument in _COMMON_ARGUMENTS else len(_COMMON_ARGUMENTS)
 
 
 def _parameters(cls: Any) -> list[str]:
