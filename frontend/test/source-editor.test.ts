@@ -4,7 +4,7 @@ import { smallestChange, textOf } from "../src/panels/source-editor/document-cha
 import { indentation, languageId } from "../src/panels/source-editor/languages";
 import { fitsMessage } from "../src/panels/source-editor/message-size";
 import { colorOf, hexOf, tokenRanges } from "../src/panels/source-editor/server-meanings";
-import { pathOf, positionIn } from "../src/panels/source-editor/server-places";
+import { pathOf, positionIn, rangeText } from "../src/panels/source-editor/server-places";
 import { SourceDocument } from "../src/panels/source-editor/source-document";
 
 const TEXT = "<robot>\n  <link name='a'/>\n  <link name='b'/>\n</robot>\n";
@@ -23,7 +23,7 @@ function type(document: SourceDocument, old: string, now: string): void {
   apply(document, { changes: { from, to: from + old.length, insert: now } });
 }
 
-function textIn(document: SourceDocument): string {
+function wholeText(document: SourceDocument): string {
   return document.state.doc.toString();
 }
 
@@ -54,7 +54,7 @@ describe("a document", () => {
     const document = documentOf();
     type(document, "'a'", "'mine'");
     apply(document, document.diskChanged(TEXT.replace("'b'", "'theirs'"), 2));
-    expect(textIn(document)).toBe("<robot>\n  <link name='mine'/>\n  <link name='theirs'/>\n</robot>\n");
+    expect(wholeText(document)).toBe("<robot>\n  <link name='mine'/>\n  <link name='theirs'/>\n</robot>\n");
     expect([document.isUnsaved, document.conflict, document.version]).toEqual([true, null, 2]);
     type(document, "'mine'", "'a'");
     expect(document.isUnsaved).toBe(false);
@@ -69,9 +69,9 @@ describe("a document", () => {
     const theirs = TEXT.replace("'a'", "'theirs'");
     expect(document.diskChanged(theirs, 2)).toBeNull();
     expect(document.conflict?.version).toBe(2);
-    expect(textIn(document)).toContain("'mine'");
+    expect(wholeText(document)).toContain("'mine'");
     apply(document, settle(document));
-    expect(textIn(document)).toBe(TEXT.replace("'a'", name));
+    expect(wholeText(document)).toBe(TEXT.replace("'a'", name));
     expect([document.isUnsaved, document.conflict, document.savedText.toString()]).toEqual([isUnsaved, null, theirs]);
   });
 
@@ -107,7 +107,7 @@ describe("a document", () => {
     document.beginShowing(1);
     type(document, "'c'", "'d'");
     apply(document, document.robotEdited(TEXT.replace("'a'", "'c'").replace("'b'", "'moved'"), 1));
-    expect(textIn(document)).toBe("<robot>\n  <link name='d'/>\n  <link name='moved'/>\n</robot>\n");
+    expect(wholeText(document)).toBe("<robot>\n  <link name='d'/>\n  <link name='moved'/>\n</robot>\n");
     expect(document.isUnsaved).toBe(true);
     expect(document.robotEdited(TEXT.replace("'a'", "'e'"), 1)).toBeNull();
   });
@@ -136,6 +136,11 @@ it("languages and indentation follow the file", () => {
 it("positions beyond a line or text are its end", () => {
   const text = textOf("ab\nc");
   expect([positionIn(text, { line: 0, character: 9 }), positionIn(text, { line: 1, character: 1 }), positionIn(text, { line: 7, character: 0 })]).toEqual([2, 4, 4]);
+});
+
+it("the text of a range counts in UTF-16", () => {
+  const text = textOf("x = 1\n名😀 = name");
+  expect(rangeText(text, { start: { line: 1, character: 6 }, end: { line: 1, character: 10 } })).toBe("name");
 });
 
 it("a message with a text has at most a megabyte", () => {

@@ -163,6 +163,18 @@ class Firefox:
         source = {"type": "key", "id": "keyboard", "actions": actions}
         self.call("input.performActions", context=self._tab, actions=[source])
 
+    def chord(self, modifier: str, key: str) -> None:
+        """Press a key while a modifier is held down, named as in `press`."""
+        kinds = (("keyDown", modifier), ("keyDown", key), ("keyUp", key), ("keyUp", modifier))
+        source = {"type": "key", "id": "keyboard", "actions": [{"type": kind, "value": value} for kind, value in kinds]}
+        self.call("input.performActions", context=self._tab, actions=[source])
+
+    def point(self, x: float, y: float) -> None:
+        """Move the mouse to a place of the window, pixels."""
+        move = {"type": "pointerMove", "x": round(x), "y": round(y), "duration": 20}
+        source = {"type": "pointer", "id": "mouse", "parameters": {"pointerType": "mouse"}, "actions": [move]}
+        self.call("input.performActions", context=self._tab, actions=[source])
+
     def drag(self, x: float, y: float, right: float, down: float) -> None:
         """Press the mouse at a place of the window, move it in five steps, and let go; pixels."""
         moves = [

@@ -18,7 +18,7 @@ from tests.waiting import wait_until
 
 pytestmark = pytest.mark.browser
 
-RIGHT, ENTER = "\ue014", "\ue007"
+RIGHT, ENTER, CONTROL, HOME, END, ESCAPE = "\ue014", "\ue007", "\ue009", "\ue011", "\ue010", "\ue00c"
 CRATE = """\
 <robot name="crate">
   <link name="base">
@@ -136,6 +136,48 @@ def test_a_handle_is_dragged(start, launch, tmp_path):
     assert file.read_text() == CRATE
     browser.evaluate("document.querySelector('.edit-bar .primary').click()")
     wait_until(lambda: "<origin" in file.read_text(), what=file.read_text)
+    assert browser.errors == []
+
+
+def test_a_file_is_edited_with_the_language_server(start, launch, tmp_path):
+    file = tmp_path / "crate.urdf"
+    file.write_text(CRATE)
+    program = start("view", str(file))
+    browser = launch(headless=False)
+    browser.goto(program.url)
+    browser.until("lw.ready")
+
+    def click(selector: str, text: str) -> None:
+        found = f"[...document.querySelectorAll('{selector}')].find((each) => each.textContent.trim() === '{text}')"
+        browser.until(f"{found} && !{found}.disabled")
+        browser.evaluate(f"{found}.click()")
+
+    click(".title-bar button", "Panels")
+    click("[role=menuitemcheckbox]", "Source")
+    click(".source-panel button", "Edit")
+    browser.until("lw.panels.source.editor?.file?.endsWith('crate.urdf')")
+    browser.evaluate("document.querySelector('.cm-content').focus()")
+    browser.chord(CONTROL, HOME)
+    browser.press(END, ENTER, *"<lin")
+    browser.until("document.querySelector('.cm-tooltip-autocomplete li')?.textContent.includes('link')")
+    browser.press(ESCAPE, *'k nme="top"/>')
+    browser.until("lw.panels.source.editor.findings.length > 0 && document.querySelector('.cm-lintRange')")
+    assert file.read_text() == CRATE
+
+    line = browser.evaluate("document.querySelectorAll('.cm-line')[0].firstElementChild.getBoundingClientRect()")
+    browser.point(line["x"] + 20, line["y"] + line["height"] / 2)
+    browser.until("document.querySelector('.cm-lsp-hover-tooltip')")
+    while browser.evaluate("window.linkwright.panels.source.editor.unsaved.length"):
+        browser.chord(CONTROL, "z")
+    browser.chord(CONTROL, HOME)
+    browser.press(*"<!-- mine -->")
+    browser.chord(CONTROL, "s")
+    wait_until(lambda: file.read_text() == "<!-- mine -->" + CRATE, what=file.read_text)
+    browser.until("lw.panels.source.editor.unsaved.length === 0")
+    while "mine" in browser.evaluate("window.linkwright.panels.source.editor.text"):
+        browser.chord(CONTROL, "z")
+    browser.chord(CONTROL, "s")
+    wait_until(lambda: file.read_text() == CRATE, what=file.read_text)
     assert browser.errors == []
 
 

@@ -277,12 +277,12 @@ def test_definitions_and_references_lead_through_files_and_back(start, open_page
     page.get_by_role("listbox", name="2 references").wait_for()
     places = page.locator(".place-list-place")
     assert [" ".join(place.split()) for place in places.all_inner_texts()] == [
-        '4 <xacro:leg name="left"/>',
         '2 <xacro:macro name="leg" params="name">',
+        '4 <xacro:leg name="left"/>',
     ]
     assert violations(page, ".source-panel") == []
     page.keyboard.press("ArrowDown")
-    page.keyboard.press("Home")
+    page.keyboard.press("End")
     page.keyboard.press("Enter")
     until(page, f"{EDITOR}.file.endsWith('robot.urdf.xacro') && {EDITOR}.cursor === 4")
     text.press("Control+Home")
@@ -293,7 +293,7 @@ def test_definitions_and_references_lead_through_files_and_back(start, open_page
     until(page, f"{EDITOR}.file.endsWith('robot.urdf.xacro') && {EDITOR}.cursor === 5")
     text.press("Alt+ArrowRight")
     until(page, f"{EDITOR}.file.endsWith('leg.xacro')")
-    places.first.click()
+    places.last.click()
     until(page, f"{EDITOR}.file.endsWith('robot.urdf.xacro') && {EDITOR}.cursor === 5")
     places.first.focus()
     page.keyboard.press("Escape")

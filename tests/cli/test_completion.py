@@ -244,4 +244,4 @@ def test_programs_of_ros_that_are_not_here_say_what_to_use() -> None:
     assert done.stdout.split("\n") == ["127", "other no_such_program", "9", ""]
     assert "command 'rosdep' does not exist" in done.stderr
     assert "put the sources of a missing package into the workspace's src folder" in done.stderr
-    assert "which uses Linkwright's simulation" in done.stderr
+    assert "which starts Linkwright's simulation instead" in done.stderr

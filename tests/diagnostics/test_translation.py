@@ -123,8 +123,8 @@ def test_message_notes_and_hint_are_translated_and_nothing_else() -> None:
 
 
 def test_a_list_of_many_names_ends_with_how_many_more_there_are() -> None:
-    text = phrase("it is published by {senders}", senders=listed([f"/n{number}" for number in range(9)], 2))
-    assert text == "it is published by '/n0', '/n1' and 7 more"
+    text = phrase("published by {senders}", senders=listed([f"/n{number}" for number in range(9)], 2))
+    assert text == "published by '/n0', '/n1' and 7 more"
     assert in_chinese(text).message == "它由“/n0”、“/n1”和另外 7 个发布"
 
 

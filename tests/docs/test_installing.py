@@ -26,6 +26,7 @@ OTHERS = {
     "linkwright_core-0.1.0-py3-none-any.whl",
     "path/to/linkwright",
     "path/to/linkwright/core",
+    "ty",
 }
 """What readers are told to install besides Linkwright, and Linkwright where they are not in its checkout."""
 

@@ -153,7 +153,7 @@ def test_a_joint_is_missing_from_the_joint_states_and_its_misspelling_is_named()
 
 def test_a_static_transform_was_never_published():
     found = only(without(WELL, "mast"), "DOC304")
-    assert found.message == "there is no transform of frame 'mast', because no static transform was published for it"
+    assert found.message == "there is no transform of frame 'mast', because no static transform was published"
     assert "'stand'" in found.notes[0].message
 
 
@@ -164,7 +164,7 @@ def test_a_joint_has_states_that_nobody_turns_into_transforms():
         endpoints=(*WELL.endpoints, publisher(JSP, "/arm/joint_states", JOINT_STATE)),
     )
     found = only(seen, "DOC305")
-    assert "remap robot_state_publisher" in found.hint
+    assert "remap joint_states of robot_state_publisher" in found.hint
 
 
 def test_frames_with_a_prefix_are_the_robots():

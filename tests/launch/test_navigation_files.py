@@ -238,7 +238,7 @@ async def test_no_manager_waits_for_what_a_launch_file_of_a_user_starts_and_is_n
     )
     assert launched.succeeded
     assert started.one("lifecycle_manager")[1]["node_names"] == ["planner_server"]
-    assert "'docking_server' is left out, and no lifecycle manager waits for it" in launched.err
+    assert "'docking_server' is skipped, so no lifecycle manager waits for it" in launched.err
 
 
 def test_no_composed_manager_waits_for_it_either() -> None:

@@ -99,7 +99,7 @@ class TestSignals:
         running = start(write("a.launch.py", launch_file(action)))
         running.until("[bad-1] pid")
         running.process.send_signal(signal.SIGINT)
-        running.until("waiting for bad-1 to end; Ctrl-C again does not wait")
+        running.until("waiting for bad-1 to end; press Ctrl-C again to end them now")
         status, seconds = running.end()
         assert status == 130
         assert seconds < 10.0, "sooner than without hurry"

@@ -14,6 +14,7 @@ from linkwright.diagnostics import SourceText
 from linkwright.lint import Settings, examine
 from linkwright.lint.suppression import directives
 from tests.lint.cases import load_cases
+from tests.work import lines_run
 
 ODD = [
     "",
@@ -82,3 +83,33 @@ def test_any_text_around_a_comment(before, after):
         assert 0 <= directive.start < directive.end <= len(text)
         for start, end in directive.ranges or ():
             assert 0 <= start <= end <= len(text)
+
+
+def chain(count: int, mimic: str = "", loose: str = "") -> str:
+    """Return a robot whose links hang on each other; `mimic` is the content of each joint."""
+    parts = (
+        f'<link name="l{i}"/><joint name="j{i}" type="continuous"><parent link="l{i - 1}"/><child link="l{i}"/>'
+        f"{mimic.format(before=i - 1)}</joint>\n"
+        for i in range(1, count)
+    )
+    return f'<robot name="r"><link name="l0"/>{"".join(parts)}{loose}</robot>'
+
+
+@pytest.mark.parametrize(
+    ("mimic", "loose"),
+    [
+        ("", '<link name="a"/><link name="b"/>'),
+        ('<mimic joint="j{before}"/>', '<joint name="j0" type="fixed"/>'),
+        ('<mimic joint="j{before}"/>', '<joint name="j0" type="continuous"><mimic joint="j1"/></joint>'),
+    ],
+)
+def test_the_effort_grows_in_proportion_to_the_robot(tmp_path, mimic, loose):
+    settings = Settings(select=("ALL",))
+
+    def work(count: int) -> int:
+        path = tmp_path / "r.urdf"
+        path.write_text(chain(count, mimic, loose), encoding="utf-8")
+        return lines_run(lambda: examine(path, settings=settings))
+
+    work(5)  # what is read once
+    assert work(400) < 5 * work(100)

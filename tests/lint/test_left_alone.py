@@ -274,7 +274,7 @@ def test_what_a_submodule_would_bring_is_told_with_how_to_get_it(tmp_path, path)
         "install(DIRECTORY sdk/cxx/include DESTINATION include)\nament_package()\n"
     )
     (found,) = examine_package(tmp_path, Settings(select=("LW824",))).diagnostics
-    assert str(found.hint) == f"'{path}' is a submodule of Git: run git submodule update --init"
+    assert str(found.hint) == f"'{path}' is a Git submodule: run git submodule update --init"
 
 
 @pytest.mark.parametrize(("ignored", "codes"), [("dist/", []), ("*.log", ["LW824"])])

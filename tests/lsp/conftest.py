@@ -76,13 +76,13 @@ class Editor:
         """Return how requests name a file."""
         return types.TextDocumentIdentifier(self.uri(name))
 
-    def open(self, name: str, text: str | None = None) -> None:
+    def open(self, name: str, text: str | None = None, language: str = "xml") -> None:
         """Open a file, with its text on the disk or another one."""
         uri = self.uri(name)
         self._versions[uri] = 1
         content = (self.folder / name).read_text(encoding="utf-8") if text is None else text
         self.client.text_document_did_open(
-            types.DidOpenTextDocumentParams(types.TextDocumentItem(uri, "xml", 1, content))
+            types.DidOpenTextDocumentParams(types.TextDocumentItem(uri, language, 1, content))
         )
 
     def change(self, name: str, text: str) -> None:
@@ -130,10 +130,11 @@ async def connected(
     package: Path,
     capabilities: types.ClientCapabilities,
     registrations: asyncio.Queue[types.Registration] | None = None,
+    *options: str,
 ) -> AsyncIterator[Editor]:
     """Start the language server for an editor with some capabilities that has opened a package.
 
-    Capabilities that the server registers go into the queue.
+    Capabilities that the server registers go into the queue. The options are those of the command.
     """
     client = LanguageClient("test", "1")
     editor = Editor(client, package)
@@ -144,7 +145,7 @@ async def connected(
             if registrations is not None:
                 registrations.put_nowait(registration)
 
-    await client.start_io(sys.executable, "-m", "linkwright", "lsp")
+    await client.start_io(sys.executable, *_coverage_options(), "-m", "linkwright", "lsp", *options)
     await client.initialize_async(
         types.InitializeParams(capabilities, workspace_folders=[types.WorkspaceFolder(package.as_uri(), package.name)])
     )
@@ -153,6 +154,16 @@ async def connected(
     await client.shutdown_async(None)
     client.exit(None)
     await client.stop()
+
+
+def _coverage_options() -> list[str]:
+    """Return the options that measure the coverage of the server's process, if that of the tests is measured."""
+    coverage = sys.modules.get("coverage")
+    measuring = None if coverage is None else coverage.Coverage.current()
+    if measuring is None:
+        return []
+    data_file = Path(measuring.get_option("run:data_file")).resolve()
+    return ["-m", "coverage", "run", "--parallel-mode", f"--data-file={data_file}"]
 
 
 @pytest_asyncio.fixture

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from lsprotocol import types
+
+from linkwright.language.workspace import MAX_CHARACTERS
 from tests.lsp.conftest import MAIN, PARTS
 
 MAIN_FILE, PARTS_FILE = "urdf/arm.urdf.xacro", "urdf/parts.xacro"
@@ -47,3 +50,27 @@ async def test_the_manifest_is_checked(editor):
     editor.open("package.xml", text.replace("<license>Apache-2.0</license>", ""))
     (found,) = await editor.until("package.xml", "LW802")
     assert "license" in found.message
+
+
+async def test_a_large_file_gets_findings_alone(editor):
+    text = MAIN.replace("</robot>", f"<!-- {'a' * MAX_CHARACTERS} -->\n</robot>")
+    at = types.Position(2, 4)
+    editor.open(MAIN_FILE, text.replace("xacro:bar", "xacro:barr"))
+    await editor.until(MAIN_FILE, "XAC401")
+    assert await editor.client.text_document_hover_async(types.HoverParams(editor.document(MAIN_FILE), at)) is None
+    assert editor.messages == ["'arm.urdf.xacro' is too large for completions and hovers: only its findings are shown"]
+    editor.change(MAIN_FILE, text)
+    await editor.until(MAIN_FILE)
+    editor.change(MAIN_FILE, MAIN)
+    assert await editor.client.text_document_hover_async(types.HoverParams(editor.document(MAIN_FILE), at)) is not None
+
+
+async def test_the_newest_text_of_a_large_file_is_checked(editor):
+    text = MAIN.replace("</robot>", f"<!-- {'a' * MAX_CHARACTERS} -->\n</robot>")
+    editor.open(MAIN_FILE, text.replace("xacro:bar", "xacro:barr"))
+    for number in range(5):
+        editor.change(MAIN_FILE, text.replace("xacro:bar", f"xacro:bar{number}"))
+    (found,) = await editor.until(MAIN_FILE, "XAC401")
+    while "'bar4'" not in found.message:
+        editor.diagnostics.clear()
+        (found,) = await editor.until(MAIN_FILE, "XAC401")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from lsprotocol import types
 
-from tests.lsp.conftest import MAIN, PARTS
+from tests.lsp.conftest import MAIN, PARTS, connected
 
 FILE = "urdf/arm.urdf.xacro"
 CURSOR = "█"
@@ -116,7 +116,7 @@ async def test_a_hover_tells_about_links_joints_meshes_and_packages(editor, pack
     assert "- continuous joint from `base` to `upper`" in joint
 
 
-async def test_the_facts_about_a_link_are_those_of_its_own_file(editor, package):
+async def test_the_facts_about_a_link_are_those_of_its_own_file(package):
     """Macros of several arms in one package give the same names to their links, as in xarm_description."""
     arm = (
         '<robot xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:macro name="{0}"><link name="elbow"><inertial>'
@@ -134,11 +134,12 @@ async def test_the_facts_about_a_link_are_those_of_its_own_file(editor, package)
         one.format('<xacro:include filename="third.xacro"/><link name="elbow"/>')
     )
     shown = {}
-    for name, mass in masses.items():
-        editor.open(f"urdf/{name}.xacro")
-        at = types.Position(0, arm.format(name, mass).index('"elbow"') + 2)
-        asked = types.HoverParams(editor.document(f"urdf/{name}.xacro"), at)
-        shown[name] = (await editor.client.text_document_hover_async(asked)).contents.value
+    async with connected(package, types.ClientCapabilities()) as editor:
+        for name, mass in masses.items():
+            editor.open(f"urdf/{name}.xacro")
+            at = types.Position(0, arm.format(name, mass).index('"elbow"') + 2)
+            asked = types.HoverParams(editor.document(f"urdf/{name}.xacro"), at)
+            shown[name] = (await editor.client.text_document_hover_async(asked)).contents.value
     assert "- mass 1.5 kg" in shown["first"]
     assert "- mass 2.5 kg" in shown["second"]
     assert "**link elbow**" not in shown["third"]

@@ -72,7 +72,7 @@ def test_a_process_that_dies_is_replaced_and_its_run_tried_once_more(tmp_path):
     path = write(tmp_path, DYING)
     outcomes = ran(path, 2)
     assert [outcomes[row].results.get("square") for row in (1, 2, 3, 4)] == [1, 4, 9, None]
-    assert outcomes[4].error == "the process that ran it was ended by SIGKILL, twice"
+    assert outcomes[4].error == "the process of the run was ended by SIGKILL, twice"
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Ctrl-C is no signal there")

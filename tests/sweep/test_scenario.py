@@ -80,7 +80,7 @@ def test_what_goes_wrong_is_the_outcome(tmp_path, body, error):
 
 
 BAD = {
-    "SWEEP102 squares.py:1:5 this is not valid Python: invalid syntax": "def :\n",
+    "SWEEP102 squares.py:1:5 the file is not valid Python: invalid syntax": "def :\n",
     "SWEEP102 squares.py:2:1 the scenario cannot be loaded: ZeroDivisionError: division by zero": "\n1 / 0\n",
     "SWEEP102 squares.py:1:1 the scenario cannot be loaded: ModuleNotFoundError: No module named 'nothing_of_this'": (
         "import nothing_of_this\n"

@@ -39,6 +39,7 @@ KNOWN: dict[str, str] = {
     "launch/engine/guardian_program.py": "/proc /proc/ SIGHUP SIGKILL getpgid killpg",
     "launch/engine/process_table.py": "SIGKILL",
     "launch/engine/processes.py": "SIGKILL killpg openpty",
+    "lsp/large_files.py": "get_context",
     "nodes/process.py": "SIGHUP add_signal_handler",
     "packages/readers/cmake_language.py": "platform",
     "page/access.py": "O_NOFOLLOW O_NONBLOCK getuid",

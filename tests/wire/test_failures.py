@@ -68,8 +68,8 @@ def test_who_watches_the_graph_and_fails_keeps_nobody_from_knowing_it(processes)
     client = a.node.create_client(SetBool, "flip")
     assert client.wait_for_service(60)
     wait_until(lambda: "b" in a.node.get_node_names())
-    wait_until(lambda: warnings_of(a, "a callback for changes outside failed:"))
-    assert len(warnings_of(a, "a callback for changes of the graph failed:")) == 1
+    wait_until(lambda: warnings_of(a, "a callback for changes to remote nodes failed:"))
+    assert len(warnings_of(a, "a callback for changes to the graph failed:")) == 1
     assert after.calls > 1
 
 

@@ -261,7 +261,7 @@ export interface RevertConfiguration {
   type: "revert_configuration";
 }
 
-/** A request to save to a file on the server. It becomes the configuration's file. */
+/** A request to save the configuration to a file on the server. */
 export interface SaveConfiguration {
   path: string | null;
   replace: boolean;

@@ -38,7 +38,7 @@ export interface SourceRange {
   end_column: number;
 }
 
-/** The positions of an element in the expanded text and in its file, and the calls behind it. */
+/** The positions of an element in the expanded text and in its file, and the calls that led to it. */
 export interface Written {
   expanded: SourceRange | null;
   origin: SourceRange | null;
@@ -152,7 +152,7 @@ export interface AskDescriptionText {
   type: "ask_description_text";
 }
 
-/** A request for the findings about masses and inertias. Their computation takes a while. */
+/** A request for the findings about masses and inertias. */
 export interface AskInertia {
   display: string;
   type: "ask_inertia";

@@ -89,7 +89,7 @@ export interface SeriesStates {
   type: "series_states";
 }
 
-/** A request for the fields of a topic for the user to choose from. `topic` is None after the choice. */
+/** A request for the fields of a topic. `topic` is None after the user's choice. */
 export interface AskFields {
   topic: string | null;
   type: "ask_fields";
@@ -235,7 +235,7 @@ export interface TeleopTarget {
   frame_id: string;
 }
 
-/** The message type of a teleop pad, its number of subscribers, and why it cannot publish. */
+/** The message type of a teleop pad, its number of subscribers, and the reason why it cannot publish. */
 export interface TeleopState {
   topic: string;
   kind: string;

@@ -122,7 +122,7 @@ export interface JointScene {
   upper: number | null;
 }
 
-/** The robot of a RobotModel display. `revision` is the number of its descriptions so far. */
+/** The robot of a RobotModel display. `revision` counts the display's descriptions so far. */
 export interface RobotScene {
   display: string;
   revision: number;

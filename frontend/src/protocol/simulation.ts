@@ -50,7 +50,7 @@ export interface ModelChoices {
   type: "model_choices";
 }
 
-/** A change of a model or light. Fields that are None do not change. */
+/** A change to a model or light. Fields that are None do not change. */
 export interface EntityChange {
   name: string;
   pose: number[] | null;
@@ -75,7 +75,7 @@ export interface AddEntity {
   type: "add_entity";
 }
 
-/** A request to change objects. It is undone in one step. */
+/** A request to change objects. One undo reverts all the changes. */
 export interface ChangeEntities {
   changes: EntityChange[];
   type: "change_entities";
@@ -107,7 +107,7 @@ export interface UngroupEntity {
   type: "ungroup_entity";
 }
 
-/** A request to undo the last change of the world. */
+/** A request to undo the last change to the world. */
 export interface UndoWorld {
   type: "undo_world";
 }
@@ -144,7 +144,7 @@ export interface SimulationNotice {
   type: "simulation_notice";
 }
 
-/** The confirmation that a model that the page requested was added to the world. */
+/** The confirmation that a requested model was added to the world. */
 export interface ModelAdded {
   name: string;
   type: "model_added";

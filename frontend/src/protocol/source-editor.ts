@@ -22,7 +22,7 @@ export interface AskSourceFile {
   type: "ask_source_file";
 }
 
-/** A notice that the page no longer needs the changes of a file. */
+/** A notice that the page no longer needs the changes to a file. */
 export interface LeaveSourceFile {
   path: string;
   type: "leave_source_file";
@@ -47,7 +47,7 @@ export interface WriteSourceFile {
   type: "write_source_file";
 }
 
-/** A request to show the descriptions of the page with the unsaved text of a file that the page edits. */
+/** A request to show the page's descriptions with the unsaved text of an edited file. */
 export interface ShowUnsavedText {
   number: number;
   path: string;
@@ -63,7 +63,7 @@ export interface UnsavedTextShown {
   type: "unsaved_text_shown";
 }
 
-/** An edit of the robot in a file with an unsaved text, which the page applies to that text. */
+/** An edit of the robot that the page applies to the unsaved text of a file. */
 export interface UnsavedTextEdited {
   path: string;
   base: number;

@@ -2,12 +2,12 @@
 
 export type ElementKind = "link" | "joint";
 
-/** A notice that a text editor goes to the source of each element that the user selects. */
+/** A notice that a text editor jumps to the source of each selected element. */
 export interface EditorAttached {
   type: "editor_attached";
 }
 
-/** The link or joint at the cursor of the text editor, which the page selects. */
+/** The link or joint at the cursor of the text editor, to be selected in the page. */
 export interface ShowElement {
   display: string;
   kind: ElementKind;

@@ -63,7 +63,7 @@ export interface GoLive {
   type: "go_live";
 }
 
-/** The speed of playback, and whether it repeats. */
+/** The speed of playback, and whether playback repeats. */
 export interface SetPlayback {
   speed: number;
   loop: boolean;

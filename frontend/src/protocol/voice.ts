@@ -28,7 +28,7 @@ export interface Talk {
   type: "talk";
 }
 
-/** A command that the user has typed. It is handled like a spoken command. */
+/** A command that the user has typed. */
 export interface SayCommand {
   text: string;
   type: "say_command";

@@ -35,7 +35,7 @@ export interface LidarScene {
   farthest: number;
 }
 
-/** A camera of a world. It looks along x, with z up. */
+/** A camera of a world. The camera looks along x, with z up. */
 export interface CameraScene {
   name: string;
   link: string;

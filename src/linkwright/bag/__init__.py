@@ -58,4 +58,4 @@ __getattr__ = deferred(
         "writing": ("COMPRESSIONS", "STORAGES", "BagWriter"),
     },
 )
-"""The classes and functions that read, write or play load lazily, because many callers only ask `is_recording`."""
+"""Lazy imports of the names that many callers do not need besides `is_recording`."""

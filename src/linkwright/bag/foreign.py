@@ -1,6 +1,6 @@
 """Read MCAP files that also contain data of other systems, such as recordings of Foxglove.
 
-The library rejects the whole file if the file's profile is not ``ros2``, or if a schema is in a language that ROS 2
+The library rosbags rejects the whole file if its profile is not ``ros2``, or if a schema is in a language that ROS 2
 does not use (JSON, Protobuf, ROS 1 ...). The library therefore receives a patched file, in which these pieces are
 replaced by others of equal length: the profile ``ros2``, and empty schemas. `BagReader` omits topics with other
 encodings, and reports them.

@@ -42,7 +42,7 @@ K = TypeVar("K")
 
 
 class Packed(bytes):
-    """A compressed message, as the compressed bytes."""
+    """The bytes of a compressed message."""
 
     __slots__ = ()
 
@@ -66,7 +66,9 @@ def uncompressed_bytes(data: bytes) -> bytes:
 
 
 class Shrinker(Generic[K]):
-    """Compresses messages in a thread that starts when the first large message arrives.
+    """A thread that compresses large messages.
+
+    The thread starts when the first large message arrives.
 
     Args:
         done: called in that thread with the key of a message and its compressed form.
@@ -316,7 +318,7 @@ class _Run:
 
 
 class History:
-    """Stores messages until newer messages need their space.
+    """A store of the most recent messages, limited to a number of bytes.
 
     The history can be played while messages are added.
 
@@ -324,7 +326,7 @@ class History:
     messages are compressed if that makes them smaller.
 
     Args:
-        max_bytes: the maximum number of bytes in use; a message that is larger alone is not stored.
+        max_bytes: the maximum number of bytes in use; a message that is larger than this is not stored.
         now_ns: returns the current time, in nanoseconds since the epoch.
 
     Attributes:
@@ -545,7 +547,7 @@ class History:
 
 
 class _LiveIterator(Iterator[Recorded]):
-    """Iterates over the messages of a history in order of time.
+    """An iterator over the messages of a history in order of time.
 
     When it is exhausted, it can continue after new messages have arrived.
     """

@@ -20,7 +20,11 @@ _MAX_CACHED_BYTES = 64 << 20
 """The maximum number of bytes of decompressed chunks in the cache, for several messages of one chunk."""
 
 _MAX_CHUNKS = 64
-"""The maximum number of chunks to read; of more, the first and the last: some recordings repeat static transforms."""
+"""The maximum number of chunks to read.
+
+Of a longer list, half of them are read from its beginning and half from its end. Some recordings repeat static
+transforms in every chunk.
+"""
 
 _CHUNK_HEAD = struct.Struct("<BQQQQI")
 """The head of a chunk: type, length, first and last time, decompressed size, checksum; then the compression's name."""
@@ -32,7 +36,7 @@ _MESSAGE_HEAD = struct.Struct("<BQHIQQ")
 
 
 class McapLookup:
-    """Finds messages of an open MCAP file that has an index.
+    """A lookup of messages in an open MCAP file that has an index.
 
     Args:
         storage: the open file.
@@ -80,9 +84,9 @@ class McapLookup:
         return [(stamp, self._read_message(chunk, offset)) for stamp, chunk, offset in locations]
 
     def counts(self, channel: int, *, exact: bool) -> Iterator[tuple[int, int, int]]:
-        """Yield start, end and number of messages for time intervals of a channel, in nanoseconds.
+        """Yield the start time, end time and message count of intervals of a channel.
 
-        Each interval spans a chunk or a single message.
+        Times are in nanoseconds since the epoch. Each interval spans a chunk or a single message.
 
         Args:
             channel: the number of the channel.

@@ -26,7 +26,7 @@ _WINDOW_GROWTH = 8
 
 
 class StateLookup:
-    """Finds the state of an open recording at any time.
+    """A lookup of the state of an open recording at any time.
 
     Args:
         reader: the library's reader; it must be open.

@@ -8,7 +8,10 @@ from pathlib import Path
 
 TRANSFORMS, STATIC_TRANSFORMS = "/tf", "/tf_static"
 TRANSFORMS_NS = 2_000_000_000
-"""The time before a moment in which transforms are used: a single message has only some of the frames."""
+"""The length, in ns, of the interval whose transforms form the state at its end.
+
+A single message contains only some of the frames.
+"""
 
 Recorded = tuple[str, int, bytes]
 """A message: its topic, its reception time in nanoseconds since the epoch, and its serialized data."""

@@ -156,7 +156,7 @@ def _allow_all_threads(storage: Any) -> None:
 
 
 class _FixedPath:
-    """Replaces the library's folder, so that the library creates its file at a given path."""
+    """A substitute for the library's folder that makes the library write to a given path."""
 
     def __init__(self, path: Path) -> None:
         self.name = path.stem

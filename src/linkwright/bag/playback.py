@@ -63,7 +63,7 @@ class Output(Protocol):
 
 
 class Playback:
-    """Plays a recording.
+    """The interactive playback of a recording.
 
     Args:
         node: the node whose dispatcher runs the playback.

@@ -62,7 +62,7 @@ class PlayOptions:
 
 
 class Player:
-    """Plays a recording on the dispatcher of a node.
+    """A player that publishes the messages of a recording, on the dispatcher of a node.
 
     Args:
         node: the node that publishes the messages and logs events.

@@ -23,7 +23,7 @@ _SERVICES = (
 
 
 class PlayerServices:
-    """Offers the services that control a player, below the name of a node.
+    """The services that control a player, below the name of a node.
 
     Names, types and responses to errors follow ``rosbag2_transport::Player``.
 
@@ -96,5 +96,5 @@ class PlayerServices:
 
     def _require_paused(self, action: str) -> bool:
         if not self._player.paused:
-            self._logger.warning(f"Asked to {action} while not paused: the request is ignored")
+            self._logger.warning(f"Cannot {action} while the recording is playing: pause it first")
         return self._player.paused

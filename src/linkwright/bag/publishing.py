@@ -71,7 +71,7 @@ def _has_type(type_name: str) -> bool:
 
 
 class PublishedRecording:
-    """Publishes a recording, and its time on ``/clock``, in a graph without other publishers.
+    """A recording that is published, with its time on ``/clock``, in a graph of its own.
 
     Args:
         node: the node that publishes.

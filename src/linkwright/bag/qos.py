@@ -113,7 +113,7 @@ def profile_for_recording(offered: Sequence[QoSProfile]) -> QoSProfile:
 
 
 def profile_for_playing(recorded: Sequence[QoSProfile]) -> QoSProfile:
-    """Return the recorded profile if all publishers offered equivalent ones, else the default.
+    """Return the recorded profile if all publishers offered equivalent profiles, or the default.
 
     Depth and lifespan may differ. The largest depth is then used, because one publisher now represents all of them.
     rosbag2 always uses a depth of 10 messages.

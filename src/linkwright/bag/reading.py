@@ -227,7 +227,10 @@ class BagReader:
 
     @property
     def definitions(self) -> list[tuple[str, str, str, str]]:
-        """The definitions of the topics' types: name, ``ros2msg`` or ``ros2idl``, text, and hash."""
+        """The definitions of the topics' types: type name, encoding, text and hash.
+
+        The encoding is ``ros2msg``, ``ros2idl`` or ``unknown``.
+        """
         connections_by_type = {
             connection.msgtype: connection
             for connection in self._reader.connections

@@ -18,7 +18,7 @@ _POLL_SECONDS = 0.1
 
 
 class Recorder:
-    """Writes the messages of topics to a recording until the recorder is closed.
+    """A recorder that subscribes to topics and writes their messages to a recording.
 
     The recorder passes the received messages to the operating system every second, so that at most one second is
     missing if the process is killed.

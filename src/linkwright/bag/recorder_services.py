@@ -11,9 +11,9 @@ from linkwright.messages import get_message
 
 
 class RecorderServices:
-    """Offers the services that control a recorder, and publishes ``events/write_split``.
+    """The services that control a recorder, and the topic ``events/write_split``.
 
-    The services are below the name of the node. Names and types follow ``rosbag2_transport::Recorder``.
+    They are below the name of the node. Names and types follow ``rosbag2_transport::Recorder``.
 
     Args:
         node: the node that offers the services.

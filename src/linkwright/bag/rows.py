@@ -19,7 +19,7 @@ _INTERVALS = 4800
 
 
 class RowLookup:
-    """Finds messages of an open SQLite file.
+    """A lookup of messages in an open SQLite file.
 
     Args:
         storage: the open file.
@@ -51,9 +51,10 @@ class RowLookup:
         return sorted(messages, key=lambda row: row[0])
 
     def counts(self, topic: int, *, exact: bool) -> Iterator[tuple[int, int, int]]:
-        """Yield start, end and number of messages for time intervals of a topic, in nanoseconds.
+        """Yield the start time, end time and message count of intervals of a topic.
 
-        An interval is a fixed share of the file's duration, or a single message.
+        Times are in nanoseconds since the epoch. An interval is a fixed share of the file's duration, or a single
+        message.
 
         Args:
             topic: the ID of the topic.

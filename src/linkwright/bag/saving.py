@@ -55,7 +55,10 @@ def save_messages(
 
 
 def last_reset_ns(messages: Sequence[Recorded]) -> int | None:
-    """Return the time of the message with which ``/clock`` last went back, or None."""
+    """Return the reception time of the message with which ``/clock`` last jumped back, or None.
+
+    The time is in nanoseconds since the epoch.
+    """
     reset_ns, clock_ns = None, None
     for name, stamp_ns, data in messages:
         if name == CLOCK_TOPIC:

@@ -16,7 +16,7 @@ _Message = tuple[Connection, int, bytes]
 
 
 class SeveralReader(Reader):
-    """Reads several files as one recording.
+    """A reader of several files as one recording.
 
     Args:
         readers: the open readers of the files; the caller must close them.

@@ -57,7 +57,7 @@ class Content(NamedTuple):
 
 
 def content_of(type_name: str, data: bytes) -> Content | None:
-    """Return the content of a message with a header, of transforms or of a clock.
+    """Return the content of a message that has a header or contains transforms or a clock.
 
     Return None for other messages.
 

@@ -192,7 +192,9 @@ class BagWriter:
     def flush(self) -> None:
         """Pass buffered messages to the operating system.
 
-        There they survive a crash of this process.
+        There the messages survive a crash of this process.
+
+        Raises:
             LinkwrightError: BAG108, the file cannot be written.
         """
         with self._lock:

@@ -1,1 +1,1 @@
-"""Carries topics and services between networks, such as DDS and Zenoh."""
+"""Carry topics and services between networks, such as DDS and Zenoh."""

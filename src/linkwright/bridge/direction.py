@@ -47,7 +47,7 @@ class EarlyMessage(NamedTuple):
 
 
 class Direction:
-    """Carries messages, requests and responses from a source network to a target network.
+    """The part of a bridge that carries traffic from a source network to a target network.
 
     Each node in the source has a node with the same name in the target, with the same publishers and services. The
     subscriptions and clients of the source are only announced in the target, see `Presence`. The bridge's own node

@@ -1,4 +1,4 @@
-"""Selects the topics and services that a bridge carries, by name patterns.
+"""Select the topics and services that a bridge carries, by name patterns.
 
 A pattern such as ``/robot1`` matches that name and all names below it; ``*`` in a pattern matches any text without a
 slash.

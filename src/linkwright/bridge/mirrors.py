@@ -55,16 +55,16 @@ class Tap:
         self._subscription = node.add(subscription)
 
     def has_more(self) -> bool:
-        """Return whether received messages have not been handled yet."""
+        """Return whether received messages are still queued."""
         return self._subscription.has_work()
 
     def close(self) -> None:
-        """Stop listening."""
+        """Destroy the subscription."""
         self._subscription.destroy()
 
 
 class MirroredPublisher:
-    """Publishes, in one network, the messages of a publisher in the other network.
+    """A publisher in one network that forwards the messages of a publisher in the other network.
 
     Messages are queued until a subscription is matched, because existing subscriptions have not discovered the
     publisher yet.
@@ -106,7 +106,7 @@ class MirroredPublisher:
         return self._waiting is not None
 
     def put(self, data: bytes) -> None:
-        """Publish a message."""
+        """Publish a message, or queue it until a subscription is matched."""
         if self._waiting is None:
             self._publish(data)
         else:
@@ -146,7 +146,7 @@ class MirroredPublisher:
 
 
 class MirroredService:
-    """Offers, in one network, a service of the other network.
+    """A service in one network that forwards requests to a service of the other network.
 
     Args:
         node: the bridge's node with the name of the service's node.

@@ -94,7 +94,7 @@ class Network:
 
 
 def read_network(text: str) -> Network:
-    """Return the network that an argument of the command line names.
+    """Parse a command-line argument that names a network.
 
     Raises:
         LinkwrightError: CLI451, the text does not name a network; DDS101, the domain is not valid; DDS121, security is

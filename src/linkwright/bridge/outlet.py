@@ -16,7 +16,7 @@ from linkwright.wire.guarded_calls import guarded
 
 
 class Outlet:
-    """Publishes messages in order, in a separate thread.
+    """A thread that publishes messages in order.
 
     A publisher with KEEP_ALL blocks for seconds if a subscriber has stopped reading. Meanwhile the
     rest of the bridge's traffic continues.

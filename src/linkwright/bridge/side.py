@@ -88,9 +88,9 @@ class Side:
         return self.graph.open_node(NodeIdentity(node.name, node.namespace, self._enclave), Remappings(()))
 
     def watch(self, callback: Callable[[], None]) -> None:
-        """Register a callback for every change to the graph, including processes that were killed.
+        """Register a callback for changes to the remote graph and for lost publishers.
 
-        The callback is called from any thread.
+        The callback may be called from any thread. This method also starts discovery.
         """
         self._transport.watch(callback)
         self._transport.watch_lost(lambda _publisher: callback())

@@ -95,7 +95,7 @@ async def find_node(session: Session, name: str, *, hidden: bool = False, timeou
         session: the session of the command.
         name: the node's name, with or without the leading slash.
         hidden: whether to include hidden nodes.
-        timeout: how long to wait for the node, in seconds.
+        timeout: the time to wait for the node, in seconds.
 
     Raises:
         LinkwrightError: CLI423, there is no such node.

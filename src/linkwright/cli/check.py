@@ -83,7 +83,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def without_options(words: list[str]) -> SimpleNamespace | None:
-    """Return the parsed arguments of a command line without options, or None if it is empty."""
+    """Return the parsed arguments of a command line without options.
+
+    The result is None if the command line is empty.
+    """
     return SimpleNamespace(words=words, **_DEFAULTS) if words else None
 
 

@@ -33,8 +33,9 @@ COMMANDS = {
     "inertia": "compare masses and inertias with the links' shapes, compute them, or write them",
     "convert": "convert a robot or world to SDF, to URDF, or to MJCF for MuJoCo",
 }
-"""The commands of linkwright-core, with their help texts; `linkwright.cli.workbench` has the other ones.
+"""The commands of linkwright-core, with their help texts.
 
+`linkwright.cli.workbench` contains the other commands.
 Each command is a module of this package, which is loaded only when the command runs.
 """
 
@@ -59,7 +60,7 @@ _GC_THRESHOLD = 50_000
 its time on garbage collection."""
 
 _FIRST_GC_THRESHOLD = 200_000
-"""The number that starts the first collection. It is larger because imports create many objects but no garbage."""
+"""The number of new objects that starts the first collection, because imports create many objects but no garbage."""
 
 
 class Verb(Protocol):

@@ -245,7 +245,7 @@ async def _load_component(session: Session, container: str, arguments: argparse.
     )
     if not response.success:
         error_message = response.error_message
-        reason = foreign(error_message) if error_message else phrase("the container gives no reason")
+        reason = foreign(error_message) if error_message else phrase("the container did not report a reason")
         hint = phrase("run `linkwright component types` to list the components that come with Linkwright")
         raise LinkwrightError(
             Diagnostic("CLI433", phrase("Failed to load component: {reason}", reason=reason), hint=hint)

@@ -21,10 +21,16 @@ if TYPE_CHECKING:
     from linkwright.cli.session import Session
 
 Ask = Callable[..., Coroutine[Any, Any, Any]]
-"""A function that calls a service of the manager, such as ``list_controllers``, with the fields of the request."""
+"""A function that calls a service of the manager, such as ``list_controllers``.
+
+Its keyword arguments are the fields of the request.
+"""
 
 MANAGER_WITHIN = 55.0
-"""Seconds to wait for the manager in addition to the usual time, because a simulated robot starts it late."""
+"""Seconds to wait for the manager in addition to the usual time.
+
+A simulated robot starts the manager late.
+"""
 _LOGS_HINT = "check controller_manager logs"
 _SECTIONS = {
     "claimed_interfaces": "claimed interfaces",
@@ -200,7 +206,7 @@ def _diagram(controllers: Sequence[Any]) -> str:
 
 
 _OLD_STATES = {"start": "active", "stop": "inactive", "configure": "inactive"}
-"""The current names of states that launch files from before Humble name differently."""
+"""Maps the names of states in launch files from before Humble to the current names."""
 
 
 def _current_state_name(state: str) -> str:

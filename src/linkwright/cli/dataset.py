@@ -53,7 +53,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--image-format", choices=("jpg", "png"), default="jpg", help="the file format of images (default: %(default)s)"
     )
     parser.add_argument(
-        "--classes", metavar="FILE", help="YAML: classes with patterns of models (default: a class for each model)"
+        "--classes", metavar="FILE", help="a YAML file of classes and their models (default: one class per model)"
     )
     parser.add_argument(
         "--add",

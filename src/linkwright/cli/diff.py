@@ -19,7 +19,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("file", metavar="OLD", help="the URDF or xacro file; with --against, the new one")
     add_values(
         parser,
-        values_help="the file to compare it with, and NAME:=VALUE for the <xacro:arg> of both files",
+        values_help="the file to compare OLD with, and NAME:=VALUE for the <xacro:arg> of both files",
         name="words",
         metavar="NEW",
     )

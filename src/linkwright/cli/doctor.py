@@ -29,7 +29,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         metavar="SECONDS",
         type=positive_float,
         default=_DEFAULT_SECONDS,
-        help="how long to observe the graph (default: %(default)g)",
+        help="the time to observe the graph (default: %(default)g)",
     )
     parser.add_argument(
         "--rviz",
@@ -133,6 +133,6 @@ VERBS = {
     "hello": SubVerb(
         hello.configure,
         hello.run,
-        help="send greetings to other computers over a topic and by multicast, and count those received",
+        help="send greetings to other computers over a topic and by multicast, and count the greetings received",
     ),
 }

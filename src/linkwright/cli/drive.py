@@ -138,7 +138,7 @@ def _summary(robot: Robot, inference: Inference) -> Phrase:
     if not parts:
         return phrase("'{robot}' needs no inferred elements", robot=robot.name)
     return phrase(
-        "inferred for '{robot}': {parts}; `--show` explains it, `--write` writes it to the file",
+        "inferred for '{robot}': {parts}; `--show` explains the elements, `--write` writes them to the file",
         robot=robot.name,
         parts=joined(parts),
     )

@@ -46,12 +46,12 @@ class EchoFormat:
 
     Attributes:
         field: the path of the field to print; empty for the entire message.
-        csv: print comma-separated values instead of YAML.
+        csv: whether to print comma-separated values instead of YAML.
         truncate_length: the length at which arrays and strings are truncated; None to print them completely.
-        no_arr: omit the elements of arrays.
-        no_str: omit strings.
-        flow_style: print each message on one line of YAML.
-        message_info: print the times of publication and reception before each message.
+        no_arr: whether to omit the elements of arrays.
+        no_str: whether to omit strings.
+        flow_style: whether to print each message on one line of YAML.
+        message_info: whether to print the times of publication and reception before each message.
     """
 
     field: tuple[str, ...] = ()

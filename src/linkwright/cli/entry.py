@@ -1,6 +1,6 @@
 """The entry point of the command line.
 
-It makes Ctrl-C end the process without a traceback before it imports any other module.
+Before this module imports any other module, it makes Ctrl-C end the process without a traceback.
 """
 
 from __future__ import annotations

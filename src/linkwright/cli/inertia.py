@@ -103,7 +103,7 @@ def run(arguments: argparse.Namespace) -> int:
         if not (arguments.link or arguments.write):
             print_message(
                 localized(
-                    phrase("`--link NAME` prints the <inertial> of a link's shapes, `--write` writes them to the file")
+                    phrase("`--link NAME` prints the <inertial> of one link, `--write` writes all of them to the file")
                 )
             )
     if result is not None:

@@ -56,7 +56,7 @@ def run_nodes(arguments: argparse.Namespace) -> int:
 def configure_get(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments of ``lifecycle get``."""
     _add_node_arguments(parser, optional=True)
-    parser.add_argument("--timeout", metavar="SECONDS", type=positive_float, help="how long to wait for each response")
+    parser.add_argument("--timeout", metavar="SECONDS", type=positive_float, help="the time to wait for each response")
 
 
 def run_get(arguments: argparse.Namespace) -> int:

@@ -79,7 +79,7 @@ async def topic_types(session: Session, name: str, *, wait: bool) -> list[str]:
     print(f"WARNING: topic [{name}] does not appear to be published yet", file=sys.stderr)
     if not wait:
         topic_names = [topic for topic, _ in session.node.get_topic_names_and_types()]
-        hint = phrase("give the message type to wait for the topic, or see `linkwright topic list`")
+        hint = phrase("pass the message type to wait for the topic, or run `linkwright topic list` to list the topics")
         message = phrase("Could not determine the type for the passed topic '{name}'", name=name)
         raise unknown_name_error("CLI411", message, name, topic_names, hint)
     while not types:
@@ -113,7 +113,7 @@ async def topic_type(
             name=name,
             types=", ".join(types),
         )
-        hint = phrase("give the type after the topic; `linkwright doctor` shows which node uses which type")
+        hint = phrase("pass the type after the topic; `linkwright doctor` shows the type that each node uses")
         raise LinkwrightError(Diagnostic("CLI412", message, hint=hint))
     return _message_class(types[0], raw=raw)
 

@@ -5,15 +5,17 @@ from __future__ import annotations
 import argparse
 import gc
 import logging
-import os
 import sys
 
 from linkwright.cli.endings import FINE
-from linkwright.diagnostics import missing_extra
+from linkwright.diagnostics import Diagnostic, LinkwrightError, missing_extra, phrase
 
 _LOOPBACK = "127.0.0.1"
 _GC_THRESHOLD = 2_000
-"""The number of new objects that starts a garbage collection: garbage may contain the text of each edit."""
+"""The number of new objects that starts a garbage collection.
+
+Garbage may contain the text of each edit.
+"""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -26,14 +28,24 @@ def configure(parser: argparse.ArgumentParser) -> None:
     transport_group.add_argument(
         "--ws", metavar="PORT", type=int, help="listen on this port of 127.0.0.1 for a WebSocket"
     )
+    parser.add_argument(
+        "--python",
+        action="store_true",
+        help="add the answers of ty and ruff about Python files, if they are installed (not with --tcp and --ws)",
+    )
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Serve an editor until the connection is closed."""
     try:
         from linkwright.lsp.features import make_server
+        from linkwright.lsp.python.programs import installed_programs
+        from linkwright.lsp.python.serving import serve
     except ModuleNotFoundError as error:
         raise missing_extra("CLI307", error) from None
+    if arguments.python and (arguments.tcp is not None or arguments.ws is not None):
+        message = phrase("--python works only over standard input and output, not with --tcp or --ws")
+        raise LinkwrightError(Diagnostic("CLI308", message))
     logging.basicConfig(stream=sys.stderr, level=logging.WARNING, format="linkwright lsp: %(message)s")
     server = make_server()
     gc.set_threshold(_GC_THRESHOLD)
@@ -42,7 +54,5 @@ def run(arguments: argparse.Namespace) -> int:
     elif arguments.ws is not None:
         server.start_ws(_LOOPBACK, arguments.ws)
     else:
-        with os.fdopen(os.dup(0), "rb") as requests, os.fdopen(os.dup(1), "wb") as responses:
-            sys.stdout = sys.stderr  # standard output carries only the responses
-            server.start_io(requests, responses)
+        serve(server, installed_programs() if arguments.python else [])
     return FINE

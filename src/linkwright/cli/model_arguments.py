@@ -26,7 +26,7 @@ def add_values(
     Args:
         parser: the parser of the command.
         values_help: the help text, which states whether other words are accepted as well.
-        name: the attribute of the parsed arguments that holds the words.
+        name: the attribute of the parsed arguments that contains the words.
         metavar: the name of the argument in the help.
     """
     no_values: list[str] = []  # without a default, argparse reports the optional words as missing arguments, too
@@ -37,7 +37,7 @@ def add_second_model(parser: argparse.ArgumentParser) -> None:
     """Declare `words`, a second file and values for both files, and the option ``--against``."""
     add_values(
         parser,
-        values_help="a second file to compare FILE with, the new one, and NAME:=VALUE for <xacro:arg>",
+        values_help="the new file to compare FILE with, and NAME:=VALUE for <xacro:arg>",
         name="words",
         metavar="NEW",
     )

@@ -22,7 +22,10 @@ if TYPE_CHECKING:
 
 
 _ANSWER_TIMEOUT = 5.0
-"""Seconds to wait for each node when all nodes are listed, so that an unresponsive node does not block the others."""
+"""Seconds to wait for each node when all nodes are listed.
+
+An unresponsive node does not block the others.
+"""
 _LABELS = {
     1: ("Boolean value is:", "bool_value"),
     2: ("Integer value is:", "integer_value"),
@@ -50,10 +53,10 @@ def _add_node_arguments(parser: argparse.ArgumentParser, *, optional: bool = Fal
         "--include-hidden-nodes", "-a", "--all", action="store_true", help="consider hidden nodes as well"
     )
     parser.add_argument(
-        "--timeout", metavar="SECONDS", type=float, default=1.0, help="how long to wait for the node (default: 1)"
+        "--timeout", metavar="SECONDS", type=float, default=1.0, help="the time to wait for the node (default: 1)"
     )
     parser.add_argument(
-        "--service-timeout", metavar="SECONDS", type=float, help="how long to wait for a response (default: no limit)"
+        "--service-timeout", metavar="SECONDS", type=float, help="the time to wait for a response (default: no limit)"
     )
 
 

@@ -30,7 +30,7 @@ def make_parser(
 
 
 class _Parser(argparse.ArgumentParser):
-    """An argument parser that suggests similar options, and raises errors in printing help.
+    """An argument parser that suggests similar options, and raises errors that occur when help is printed.
 
     argparse itself ignores such errors.
     """

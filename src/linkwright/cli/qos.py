@@ -75,7 +75,7 @@ def _add_arguments(
         "--qos-liveliness-lease-duration-seconds",
         metavar="SECONDS",
         type=float,
-        help="how long a publisher may stay silent before it counts as not alive",
+        help="the time within which a publisher must assert its liveliness",
     )
 
 

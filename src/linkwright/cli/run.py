@@ -27,9 +27,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Replace this process by a package's executable, so that it receives the signals.
+    """Run an executable of a package, and return its exit status.
 
-    On Windows, run the executable and return its exit status.
+    The viewer and Linkwright's own nodes run in this process. Another executable replaces this process, so that it
+    receives the signals. On Windows, it runs in a child process.
     """
     from linkwright import standins
     from linkwright.launch import LaunchOptions, find_program, is_viewer, run_viewer

@@ -44,7 +44,7 @@ def add_session_arguments(parser: argparse.ArgumentParser) -> None:
         "--spin-time",
         metavar="SECONDS",
         type=float,
-        help="how long to wait for discovery (default: until the graph is discovered)",
+        help="the time to wait for discovery (default: until the graph is discovered)",
     )
     group.add_argument("-s", "--use-sim-time", action="store_true", help="use simulated time (/clock)")
     group.add_argument(
@@ -61,7 +61,7 @@ class Session:
         graph: the graph, joined with other processes.
         node: the command's hidden node.
         loop: the event loop.
-        visiting: whether a signal has to interrupt a visit of launch actions; always False.
+        is_blocking: whether code of a launch file blocks the event loop; always False.
     """
 
     is_blocking = False

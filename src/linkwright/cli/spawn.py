@@ -38,7 +38,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Request the simulation to add a model, and return 1 if the model's file has errors.
+    """Ask the running simulation to add a model, and return 1 if the model's file has errors.
 
     Raises:
         LinkwrightError: CLI332, no simulation is running; CLI333, the simulation rejects the model.
@@ -62,7 +62,7 @@ def run(arguments: argparse.Namespace) -> int:
             response = await call(session, SPAWN_SERVICE, "/spawn_entity", spawn_request(entity, model.text))
         except NoAnswerError as error:
             message = phrase("there is no running simulation to add '{name}' to", name=entity.name)
-            hint = phrase("start one, such as `linkwright sim empty`, on the same ROS_DOMAIN_ID")
+            hint = phrase("start a simulation with the same ROS_DOMAIN_ID, for example with `linkwright sim empty`")
             raise LinkwrightError(Diagnostic("CLI332", message, hint=hint)) from error
         if not response.success:
             reason = foreign(response.status_message)

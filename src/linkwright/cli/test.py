@@ -14,7 +14,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments of ``test``."""
     parser.usage = f"{parser.prog} [options] FILE [NAME:=VALUE ...]"
     parser.add_argument("file", metavar="FILE", help="a file with generate_test_description and tests")
-    parser.add_argument("words", metavar="NAME:=VALUE", nargs="*", help="arguments of its launch description")
+    parser.add_argument("words", metavar="NAME:=VALUE", nargs="*", help="arguments of the file's launch description")
     parser.add_argument(
         "-s",
         "--show-args",

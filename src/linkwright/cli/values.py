@@ -26,7 +26,10 @@ if TYPE_CHECKING:
 
 _SOURCE_NAME = "<values>"
 _ASSIGNMENT_ERRORS = (AssertionError, TypeError, ValueError, AttributeError, OverflowError)
-"""The exceptions that a field raises when an invalid value is assigned, as in rosidl's generated classes."""
+"""The exceptions that a field raises when an invalid value is assigned.
+
+They are the same as in rosidl's generated classes.
+"""
 
 _AUTOMATIC = ("auto", "now")
 

@@ -21,7 +21,7 @@ GROUPS = {
     },
     "vision and voice": {
         "vision": "detect objects in images; train and evaluate detectors",
-        "dataset": "render labelled images of a world in COCO and YOLO form, to train a detector",
+        "dataset": "render labelled images of a world in COCO and YOLO format, to train a detector",
         "voice": "try speech engines on recordings, and enrol words",
         "models": "download, verify and remove models for speech and vision",
     },
@@ -60,9 +60,10 @@ OTHER_NAMES = {"wtf": "doctor"}
 """Aliases that ros2 has for commands. The help does not list them."""
 
 ORDERED_COMMANDS = frozenset({"pkg", "run", "shell"})
-"""Commands, besides those with subcommands, that do not accept options between positional arguments.
+"""Commands that do not accept options between positional arguments.
 
-Their last arguments belong to another program. Other commands accept `launch PACKAGE --no-open FILE`.
+Their last arguments belong to another program. Commands with subcommands do not accept such options either.
+Other commands accept `launch PACKAGE --no-open FILE`.
 """
 
 _GRAPH_GROUPS = ("the running ROS graph", "bags", "network and diagnosis")

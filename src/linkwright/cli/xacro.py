@@ -87,7 +87,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def without_options(words: list[str]) -> SimpleNamespace | None:
-    """Return the parsed arguments of a command line without options, or None if it names no file."""
+    """Return the parsed arguments of a command line without options.
+
+    The result is None if the command line names no file.
+    """
     return SimpleNamespace(file=words[0], values=words[1:], **_DEFAULTS) if words else None
 
 
@@ -189,7 +192,7 @@ def _provenance_output(inputs: Inputs, name: str, form: str) -> str:
 
     provenances = provenance_of_named(inputs, name)
     if form == "json":
-        with recursion_limit_for(inputs.limits):  # elements can be nested more deeply than that
+        with recursion_limit_for(inputs.limits):  # elements can be nested more deeply than Python's default limit
             return _json_text({"elements": [provenance_data(provenance) for provenance in provenances]})
     return "\n".join(map(provenance_text, provenances))
 

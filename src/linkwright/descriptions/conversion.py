@@ -91,7 +91,7 @@ def as_sdf(
 
 
 def _in_saved_state(world: World) -> World:
-    """Return a world in its saved state, with gravity in the element that SDF uses since 1.6."""
+    """Return a world in its saved state, with gravity in the element that SDF has used since 1.6."""
     from linkwright.sdf.saved import with_saved_state
     from linkwright.sdf.worlds import gravity_of
 
@@ -111,7 +111,7 @@ def with_changed_uris(sdf_object: Any, source_folder: Path, change: Callable[[st
     """Return a part of SDF with changed URIs of meshes, textures and other files.
 
     Args:
-        sdf_object: an object of `linkwright.sdf`, or a tuple of them.
+        sdf_object: an object of `linkwright.sdf`, or a tuple of such objects.
         source_folder: the folder of the part's file, for an object that does not store its file.
         change: a function that returns the new URI, given a URI and the folder of the file that contains it.
     """

@@ -95,7 +95,7 @@ class Model:
 
 @dataclass(frozen=True)
 class Pair:
-    """An old description and a new one.
+    """An old and a new description.
 
     Attributes:
         old: the old description.
@@ -132,7 +132,7 @@ class Pair:
 
 
 def old_description_key(description: Description) -> str:
-    """Return a text that identifies the old description, even if the new one has the same text.
+    """Return a text that identifies the old description, even if the new description is equal.
 
     Descriptions are identified by their text.
     """

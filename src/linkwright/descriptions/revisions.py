@@ -17,7 +17,7 @@ from linkwright.packages.manifest import SourceScan
 from linkwright.packages.share_layout import share_of_sources
 
 _HOOK_VARIABLES = ("GIT_DIR", "GIT_WORK_TREE", "GIT_INDEX_FILE", "GIT_PREFIX")
-"""Variables that git sets for hooks. They would override the repository of a file's folder."""
+"""Variables that git sets for hooks, and that would override the repository of a file's folder."""
 
 
 class Revision:
@@ -28,10 +28,10 @@ class Revision:
 
     Args:
         path: a file of the working tree.
-        name: the commit, as git names it: ``HEAD``, ``main~2``, a tag or a hash.
+        name: the commit in git's notation: ``HEAD``, ``main~2``, a tag or a hash.
 
     Attributes:
-        name: the commit, as git names it.
+        name: the commit in git's notation.
         path: the file in the temporary folder.
 
     Raises:

@@ -327,7 +327,7 @@ def robot_of_text(text: str, name: str) -> Reading:
 def _without_repetitions(diagnostics: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
     """Yield the findings without repetitions about unread elements and missing models.
 
-    Of these, only the first with the same message is yielded.
+    Of repeated findings, only the first is yielded.
     """
     reported_keys: set[str] = set()
     for diagnostic in diagnostics:
@@ -366,7 +366,7 @@ def _parse_world(path: Path, content: str | bytes) -> tuple[Document, tuple[Diag
 
 
 def _is_xacro(document: Document) -> bool:
-    """Return whether a document contains xacro tags, whatever the name of its file.
+    """Return whether a document contains xacro tags, regardless of the name of its file.
 
     Launch files expand such a file before Gazebo reads it.
     """
@@ -425,8 +425,8 @@ def examine(
         arguments: see `load`.
         packages: see `load`.
         overlay: texts that replace the contents of the file, or of files that it includes or loads.
-        xacro: whether to expand the file with xacro; None to decide by the file, see `is_xacro`. A plain URDF file is
-            read as urdfdom reads it.
+        xacro: whether to expand the file with xacro; None to expand it if there are arguments or `is_xacro` returns
+            true. A plain URDF file is read as urdfdom reads it.
         partly: whether to accept the parts that can be expanded if others cannot. `Description.problems` then contains
             the errors.
 

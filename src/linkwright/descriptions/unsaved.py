@@ -9,21 +9,25 @@ from linkwright.loading.lean_dataclasses import NamedTuple, dataclass
 from linkwright.loading.lean_typing import Literal, Protocol
 
 Outcome = Literal["shown", "errors", "elsewhere"]
-"""Whether descriptions are shown with a new text, stay as they were because of its errors, or do not contain it."""
+"""Whether descriptions are shown with a new text, are unchanged because of its errors, or do not contain it."""
 
 Listener = Callable[[str], Awaitable[Outcome]]
 """A function that reads descriptions again after the text of a file, given by its real path, has changed."""
 
 
 class TextOwner(Protocol):
-    """An editor with unsaved texts. It is hashable."""
+    """An editor with unsaved texts.
+
+    Editors are hashable.
+    """
 
     def edit(self, path: str, number: int, text: str) -> None:
         """Replace a text in the editor after the robot was edited in the scene.
 
         Args:
-            path: the path by which the editor knows the file.
-            number: the number of the text that the edit was made for, or 0 if the editor has no unsaved text of it.
+            path: the editor's path of the file.
+            number: the number of the text that the edit was made for, or 0 if the editor has no unsaved text of the
+                file.
             text: the new text, with the line ends of the file.
         """
 
@@ -34,7 +38,7 @@ class UnsavedText:
 
     Attributes:
         owner: the editor.
-        path: the path by which the editor knows the file.
+        path: the editor's path of the file.
         number: the number that the editor gave to this text.
         text: the text, with the line ends of the file.
     """
@@ -51,7 +55,7 @@ class _Key(NamedTuple):
 
 
 def with_lf(text: str) -> str:
-    """Return a text with the line end LF, as pages have it."""
+    """Return a text with the line ends of pages, LF."""
     return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
@@ -60,7 +64,9 @@ def _key(owner: TextOwner, path: str) -> _Key:
 
 
 class UnsavedTexts:
-    """The unsaved texts of all editors. Of two texts of a file, the newer one counts.
+    """The unsaved texts of all editors.
+
+    Of two texts of a file, the newer text is used.
 
     Args:
         listeners: the functions that are called after each change.
@@ -76,14 +82,17 @@ class UnsavedTexts:
         return {key.real_path: unsaved for key, unsaved in self._texts.items()}
 
     async def put(self, unsaved: UnsavedText) -> Outcome:
-        """Replace the editor's text of a file, and return what descriptions make of it."""
+        """Replace the editor's text of a file, and return the effect on the descriptions."""
         key = _key(unsaved.owner, unsaved.path)
         self._texts.pop(key, None)  # the newest text is the last one
         self._texts[key] = unsaved
         return await self._changed(key.real_path)
 
     async def remove(self, owner: TextOwner, path: str) -> Outcome:
-        """Remove the editor's text of a file, which then counts as it is on the disk."""
+        """Remove the editor's text of a file, and return the effect on the descriptions.
+
+        If no other editor has a text of the file, the text on the disk is used again.
+        """
         key = _key(owner, path)
         return "elsewhere" if self._texts.pop(key, None) is None else await self._changed(key.real_path)
 

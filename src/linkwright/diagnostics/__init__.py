@@ -1,4 +1,4 @@
-"""Findings about a user's input: what is wrong, where, why, and how to fix it."""
+"""Findings about a user's input, with a message, a location, notes and a hint."""
 
 from linkwright.diagnostics.diagnostic import (
     Diagnostic,

@@ -1,4 +1,4 @@
-"""The grouping of similar findings that occur in many places."""
+"""The grouping of similar findings."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from linkwright.diagnostics.phrase import as_phrase, counted
 _MAX_SEPARATE = 3
 """The maximum number of similar findings that are shown one by one."""
 _MAX_PLACES = 2
-"""The number of places of a group that are shown besides the first."""
+"""The number of findings of a group that are shown besides the first."""
 
 
 def group_similar(diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:

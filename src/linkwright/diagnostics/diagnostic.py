@@ -155,16 +155,16 @@ class Note(NamedTuple):
 
 
 class Diagnostic:
-    """A finding with a stable code: what is wrong, where, why, and how to fix it.
+    """A finding with a stable code, a message, a location, notes and a hint.
 
     Diagnostics are immutable. Two diagnostics with the same content are equal.
 
     Attributes:
-        code: letters for the room and three digits, such as ``XAC101``. A code is never reused with another meaning.
+        code: letters for the package and three digits, such as ``XAC101``. A code is never reused with another meaning.
         message: one sentence without a full stop, with names as the user wrote them.
         span: the position; None if there is none, as for a missing file.
-        notes: what led to the finding: includes, macro calls, values.
-        hint: how to fix the problem, or None.
+        notes: the causes of the finding: includes, macro calls, values.
+        hint: advice for fixing the problem, or None.
         source: the text that contains the span, from which an excerpt is shown; None if it is not available.
     """
 
@@ -220,7 +220,7 @@ class Diagnostic:
 class LinkwrightError(Exception):
     """Raised for an error in the user's input, never for a bug in Linkwright.
 
-    It has one or more diagnostics.
+    The exception has one or more diagnostics.
     """
 
     def __init__(self, *diagnostics: Diagnostic) -> None:

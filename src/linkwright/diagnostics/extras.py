@@ -42,7 +42,7 @@ _VERSION_LIMIT = r"python_version < '(\d+)\.(\d+)'"  # compiled only on use, bec
 
 
 def install_hint(extra: str, package: str = "") -> Phrase:
-    """Return a hint on how to install an extra.
+    """Return a hint for installing an extra.
 
     Args:
         extra: the name of the extra, a key of `EXTRAS`.
@@ -72,9 +72,9 @@ def install_hint(extra: str, package: str = "") -> Phrase:
 
 
 def package_hint(distribution: str) -> Phrase:
-    """Return a hint on how to install a package that does not belong to an extra.
+    """Return a hint for installing a package that does not belong to an extra.
 
-    The command installs it into the environment of Linkwright's Python.
+    The command installs the package into the environment of Linkwright's Python.
     """
     return phrase("run {command}", command=_installation().command_for_packages(distribution))
 

@@ -1,7 +1,8 @@
 """The installation of this Linkwright, and the commands that add packages to it.
 
-Installers record this: ``direct_url.json`` (PEP 610) names the origin of a distribution, and ``pipx_metadata.json`` or
-``uv-receipt.toml`` marks an environment of a tool, which recreates the environment when it installs again.
+Installers record the origin in files: ``direct_url.json`` (PEP 610) names the origin of a distribution, and
+``pipx_metadata.json`` or ``uv-receipt.toml`` marks an environment of a tool, which recreates the environment when it
+installs again.
 """
 
 from __future__ import annotations
@@ -67,7 +68,7 @@ class Installation:
     Attributes:
         origin: the origin of the distribution.
         tool: the start of the command of pip or uv that installs into the environment; `PIPX` or `UV_TOOL` if the
-                environment belongs to such a tool.
+                environment belongs to pipx or ``uv tool``.
         extras: the extras that the tool was asked to install, and that it would drop if they were not requested again.
         other_packages: other packages that the tool was asked to install, and that it would drop in the same way.
     """
@@ -157,7 +158,7 @@ def _find_origin() -> Origin:
 
 
 def _pip_command(prefix: Path, origin: Origin) -> tuple[str, ...]:
-    """Return the start of the command that installs into an environment that no tool manages."""
+    """Return the start of the command for installing into an environment that no tool manages."""
     if find_spec("pip"):
         pip_path = shutil.which("pip")
         is_on_path = pip_path is not None and Path(pip_path).parent == Path(sys.executable).parent

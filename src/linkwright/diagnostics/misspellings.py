@@ -1,7 +1,7 @@
 """The search for the existing name that another name misspells.
 
 The name of a sibling is not a misspelling: ``wheel_2`` does not misspell ``wheel_1``, nor ``lwheel`` ``rwheel``, nor
-``stopKp`` ``stopKd``. They name different parts, and a fix that confuses them breaks the robot.
+``stopKp`` ``stopKd``. Such names denote different parts, and a fix that confuses the names breaks the robot.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ _MIN_LENGTH = 3
 def find_misspelt(name: str, names: Iterable[str]) -> str | None:
     """Return the existing name that a name misspells, or None.
 
-    It is None if there is no such name, or if there are several with different words.
+    The result is None if there is no such name, or if there are several names with different words.
     """
     candidates = [candidate for candidate in names if candidate != name and _is_misspelling(name, candidate)]
     return candidates[0] if len({"".join(words_of(item)) for item in candidates}) == 1 else None

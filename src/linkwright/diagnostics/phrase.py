@@ -63,7 +63,7 @@ class Phrase(str):
     def __str__(self) -> Phrase:
         """Return the phrase itself.
 
-        So the text of an exception that was raised with a phrase is still a phrase.
+        Therefore, the text of an exception that was raised with a phrase is still a phrase.
         """
         return self
 
@@ -220,7 +220,7 @@ def counted(one: str, several: str, count: int, **arguments: object) -> Phrase:
 def term(word: str) -> Phrase:
     """Return a phrase for a term from a table or a file, such as the tag ``link``.
 
-    It is translated as a whole, with the context for terms.
+    The term is translated as a whole, with the context for terms.
     """
     return _Known(word, TERMS)
 
@@ -228,7 +228,7 @@ def term(word: str) -> Phrase:
 def title_of_page(text: str) -> Phrase:
     """Return a phrase for the title of the page about a rule or diagnostic code.
 
-    It is translated as a whole, with the context for titles.
+    The title is translated as a whole, with the context for titles.
     """
     return _Known(text, RULES)
 
@@ -236,7 +236,7 @@ def title_of_page(text: str) -> Phrase:
 def foreign(words: object) -> Phrase:
     """Return a phrase for a text from another program, such as an exception's.
 
-    It is translated if a catalogue contains it.
+    The text is translated if a catalogue contains it.
     """
     text = str(words)
     return text if isinstance(text, Phrase) else _Known(text, FOREIGN)

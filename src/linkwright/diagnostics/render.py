@@ -31,7 +31,7 @@ _REPLACEMENTS = {
 def wants_colour(stream: IO[str]) -> bool:
     """Return whether output to a stream should be coloured.
 
-    It should on a terminal, unless NO_COLOR is set or TERM is ``dumb``.
+    Output to a terminal is coloured, unless NO_COLOR is set or TERM is ``dumb``.
     """
     if os.environ.get("NO_COLOR"):
         return False
@@ -63,8 +63,8 @@ def render(diagnostic: Diagnostic, *, colour: bool = False, lang: str = "en") ->
 def print_diagnostics(diagnostics: Iterable[Diagnostic], stream: IO[str]) -> None:
     """Write diagnostics to a stream, in the user's language.
 
-    They are coloured if the stream supports it. If there are too many, the rest is only counted; formats for programs
-    contain all of them.
+    The diagnostics are coloured if the stream supports colours. Diagnostics beyond `MAX_PRINTED` are only counted.
+    Formats for programs contain all diagnostics.
     """
     colour, lang = wants_colour(stream), language()
     all_diagnostics = list(diagnostics)
@@ -201,7 +201,7 @@ def _indent(text: str) -> str:
 
 
 def display_path(path: str | Path) -> str:
-    """Return a path as messages show it: relative to the current folder if it is inside."""
+    """Return a path as shown in messages, relative to the current folder if it is inside the folder."""
     text = str(path)
     relative = os.path.relpath(text)
     return text if relative.startswith("..") else relative

@@ -18,10 +18,10 @@ _MAX_LISTED = 8
 _ADDRESSES = ("http:", "https:", "ftp:")
 _ADDRESS_PATTERN = r"(?:^|/)((?:https?|ftp):)/+(.+)"  # compiled only on use, because few commands need it
 _MAX_COMPARED = 1_000
-"""The maximum number of names to compare. Of more names, only those with a similar beginning and length are used."""
+"""The maximum number of names to compare. More names are filtered by beginning and length."""
 _WORD_PATTERN = r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+|[^\W\d_]+"
 _MAX_SHORT_LENGTH = 2
-"""The length up to which a word counts as misspelt only if two of its letters are swapped."""
+"""The length up to which a word is a misspelling only if letters are swapped or omitted."""
 
 
 def nearest(name: str, candidates: Iterable[str], limit: int = 3) -> list[str]:
@@ -37,7 +37,7 @@ def nearest(name: str, candidates: Iterable[str], limit: int = 3) -> list[str]:
 def _nearest(name: str, candidates: tuple[str, ...], limit: int) -> tuple[str, ...]:
     """Return the result of `nearest`.
 
-    It is cached, because a description may use a missing property very often.
+    The result is cached, because a description may use a missing property very often.
     """
     from difflib import get_close_matches  # imported here, because most commands need no hint
 
@@ -61,7 +61,7 @@ def words_of(name: str) -> list[str]:
 def _is_similar(name: str, other: str) -> bool:
     """Return whether a name may be a misspelling of another name.
 
-    The words that they do not share must be typing errors, or be extra words of one name.
+    The words that the names do not share must be typing errors, or be extra words of one name.
     """
     words, others = words_of(name), words_of(other)
     if "".join(words) == "".join(others):
@@ -83,7 +83,7 @@ def _is_similar(name: str, other: str) -> bool:
 def _is_misspelling(word: str, other: str) -> bool:
     """Return whether a word misspells or abbreviates another word.
 
-    A number does neither.
+    A number neither misspells nor abbreviates another word.
     """
     shorter, longer = sorted((word, other), key=len)
     if word.isdigit() or other.isdigit():
@@ -107,7 +107,7 @@ def _is_abbreviation(shorter: str, longer: str) -> bool:
 
 
 def is_misspelt(name: str, names: Iterable[str]) -> bool:
-    """Return whether a name differs from one of some names by a typing error.
+    """Return whether a name is equal to one of some names, except for a typing error.
 
     The error is a missing, extra, wrong or swapped letter. Long names may have more errors, one more for every ten
     letters.
@@ -183,12 +183,12 @@ def as_typed(path: str | os.PathLike[str]) -> str:
 def missing_file_hint(path: Path, is_candidate: Callable[[str], bool] | None = None) -> Phrase:
     """Return a hint for a file that does not exist.
 
-    It names the missing folder, or similar file names in the folder, or other files there.
+    The hint names the missing folder, or similar file names in the folder, or other files there.
 
     Args:
         path: the path of the missing file.
-        is_candidate: returns whether a file name in the folder can be suggested; None for names with the same
-            extension.
+        is_candidate: a function that returns whether a file name in the folder can be suggested; None for names with
+            the same extension.
     """
     if any(part in path.parts for part in _ADDRESSES):
         return phrase("files are not fetched from the network: download the file, and give its path")

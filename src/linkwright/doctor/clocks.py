@@ -11,7 +11,7 @@ from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 _MAX_DIFFERENCE_NS = 5 * NANOSECONDS_PER_SECOND
 """The difference from which a stamp is reported.
 
-tf2 keeps transforms for ten seconds, and displays wait less.
+tf2 keeps transforms for ten seconds, and displays wait for a shorter time.
 """
 _CLOCK_TOPIC = "/clock"
 
@@ -52,7 +52,7 @@ def _examine_simulated_time(observation: Observation) -> Iterator[Diagnostic]:
             "DOC603",
             phrase("/clock stays at {last_ns:.3f} s", last_ns=observation.clock.last_ns / NANOSECONDS_PER_SECOND),
             severity=Severity.WARNING,
-            notes=(Note(phrase("it is published by {senders}", senders=listed(senders))),),
+            notes=(Note(phrase("published by {senders}", senders=listed(senders))),),
             hint=phrase("check whether the simulation is paused"),
         )
     elif simulated_nodes and observation.clock is None and observation.seconds:
@@ -60,7 +60,7 @@ def _examine_simulated_time(observation: Observation) -> Iterator[Diagnostic]:
             "DOC603",
             phrase("no message was received on /clock in {seconds:g} s", seconds=observation.seconds),
             severity=Severity.WARNING,
-            notes=(Note(phrase("it is published by {senders}", senders=listed(senders))),),
+            notes=(Note(phrase("published by {senders}", senders=listed(senders))),),
             hint=phrase("check whether the simulation is paused or has not been started"),
         )
     if simulated_nodes and other_nodes:
@@ -73,7 +73,7 @@ def _examine_simulated_time(observation: Observation) -> Iterator[Diagnostic]:
             ),
             severity=Severity.WARNING,
             notes=(Note(phrase("the stamps of these nodes are far apart, so transforms and messages do not match")),),
-            hint=phrase("set it for all of them: SetParameter('use_sim_time', True) in the launch file"),
+            hint=phrase("set use_sim_time for all nodes: SetParameter('use_sim_time', True) in the launch file"),
         )
     if len(senders) > 1:
         yield Diagnostic(

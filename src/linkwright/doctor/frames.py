@@ -78,7 +78,7 @@ def _examine_contradictions(observation: Observation) -> Iterator[Diagnostic]:
                 frames=_format_frames(children),
                 senders=listed(senders),
             ),
-            notes=(Note(phrase("the frames jump between the poses that they publish")),),
+            notes=(Note(phrase("the frames jump between the published poses")),),
             hint=phrase(
                 "stop one of them, or configure it not to publish these frames (for example publish_tf: false)"
             ),
@@ -94,7 +94,7 @@ def _examine_numbers(observation: Observation) -> Iterator[Diagnostic]:
                     "the transform of frame '{child}' has numbers that are not finite, or a rotation of length zero",
                     child=transform.child,
                 ),
-                notes=(Note(phrase("it is published by {senders}", senders=listed(transform.senders))),),
+                notes=(Note(phrase("published by {senders}", senders=listed(transform.senders))),),
                 hint=phrase(
                     "check the joint positions and origins from which it is computed; the identity rotation is w: 1"
                 ),
@@ -176,7 +176,7 @@ def _missing_static_finding(robot: RobotSeen, joints: Sequence[Joint]) -> Diagno
     return Diagnostic(
         "DOC304",
         phrase(
-            "there is no transform of {frames}, because no static transform was published for it",
+            "there is no transform of {frames}, because no static transform was published",
             frames=_format_frames(frames),
         ),
         notes=(Note(phrase("fixed joints: {joints}", joints=listed(joint.name for joint in joints))),),
@@ -217,7 +217,7 @@ def _missing_state_findings(
                 frames=_format_frames(frames),
             ),
             notes=(Note(phrase("joints of the robot that move: {names}", names=listed(names))),),
-            hint=phrase("check whether it waits for a description, or for a controller that is not active"),
+            hint=phrase("check whether the publisher waits for a description, or for a controller that is not active"),
         )
     else:
         for name in names:
@@ -243,8 +243,8 @@ def _missing_state_findings(
                 ),
                 hint=suggestion
                 or phrase(
-                    "configure its driver or controller to publish it (joint_state_broadcaster: joints), or run "
-                    "joint_state_publisher with source_list"
+                    "configure the driver or controller of the joint to publish its state (joint_state_broadcaster: "
+                    "joints), or run joint_state_publisher with source_list"
                 ),
             )
 
@@ -260,7 +260,8 @@ def _unused_state_finding(observation: Observation, robot: RobotSeen, joints: Se
     )
     if not subscribers:
         hint = phrase(
-            "no node subscribes to {topics}: remap robot_state_publisher's joint_states to it", topics=listed(topics)
+            "no node subscribes to {topics}: remap joint_states of robot_state_publisher to this topic",
+            topics=listed(topics),
         )
     else:
         hint = phrase(
@@ -270,11 +271,11 @@ def _unused_state_finding(observation: Observation, robot: RobotSeen, joints: Se
     return Diagnostic(
         "DOC305",
         phrase(
-            "joint {joints} is published, but there is no transform of {frames}",
+            "the state of joint {joints} is published, but there is no transform of {frames}",
             joints=listed(joint.name for joint in joints),
             frames=_format_frames(frames),
         ),
-        notes=(Note(phrase("it is published on {topics}", topics=listed(topics))),),
+        notes=(Note(phrase("published on {topics}", topics=listed(topics))),),
         hint=hint,
     )
 
@@ -380,8 +381,8 @@ def _examine_message_frames(observation: Observation, robots: Sequence[RobotSeen
                 notes=(Note(phrase("known frames: {known}", known=listed(sorted(known_frames)))),),
                 hint=did_you_mean(frame.frame, known_frames)
                 or phrase(
-                    "publish its transform, as static_transform_publisher does, or configure the node to use "
-                    "another frame"
+                    "publish a transform of the frame, for example with static_transform_publisher, or configure the "
+                    "node to use another frame"
                 ),
             )
 

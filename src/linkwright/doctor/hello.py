@@ -19,9 +19,7 @@ def greeting(host: str) -> str:
 def host_of(text: str) -> str:
     """Return the name of the computer that sent a greeting.
 
-    The name is the last word of the greeting. It is empty if the greeting is empty.
-
-    The name is the last word of the greeting.
+    The name is the last word of the greeting, or an empty string if the greeting is empty.
     """
     words = text.split()
     return words[-1] if words else ""

@@ -155,8 +155,8 @@ class Observation:
         lifecycle: the states of the managed nodes, by full name.
         fixed_frames: the Fixed Frames of viewers and configuration files.
         environment: the environment variables that affect discovery.
-        over_zenoh: whether the graph was observed over Zenoh, where QoS does not keep endpoints from matching, instead
-            of over DDS.
+        over_zenoh: whether the graph was observed over Zenoh instead of DDS. Over Zenoh, endpoints match regardless of
+            their QoS.
     """
 
     seconds: float = 0.0

@@ -37,7 +37,7 @@ class RobotSeen:
     def root(self) -> str:
         """The name of the root link.
 
-        No joint has it as its child.
+        The root link is not the child of any joint.
         """
         return self.model.root
 
@@ -70,8 +70,7 @@ class RobotSeen:
 def robots_in(observation: Observation) -> tuple[list[RobotSeen], list[Diagnostic]]:
     """Return the robots with an observed description, and findings about invalid descriptions.
 
-    Returns:
-        The robots, and findings about descriptions that cannot be parsed.
+    A description is invalid if it cannot be parsed.
     """
     robots: dict[tuple[str, str], RobotSeen] = {}
     findings = []

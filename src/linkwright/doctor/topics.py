@@ -79,7 +79,7 @@ def _examine_types(observation: Observation) -> Iterator[Diagnostic]:
                 ),
                 notes=notes,
                 hint=phrase(
-                    "use one of the two types; many controllers have a parameter for it (use_stamped_vel, "
+                    "use one of the two types; many controllers have a parameter for the type (use_stamped_vel, "
                     "enable_stamped_cmd_vel, stamped), and teleop_twist_keyboard has stamped:=true"
                 ),
             )
@@ -100,7 +100,7 @@ def _examine_types(observation: Observation) -> Iterator[Diagnostic]:
 def _without_universal_subscribers(types: dict[str, list[EndpointInfo]]) -> dict[str, list[EndpointInfo]]:
     """Return a topic's endpoints by type, without subscriptions of nodes that accept any type.
 
-    A node accepts all types if it subscribes to more than one type, and to all published ones. Its publishers remain.
+    A node accepts all types if it subscribes to more than one type, and to all published types. Its publishers remain.
     The result is empty if no other node subscribes.
     """
     all_endpoints = [endpoint for endpoints in types.values() for endpoint in endpoints]
@@ -264,7 +264,7 @@ def _examine_misnamed_topics(observation: Observation) -> Iterator[Diagnostic]:
                 ),
             ),
             hint=phrase(
-                "if they belong together, remap one of them: --ros-args -r {topic}:={like}",
+                "if the two topics belong together, remap one of them: --ros-args -r {topic}:={like}",
                 topic=topic,
                 like=published_topic,
             ),
@@ -323,7 +323,7 @@ def _examine_drivers(observation: Observation) -> Iterator[Diagnostic]:
                 topic=drivers_seen.topic,
             ),
             severity=Severity.WARNING,
-            notes=(Note(phrase("the robot obeys each message in turn, so it jerks between them")),),
+            notes=(Note(phrase("the robot obeys each message in turn, so its motion is jerky")),),
             hint=phrase("stop one of them, or let twist_mux choose between them by priority"),
         )
 

@@ -45,7 +45,7 @@ _STRING, _CLOCK = "std_msgs/msg/String", "rosgraph_msgs/msg/Clock"
 _BOND = "bond/msg/Status"
 """The type of bond messages.
 
-Their stamps are those of a steady clock, and cannot be compared with other clocks.
+Their stamps come from a steady clock, and cannot be compared with other clocks.
 """
 _DISCOVERY_VARIABLES = (
     "ROS_DOMAIN_ID",
@@ -60,7 +60,10 @@ _DISCOVERY_VARIABLES = (
     "ZENOH_SESSION_CONFIG_URI",
 )
 _RESPONSE_TIMEOUT_SECONDS = 1.0
-"""The maximum seconds to wait for a node's response. A node that does not respond is skipped."""
+"""The maximum seconds to wait for a node's response.
+
+A node that does not respond is skipped.
+"""
 _NAMING_TIMEOUT_SECONDS = 1.0
 """The maximum seconds to wait for the nodes of endpoints.
 
@@ -69,7 +72,8 @@ The endpoints of some programs never have a node.
 _FIXED_FRAME = "fixed_frame"
 _POLL_SECONDS = 0.01
 _TRANSFORMS_WITHIN = 5.0
-"""The maximum additional seconds to observe if transforms are published and none was received."""
+"""The maximum additional seconds to wait while published transforms were not received."""
+
 _LENGTH_TOLERANCE = 1e-3
 _STAMP = {0: struct.Struct(">iI"), 1: struct.Struct("<iI")}
 """The stamp of a header at the start of a message, by byte order.
@@ -95,7 +99,7 @@ async def observe(
     fixed_frames: Sequence[FixedFrame] = (),
     environment: Mapping[str, str] | None = None,
 ) -> Observation:
-    """Observe a graph for some seconds, and return the observations.
+    """Observe a graph for a period, and return the observations.
 
     Args:
         graph: the graph on the running event loop, which has joined other processes.
@@ -330,8 +334,8 @@ class _Watcher:
     def transforms(self) -> tuple[TransformSeen, ...]:
         """Return the transforms, sorted by parent and child.
 
-        The senders of a transform are those on a single topic, because a bridge may forward transforms to another
-        topic.
+        The senders of a transform are the nodes that publish it on one topic, because a bridge may forward transforms
+        to another topic.
         """
         return tuple(
             TransformSeen(parent, child, max(map(tuple, map(sorted, senders.values())), key=len), is_static, valid)

@@ -22,7 +22,10 @@ if sys.platform != "win32":
 
 _PREFIX = "linkwright_"
 _MIN_AGE_SECONDS = 60.0
-"""The age in seconds below which an empty folder without a lock may still be in the process of creation."""
+"""The age in seconds above which an empty folder without a lock is abandoned.
+
+The process that creates a younger folder may not have locked it yet.
+"""
 
 
 class ScratchFolder(TemporaryDirectory[str]):

@@ -9,7 +9,10 @@ import os
 from pathlib import Path
 
 SHARES_SUBFOLDER = "shares"
-"""The cache subfolder for share folders of packages that are not built; see `linkwright.packages.share_layout`."""
+"""The cache subfolder for share folders of packages that are not built.
+
+See `linkwright.packages.share_layout`.
+"""
 
 _DEFAULTS = {"CACHE": ".cache", "CONFIG": ".config", "DATA": ".local/share", "STATE": ".local/state"}
 

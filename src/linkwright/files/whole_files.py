@@ -32,7 +32,8 @@ def write_whole_file(path: str | os.PathLike[str], data: str | bytes, *, mode: i
         mode: the permissions; None for the permissions of the existing file, or the usual permissions of a new file.
 
     Raises:
-        OSError: the file cannot be written; its contents are unchanged.
+        OSError: the file cannot be written. Its contents are unchanged, unless writing in place failed and the old
+            contents cannot be restored. In that case, the error names their copy.
     """
     content = data.encode("utf-8") if isinstance(data, str) else data
     target = os.path.realpath(os.fspath(path))
@@ -74,7 +75,7 @@ def _replace(target: str, content: bytes, mode: int | None) -> None:
 def _write_in_place(target: str, content: bytes) -> None:
     """Overwrite a file, and restore its old contents if writing fails.
 
-    If the old contents cannot be restored either, the copy of them is kept.
+    If the old contents cannot be restored either, their copy is kept.
     """
     with open(target, "r+b", buffering=0) as file:
         old_content = file.readall()

@@ -106,7 +106,10 @@ def _integers(text: str) -> list[int]:
 
 
 def _transform(tag: str, values: list[float], matrix: _Rows) -> _Rows:
-    """Write the matrix of a transform element into an identity matrix, and return it."""
+    """Return the matrix of a transform element, given its tag and numbers.
+
+    `matrix` is an identity matrix, into which the result is written unless the element contains a matrix.
+    """
     if tag == "matrix":
         if len(values) != 16:
             raise UnsupportedContent

@@ -25,7 +25,7 @@ _MAX_INSTANCES = 20_000
 
 
 Limits = list[tuple[int, int]]
-"""Columns of indices, each with the number that its indices must stay below."""
+"""Columns of indices, each with the exclusive upper bound of its indices."""
 FacesT = TypeVar("FacesT")
 MeshT = TypeVar("MeshT")
 MadeT_co = TypeVar("MadeT_co", covariant=True)
@@ -94,8 +94,8 @@ class ColladaFile(Generic[MeshT, MatrixT]):
 def read_scene(data: bytes, numbers: Numbers[MeshT, MatrixT, Any]) -> ColladaFile[MeshT, MatrixT] | None:
     """Return the meshes in the scene of a file.
 
-    Numbers are rounded to 32 bits, as in pycollada. Returns None for a file with unusual content or mistakes, which
-    must be read by trimesh.
+    Numbers are rounded to 32 bits, as in pycollada. Returns None for a file with unusual content or mistakes; only
+    trimesh can read such a file.
     """
     if _DECLARATION.search(data):
         return None
@@ -163,7 +163,7 @@ class _File(Generic[MeshT, MatrixT]):
     # --- scene ------------------------------------------------------------------------------------------------
 
     def _placed_meshes(self, node: _Node, parent_matrix: MatrixT) -> Iterator[tuple[MeshT, MatrixT]]:
-        """Iterate over the meshes in a node, with their frames as matrices in the file's frame."""
+        """Yield the meshes in a node, with their frames as matrices in the file's frame."""
         self._instance_count += 1
         if self._instance_count > _MAX_INSTANCES:
             raise UnsupportedContent

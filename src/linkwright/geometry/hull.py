@@ -16,7 +16,7 @@ from linkwright.geometry.arrays import Array
 from linkwright.geometry.polyhedron import Faces
 
 _TOLERANCE = 1e-9
-"""Points within this fraction of the size of all points from a face count as points of the face."""
+"""The distance within which points count as on a face, as a fraction of the extent of all points."""
 
 Indices = NDArray[np.int64]
 Triangle = tuple[int, int, int]

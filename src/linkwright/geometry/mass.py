@@ -58,7 +58,7 @@ class MassProperties:
             ValueError: the body has no mass that could be scaled.
         """
         if not self.mass > MIN_MASS:
-            raise ValueError("a body without mass has no shape to spread another mass over")
+            raise ValueError("a body without mass cannot be scaled to another mass")
         return self.times(mass / self.mass)
 
     def moved(self, pose: Pose) -> MassProperties:

@@ -180,7 +180,7 @@ def _element_faults(element: Element, ids: set[str]) -> Iterator[Phrase]:
 
 
 def _index_faults(mesh: Element) -> Iterator[Phrase]:
-    """Iterate over the faults of indices that are out of range of the mesh's lists."""
+    """Yield the faults of indices that are out of range of the mesh's lists."""
     counts = [element.attributes.get("count", "") for element in mesh.walk() if element.tag == "accessor"]
     vertex_count = max((int(count) for count in counts if count.isdecimal()), default=0)
     for element in mesh.walk():
@@ -239,7 +239,7 @@ def _gltf_faults(data: bytes) -> Iterator[Phrase]:
 
 
 def _document_faults(text: bytes, binary: int | None) -> Iterator[Phrase]:
-    """Iterate over the faults of a glTF file's JSON.
+    """Yield the faults of a glTF file's JSON.
 
     `binary` is the size of its first buffer in bytes, or None if that is unknown.
     """

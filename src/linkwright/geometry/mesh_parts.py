@@ -39,7 +39,7 @@ class Triangles:
 
 
 UNCOLOURED = 0.6
-"""The grey of a mesh without a colour."""
+"""The grey value of a mesh without a colour, from 0 for black to 1 for white."""
 
 _Y_UP_TO_Z_UP = np.array([[1.0, 0, 0, 0], [0, 0, -1, 0], [0, 1, 0, 0], [0, 0, 0, 1]])
 """The matrix that converts glTF's axes, with y up, to axes with z up."""

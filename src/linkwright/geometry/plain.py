@@ -33,10 +33,10 @@ class PlainMesh:
 def parse_numbers(text: str | None, kind: type[Any]) -> Any:
     """Parse numbers separated by whitespace, and return them as an array.
 
-    `dtype` is the type of the array's elements.
+    `kind` is the type of the array's elements.
 
     Raises:
-        UnsupportedContent: the text contains anything else, or a number that is not finite.
+        UnsupportedContent: the text contains anything else, or a float32 number that is not finite.
     """
     with warnings.catch_warnings():
         warnings.simplefilter("error", DeprecationWarning)  # numpy warns about tokens that are not numbers.

@@ -126,7 +126,7 @@ def normalized(x: float, y: float, z: float, w: float, *, least: float = 0.0) ->
 
 
 def axis_and_angle(quaternion: Quaternion) -> tuple[Vector3, float]:
-    """Return the unit axis and the angle (0 to 2 pi) of a rotation.
+    """Return the unit axis of a rotation, and the angle in radians, from 0 to 2 pi.
 
     The axis of the identity is x.
     """

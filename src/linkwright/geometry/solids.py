@@ -33,7 +33,7 @@ def shape_properties(shape: SimpleShape, density: float = 1.0) -> MassProperties
 def _box(box: Box, density: float) -> MassProperties:
     """Return the mass properties of a box.
 
-    These are ``m = rho a b c``; ``Ixx = m (b2 + c2) / 12`` and so on.
+    The formulas are ``m = rho a b c``; ``Ixx = m (b2 + c2) / 12`` and so on.
     """
     if min(box.size) <= 0:
         return MassProperties(0.0)
@@ -45,7 +45,7 @@ def _box(box: Box, density: float) -> MassProperties:
 def _cylinder(cylinder: Cylinder, density: float) -> MassProperties:
     """Return the mass properties of a cylinder along z.
 
-    These are ``m = rho pi r2 l``; ``Ixx = Iyy = m (3 r2 + l2) / 12``; ``Izz = m r2 / 2``.
+    The formulas are ``m = rho pi r2 l``; ``Ixx = Iyy = m (3 r2 + l2) / 12``; ``Izz = m r2 / 2``.
     """
     r, length = cylinder.radius, cylinder.length
     if min(r, length) <= 0:
@@ -58,7 +58,7 @@ def _cylinder(cylinder: Cylinder, density: float) -> MassProperties:
 def _sphere(sphere: Sphere, density: float) -> MassProperties:
     """Return the mass properties of a sphere.
 
-    These are ``m = rho 4/3 pi r3``; ``I = 2/5 m r2`` about every axis.
+    The formulas are ``m = rho 4/3 pi r3``; ``I = 2/5 m r2`` about every axis.
     """
     r = sphere.radius
     if r <= 0:

@@ -25,7 +25,7 @@ _FIXED_TOKENS = [index for index, token in enumerate(FACET) if token != b"?"]
 def read_stl(data: bytes, *, is_plain: bool = False) -> PlainMesh | None:
     """Return the triangles of an STL file.
 
-    Returns None for a file with several solids or with mistakes, which must be read by trimesh.
+    Returns None for a file with several solids or with mistakes; only trimesh can read such a file.
 
     Args:
         data: the content of the file.

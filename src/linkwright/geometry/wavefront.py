@@ -19,7 +19,7 @@ _TEXTURE_AND_NORMAL = lazy_pattern(rb"/\S*")
 def read_obj(data: bytes) -> PlainMesh | None:
     """Return the triangles of an OBJ file.
 
-    Returns None for a file with unusual features, which must be read by trimesh.
+    Returns None for a file with unusual features; only trimesh can read such a file.
     """
     if b"\\" in data:
         return None  # A backslash continues a line on the next one.

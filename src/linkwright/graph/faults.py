@@ -25,7 +25,7 @@ class NodeNotFoundError(RclError):
     """Raised when no node has the given name (rclpy ``NodeNameNonExistentError``)."""
 
     def __init__(self, name: str, namespace: str) -> None:
-        super().__init__(f"Cannot get the names and types of node '{name}' in namespace '{namespace}': there is none")
+        super().__init__(f"Cannot get the names and types of node '{name}' in namespace '{namespace}': no such node")
         self.name = name
         self.namespace = namespace
 

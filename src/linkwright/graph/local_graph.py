@@ -24,10 +24,10 @@ from linkwright.graph.time.clock import SystemClock, Timebase
 
 
 class LocalGraph(GraphQueries):
-    """The graph as nodes see it.
+    """The graph without the methods that create nodes.
 
-    The subclass `Graph` creates the nodes. All methods may be called from any thread except `settle` and `close`, which
-    must be called in the loop's thread.
+    The subclass `Graph` adds these methods. All methods may be called from any thread except `settle` and `close`,
+    which must be called in the loop's thread.
 
     Args:
         clock: stamps messages and wakes timers; the system's clock by default.
@@ -103,7 +103,7 @@ class LocalGraph(GraphQueries):
 
         Args:
             identity: the node's name.
-            remappings: the node's rules for names of topics and services.
+            remappings: the node's remapping rules for topics and services.
             copies_messages: whether messages are copied, so that the node may change a message after publishing it.
             stays_inside: whether the node and its endpoints are hidden from other processes.
 
@@ -227,7 +227,7 @@ class LocalGraph(GraphQueries):
             await self._dispatcher.settle()
 
     async def close(self) -> None:
-        """Destroy every node and drop undelivered messages.
+        """Destroy every node, drop undelivered messages, and close the transport.
 
         After this, no code of the graph runs.
         """

@@ -383,9 +383,7 @@ class Node(NodeParameters, NodeQueries):
         return self.__handle.add(Timer(self.__handle, callback, period_ns, clock, callback_group, autostart=autostart))
 
     def create_rate(self, frequency: float, clock: Clock | None = None) -> Rate:
-        """Create a rate.
-
-        A loop uses it to sleep until its next iteration.
+        """Create a rate, with which a loop sleeps until its next iteration.
 
         Args:
             frequency: iterations per second.
@@ -453,7 +451,7 @@ class Node(NodeParameters, NodeQueries):
         return self.__handle.remove(publisher)
 
     def destroy_subscription(self, subscription: Subscription[Any]) -> bool:
-        """Destroy a subscription, and end the calls of its callback.
+        """Destroy a subscription, and stop calling its callback.
 
         Returns whether the subscription belonged to this node.
         """
@@ -530,7 +528,7 @@ def _node_factory(node_class: Callable[Concatenate[LocalGraph, P], Node]) -> Cal
 
 
 class Graph(LocalGraph):
-    """A ROS-like computation graph.
+    """The computation graph of a process, as in ROS 2.
 
     If a graph is created inside a running event loop, the loop runs the callbacks of its nodes. If it is created
     elsewhere, or with `threads`, its nodes have no dispatcher at first; an executor of `linkwright.graph.executors`

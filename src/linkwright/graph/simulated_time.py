@@ -18,7 +18,9 @@ CLOCK_TOPIC = "/clock"
 
 
 class SimulatedTime:
-    """Sets a node's clock from ``/clock`` while ``use_sim_time`` is true (rclpy ``TimeSource``).
+    """A time source that sets a node's clock from ``/clock`` while ``use_sim_time`` is true.
+
+    It corresponds to rclpy's ``TimeSource``.
 
     The clock is set in the thread in which a message of ``/clock`` arrives, not in a callback of the node, so time
     advances while the node's own thread sleeps.
@@ -70,7 +72,7 @@ class SimulatedTime:
 
 
 class _ClockSubscription(Subscription[Any]):
-    """Sets a clock from the messages of ``/clock``, in the thread in which they arrive."""
+    """A subscription that sets a clock from ``/clock``, in the thread in which messages arrive."""
 
     def __init__(self, node: NodeHandle, clock: ROSClock) -> None:
         super().__init__(node, "rosgraph_msgs/msg/Clock", node.resolve_topic_name(CLOCK_TOPIC), CLOCK_QOS, self._move)

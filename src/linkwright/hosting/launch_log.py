@@ -94,7 +94,7 @@ class LaunchLog:
     def folder(self) -> Path:
         """The folder for the log files of this launch.
 
-        If the folder cannot be created, this is the folder of all logs.
+        The folder is created on first access. If that fails, this is the folder of all logs.
         """
         if self._folder is None:
             base_folder = log_base()

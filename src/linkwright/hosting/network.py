@@ -1,4 +1,4 @@
-"""Joins the ROS 2 network, and warns about node names that occur twice in it."""
+"""Join the ROS 2 network, and warn about node names that occur twice in it."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _DELAY_SECONDS = 0.8
 
 
 class Network:
-    """Joins the graph of a launch to the ROS 2 network.
+    """The connection of a launch's graph to the ROS 2 network.
 
     Args:
         session: the run whose nodes join the network.
@@ -89,7 +89,7 @@ _MAX_LISTED_NAMES = 6
 
 
 class SharedNames:
-    """Warns about node names that a launch shares with other programs in the network.
+    """A monitor of node names that a launch shares with other programs in the network.
 
     Args:
         network: the network, which provides the domain for the warning.
@@ -109,7 +109,10 @@ class SharedNames:
         """The findings for the page: one finding while names are shared, otherwise none."""
 
     def notice(self, names: frozenset[str]) -> None:
-        """Set the full names of the nodes that exist twice. Callable from any thread."""
+        """Set the full names of the nodes that exist twice.
+
+        Any thread may call this method.
+        """
         with suppress(RuntimeError):  # The event loop may have been closed.
             self._loop.call_soon_threadsafe(self._schedule_report, names)
 

@@ -26,7 +26,7 @@ _SCREEN_DESTINATIONS = output_destinations("screen")[2]
 
 
 class NodeHost:
-    """Starts and ends the nodes of this process, and keeps track of them.
+    """The host of the nodes of this process, which starts and ends them.
 
     A viewer is started before the nodes that were planned with it, so that its page responds early.
     """
@@ -151,7 +151,7 @@ class NodeHost:
         self._show_findings()
 
     def stop_matching(self, matcher: Callable[[Any], bool]) -> None:
-        """End the nodes with a matching owner, as a signal would end their processes.
+        """End the nodes and viewers with a matching owner, as a signal would end their processes.
 
         Args:
             matcher: returns whether a node with a given owner is to end.

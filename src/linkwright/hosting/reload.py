@@ -42,7 +42,7 @@ Apply = Callable[[str], None]
 
 
 class LiveReload:
-    """Watches the files of a launch's descriptions, and reloads descriptions whose files change.
+    """A watch on the files of a launch's descriptions that reloads changed descriptions.
 
     Args:
         descriptions: the descriptions of the launch.
@@ -77,9 +77,9 @@ class LiveReload:
         self._callbacks[call].remove(apply)
 
     def show(self, subject: object, diagnostics: Iterable[Diagnostic]) -> None:
-        """Show findings that are already printed.
+        """Show findings in the viewer without printing them.
 
-        They replace the earlier findings about the same object.
+        The findings replace the earlier findings about the same object.
         """
         self._findings[subject] = tuple(diagnostics)
         self._show(self.findings())
@@ -266,7 +266,7 @@ def _modified_ns(path: Path) -> int:
 
 
 class FileWatch:
-    """Calls a function on the event loop when files in certain folders change.
+    """A watch that calls a function on the event loop when files in certain folders change.
 
     Folders are watched instead of files, because editors save a file by writing a new file and renaming it. Files
     behind links (``colcon build --symlink-install``) are also watched at their real location. If a folder does not
@@ -372,7 +372,7 @@ def real(path: Path) -> Path:
 
 
 class FollowedFiles:
-    """Watches the files of a node (`FileFollower`).
+    """A `FileFollower` that watches the files of a node through the live reload of its run.
 
     Args:
         reload: the live reload of the run to which the node belongs.

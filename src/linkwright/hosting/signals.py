@@ -59,11 +59,14 @@ class Session(Protocol):
         """Return the maximum seconds that the processes of the run may take to end."""
 
     def kill_all(self) -> None:
-        """Kill the processes of the run immediately. Called by a signal handler."""
+        """Kill the processes of the run immediately.
+
+        A signal handler calls this method.
+        """
 
 
 class SignalWatch:
-    """Handles signals in a ``with`` block.
+    """A context manager that handles signals in its ``with`` block.
 
     Outside of the main thread, signals are not handled.
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class SimulatedDescriptions(Descriptions):
-    """Reads and stores robots in their simulated form, models in SDF, and worlds.
+    """The descriptions of a simulation: robots in simulated form, models in SDF, and worlds.
 
     Args:
         finder: the finder of ROS packages.

@@ -35,9 +35,9 @@ if TYPE_CHECKING:
 
 
 class TextEditorConnection:
-    """Reads the messages of an editor in a thread, and handles them on the event loop.
+    """The connection to a text editor, which owns the editor's unsaved texts.
 
-    It owns the unsaved texts of the editor.
+    It reads the messages of the editor in a thread, and handles them on the event loop.
 
     Args:
         viewer: the viewer whose pages are connected.

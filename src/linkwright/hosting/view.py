@@ -81,7 +81,7 @@ class ModelView:
 
     Attributes:
         ending: whether the view is ending.
-        visiting: whether the description is being expanded, which blocks the event loop.
+        is_blocking: whether the description is being expanded, which blocks the event loop.
         has_processes: always False.
     """
 
@@ -246,7 +246,7 @@ class ModelView:
         self.spawn(self.host.start_planned())
 
     async def _request_arguments(self, call: XacroCall, error: DescriptionError) -> None:
-        """Show a form for arguments in the pages, if the error is that arguments lack values."""
+        """Show a form in the pages if the error can be fixed by values of arguments."""
         form = await asyncio.to_thread(argument_form, call, self.finder, error.diagnostics)
         if form is not None and call is self._call and self._text is None:
             self._form = form

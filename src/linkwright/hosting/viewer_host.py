@@ -30,7 +30,7 @@ _POLL_SECONDS = 0.1
 
 
 class ViewerHost:
-    """Starts and ends viewers, and keeps track of them."""
+    """The host of the viewers of this process, which starts and ends them."""
 
     def __init__(self, session: Supervisor) -> None:
         self._session = session

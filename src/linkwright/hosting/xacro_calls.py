@@ -65,7 +65,7 @@ class DescriptionError(LinkwrightError):
 
 
 class Descriptions:
-    """Expands description files, and stores the results with their source locations.
+    """A store that expands description files and keeps the results with their source locations.
 
     Args:
         finder: the finder of ROS packages.

@@ -25,7 +25,7 @@ _MAX_STEP = 16
 class BadImageError(ValueError):
     """Raised if a message cannot be shown as an image.
 
-    The text is meant for the status row ``Image`` of a display.
+    The message is meant for the status row ``Image`` of a display.
     """
 
 
@@ -61,7 +61,7 @@ class DecodedImage:
         return self.pixels[..., :3]
 
     def reduce_by(self, step: int) -> DecodedImage:
-        """Return the image with one pixel, the mean, for each square of `step` by `step` pixels.
+        """Return the image with one mean pixel for each square of `step` by `step` pixels.
 
         Pixels at the right and lower edges that do not fill a square are left out.
 
@@ -194,7 +194,7 @@ class Range:
 
 
 class RangeFinder:
-    """The search for the range of values of the images of a stream.
+    """A finder of the black and white limits for the images of a stream.
 
     Attributes:
         fixed: the range to use; None to determine it from the images.

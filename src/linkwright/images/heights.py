@@ -18,7 +18,7 @@ _MAX_ROWS = 1025
 
 @dataclass(frozen=True, slots=True)
 class Heights:
-    """Heights from 0 to 1; see `read_heights` for the scale.
+    """Heights from 0 to 1. See `read_heights` for the scale.
 
     The first row has the minimum y, so the image's rows are in reverse order.
     """

@@ -50,7 +50,10 @@ def inertial_block(properties: MassProperties, indent: str = "", step: str = "  
 
 
 def empty_tag(tag: str, attributes: Attributes) -> str:
-    """Return the self-closing tag of an element with numbers as values, which need no escaping."""
+    """Return the self-closing tag of an element whose attribute values are numbers.
+
+    Numbers need no escaping.
+    """
     return f"<{tag} " + " ".join(f'{name}="{value}"' for name, value in attributes) + "/>"
 
 

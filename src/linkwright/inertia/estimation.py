@@ -19,7 +19,7 @@ DEFAULT_DENSITY = 1000.0
 
 
 _MIN_VOLUME = 1e-18
-"""The volume in m3 below which a shape has no volume: that of a grain of a thousandth of a millimetre."""
+"""The volume in m3 below which a shape counts as having no volume: that of a cube with edges of 0.001 mm."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -92,7 +92,7 @@ class MeshLibrary:
         return self.read(self._checked(mesh, element)).scaled(mesh.scale)
 
     def outline(self, mesh: Mesh, element: Element | None = None) -> Outline:
-        """Return the scaled properties of a URDF mesh that checks use.
+        """Return the properties of a scaled URDF mesh that checks use.
 
         The result is in the frame of the visual or collision.
 

@@ -81,7 +81,7 @@ def written_link(link: Link) -> Element:
     """Return a ``<link>`` as written in its file, if its shapes do not depend on xacro.
 
     Raises:
-        NotWritableError: see `written_element`; or expressions, which numbers would not follow, define the shapes.
+        NotWritableError: see `written_element`; or expressions define the shapes, and numbers would not follow them.
     """
     link_element = written_element(link.element, "link")
     xacro_tag = next((child.tag for child in link_element.elements() if child.tag.startswith("xacro:")), None)

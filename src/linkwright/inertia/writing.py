@@ -25,7 +25,7 @@ class Written:
     Attributes:
         files: the files that changed, in the order of their links.
         links: the links whose ``<inertial>`` was written to a file.
-        refusals: the reason, as a clause, why a link could not be written, by link.
+        refusals: the reason why a link could not be written, as a clause, by link name.
     """
 
     files: tuple[Path, ...]

@@ -52,7 +52,7 @@ def _with_children(element: Element, added: dict[int, list[Element]]) -> Element
 def _at_owner(element: Element, owner: Element) -> Element:
     """Return a copy of a new element at the source position of its owner.
 
-    Findings about the element then have a place.
+    Findings about the element then have a source position.
     """
     positioned = Element(element.tag, dict(element.attributes), owner.source, owner.offset, owner.origin)
     positioned.children = [

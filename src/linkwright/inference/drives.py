@@ -24,11 +24,11 @@ _SUPPORT_RADIUS_SHARE = 0.8
 
 @dataclass(frozen=True, slots=True)
 class Verdict:
-    """The drive that the wheels suggest, and why.
+    """The drive that the wheels suggest, and the reason.
 
     Attributes:
         drive: the drive; None if it is unknown.
-        reason: why it is this drive, or why it is unknown; a clause.
+        reason: the reason for this drive, or the reason why it is unknown; a clause.
         extra_casters: the links of wheels that turn out to be casters, because other wheels form pairs.
     """
 

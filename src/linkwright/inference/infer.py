@@ -227,7 +227,7 @@ class _InferenceBuilder:
             if element is None or gazebo.has_friction(self._robot, name) or self._rolls_freely(name):
                 continue
             message = phrase(
-                "link '{link}' touches the ground and is not driven: it slides without friction", link=name
+                "link '{link}' touches the ground and is not driven, so its friction is set to zero", link=name
             )
             yield Finding(_diagnostic_at(element, "DRIVE112", message), self._robot.element, (gazebo.slippery(name),))
 
@@ -300,9 +300,9 @@ def _drive_without_wheels(survey: Survey, undercarriage: Undercarriage) -> Verdi
 
 
 def _is_single_chain(survey: Survey) -> bool:
-    """Return whether exactly one joint moves relative to the root's body.
+    """Return whether exactly one movable joint is attached to the root's body.
 
-    All other joints then follow after it.
+    All other movable joints are then below that joint.
     """
     moving_joints = [
         joint for joint in survey.robot.joints.values() if joint.type in _MOVING_TYPES and joint.mimic is None

@@ -99,7 +99,8 @@ class Survey:
     def wheel_on(self, joint: Joint) -> Wheel | None:
         """Return the wheel that rotates about a joint.
 
-        Return None if the joint has limits or no horizontal axis, or its link is not round about the axis.
+        Return None if the joint has limits or no horizontal axis, if the link is not rotationally symmetric about the
+        axis, or if the pose or the body of the link is unknown.
         """
         size = length(joint.axis)
         frame = self._frames.get(joint.child)

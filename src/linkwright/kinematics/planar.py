@@ -8,7 +8,7 @@ from linkwright.geometry.single import Transform
 from linkwright.loading.lean_dataclasses import dataclass
 
 _MIN_ARC_ANGLE = 1e-6
-"""The angle in rad below which an arc is a straight line: dividing by less loses digits."""
+"""The angle in rad below which an arc counts as a straight line, because division by it would lose digits."""
 
 
 @dataclass(slots=True)

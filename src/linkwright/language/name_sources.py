@@ -108,7 +108,7 @@ class NameSources:
     Args:
         project: the workspace.
         texts: the texts of the open files.
-        files: the files in which properties, arguments and macros are searched.
+        files: the files to search for properties, arguments and macros.
     """
 
     def __init__(self, project: Workspace, texts: Mapping[Path, str], files: list[Path]) -> None:

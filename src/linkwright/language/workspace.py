@@ -37,6 +37,9 @@ _CHECK_INPUTS = (
 """The suffixes of files that affect all checks: callers, manifests and settings."""
 
 
+MAX_CHARACTERS = 1_000_000
+"""The number of characters above which a file is large: it is checked, and has no other functions of the editor. The
+largest public description that was found has 300,000."""
 _MAX_ROBOTS = 16
 """The number of descriptions whose robots are stored."""
 
@@ -66,14 +69,15 @@ class Workspace:
         folders: the folders of the workspace.
 
     Attributes:
+        folders: the folders.
         index: the descriptions in the folders.
         cached_results: results about files until a file changes, each with the versions of the open texts.
     """
 
     def __init__(self, folders: Iterable[Path]) -> None:
-        self._folders = tuple(real(folder) for folder in folders)
-        self.index = IncludeIndex(self._folders)
-        self._checker = Checker(folders=self._folders)
+        self.folders = tuple(real(folder) for folder in folders)
+        self.index = IncludeIndex(self.folders)
+        self._checker = Checker(folders=self.folders)
         self._names: dict[Path, tuple[int, tuple[NameDefinition, ...]]] = {}
         self._results: dict[Path, _Result] = {}
         self._robots: dict[Path, tuple[Mapping[Path, int], Robot | None]] = {}
@@ -84,7 +88,7 @@ class Workspace:
         self._robots.clear()
         self.cached_results.clear()
         if file.name.endswith(_CHECK_INPUTS):
-            self._checker = Checker(folders=self._folders)
+            self._checker = Checker(folders=self.folders)
 
     def finder(self, file: Path) -> PackageFinder:
         """Return the package finder for a file."""
@@ -92,7 +96,7 @@ class Workspace:
 
     def contains(self, file: Path) -> bool:
         """Return whether a file is in a folder of the workspace."""
-        return any(file.is_relative_to(folder) for folder in self._folders)
+        return any(file.is_relative_to(folder) for folder in self.folders)
 
     def text(self, file: Path, texts: Mapping[Path, str]) -> str | None:
         """Return the text of a file, open or not, or None if it cannot be read."""
@@ -102,6 +106,15 @@ class Workspace:
             return decode(read_bytes(file), str(file))
         except (OSError, LinkwrightError):
             return None
+
+    def is_large(self, file: Path, texts: Mapping[Path, str]) -> bool:
+        """Return whether a file, open or not, has more than `MAX_CHARACTERS`."""
+        if file in texts:
+            return len(texts[file]) > MAX_CHARACTERS
+        try:
+            return file.stat().st_size > MAX_CHARACTERS
+        except OSError:
+            return False
 
     def argument_calls(self, entry: Path) -> list[tuple[Mapping[str, str], Span | None]]:
         """Return the argument sets of a description, each with its call, or None for defaults."""
@@ -123,7 +136,7 @@ class Workspace:
 
     def files(self, suffixes: tuple[str, ...]) -> list[Path]:
         """Return the files of the workspace with some suffixes, inside packages or not."""
-        found = (path for folder in self._folders for path in walk(folder, suffixes)[0])
+        found = (path for folder in self.folders for path in walk(folder, suffixes)[0])
         return [*dict.fromkeys(map(real, found))]
 
     def package_neighbors(self, file: Path, known: Container[Path]) -> list[Path]:
@@ -176,6 +189,8 @@ class Workspace:
         return [name for file in dict.fromkeys((*self.index.files, *texts)) for name in self._names_in(file, texts)]
 
     def _names_in(self, file: Path, texts: Mapping[Path, str]) -> tuple[NameDefinition, ...]:
+        if self.is_large(file, texts):
+            return ()
         text = texts.get(file)
         if text is not None:
             return tuple(definitions_in(text, file))
@@ -223,10 +238,22 @@ class Workspace:
             texts: the texts of the open files.
             changed: files that are included in the result even if there is no finding about them.
         """
+        return self.record(subject, self.checked(subject, texts), texts, changed)
+
+    def record(
+        self, subject: Path, found: tuple[Diagnostic, ...], texts: Mapping[Path, str], changed: Iterable[Path] = ()
+    ) -> dict[Path, list[Diagnostic]]:
+        """Store the findings about a description or package, and return the findings about each affected file.
+
+        Args:
+            subject: the description or the folder of the package.
+            found: the findings that `checked` has returned.
+            texts: the texts of the open files that were checked.
+            changed: files that are included in the result even if there is no finding about them.
+        """
         before = self._results.pop(subject, _NOTHING).findings
-        found = self._checked(subject, texts) if subject in texts or subject.exists() else ()
         if found:
-            self._results[subject] = _Result(tuple(map(without_element, found)), versions_of(texts))
+            self._results[subject] = _Result(found, versions_of(texts))
         return self._of_files({_file(diagnostic, subject) for diagnostic in (*before, *found)} | {*changed})
 
     def without_findings(self) -> dict[Path, list[Diagnostic]]:
@@ -264,6 +291,16 @@ class Workspace:
             if result.versions.get(file) == versions.get(file):
                 found.add([one for one in result.findings if one.span is not None and real(one.span.file) == file])
         return found.all()
+
+    def checked(self, subject: Path, texts: Mapping[Path, str]) -> tuple[Diagnostic, ...]:
+        """Check a description or package, and return the findings without their elements.
+
+        Args:
+            subject: a description, or the folder of a package, as `subjects` returns them.
+            texts: the texts of the open files.
+        """
+        found = self._checked(subject, texts) if subject in texts or subject.exists() else ()
+        return tuple(map(without_element, found))
 
     def _checked(self, subject: Path, texts: Mapping[Path, str]) -> tuple[Diagnostic, ...]:
         overlay = Overlay({str(path): text for path, text in texts.items()})

@@ -142,9 +142,9 @@ def print_description(target: LaunchTarget) -> str:
 
 
 def _read(target: LaunchTarget, describe: Callable[[LaunchDescription], str]) -> str:
-    """Read a launch file without launching it, and return a text about it.
+    """Read a launch file, and return the text that `describe` returns for it.
 
-    `describe` returns the text for the launch description.
+    The file is not launched.
     """
     finder = target.finder()
     with own_environment(finder):

@@ -29,7 +29,7 @@ class LaunchTarget:
     def finder(self) -> PackageFinder:
         """Return a finder of ROS packages.
 
-        It starts in the current folder and, if the launch file is a path, in its folder.
+        The search starts in the current folder and, if the launch file is a path, in the folder of the file.
         """
         if self.package is None:
             return PackageFinder(start=[Path(self.file).absolute().parent, Path.cwd()])

@@ -80,7 +80,7 @@ def fix_file(path: Path, check: Check, *, unsafe: bool = False, write: bool = Tr
 def write_text(path: Path, text: str, encoding: str = "utf-8") -> None:
     """Write a file atomically, keeping its permissions and byte order mark.
 
-    A symbolic link is kept; its target is written.
+    If the path is a symbolic link, its target is written.
 
     Args:
         path: the path of the file.

@@ -52,7 +52,7 @@ class _Run:
         argument_set: the values of the arguments.
         result: the result of the check.
         errors: the keys of the errors of the expansion and of the reader.
-        hanging: the subset of `errors` that may be due to arguments whose values only the caller knows.
+        hanging: the subset of `errors` that may be due to arguments whose values are known only at run time.
     """
 
     argument_set: ArgumentSet
@@ -67,7 +67,7 @@ class _Run:
         return frozenset(pair for pair in keyed_messages if pair[0] in self.errors)
 
     def is_fine(self, common: frozenset[Key]) -> bool:
-        """Return whether all errors are common ones and none may be due to an unknown value."""
+        """Return whether all errors are in `common` and none may be due to an unknown value."""
         return self.errors <= common and not self.hanging
 
 
@@ -78,8 +78,8 @@ class SetCheck:
     Args:
         path: the file.
         finder: the finder of packages.
-        examine: the function that checks the file with given values. Its flag says whether to expand the file; None
-            decides by the file.
+        examine: the function that checks the file with given values. Its second argument is whether to expand the file;
+            None decides by the file.
         settings: the settings for the file.
         is_named: whether the user named the file. Then, a failure to expand it without arguments is reported.
     """
@@ -93,7 +93,7 @@ class SetCheck:
     _is_expanded: bool = field(default=False, init=False)
 
     def with_configured(self, sets: Sequence[Mapping[str, str]]) -> Checked:
-        """Return the merged result for configured argument sets, without those of callers."""
+        """Return the merged result for configured argument sets, without argument sets of callers."""
         return self._merge_runs([self._run(ArgumentSet(values)) for values in sets], ())
 
     def with_callers(self, find_sets: Callable[[], Sequence[ArgumentSet]]) -> Checked:
@@ -178,7 +178,7 @@ class SetCheck:
     def _merge_runs(self, runs: Sequence[_Run], extra: Iterable[Diagnostic]) -> Checked:
         """Merge the findings of several runs without duplicates.
 
-        The robot is taken from the first run that has one.
+        The merged result contains the robot of the first run that has a robot.
         """
         occurrences: dict[Key, tuple[Diagnostic, list[_Run]]] = {}
         for run in runs:
@@ -222,7 +222,7 @@ class SetCheck:
     def _required_arguments(self, values: Mapping[str, str], common: frozenset[Key]) -> list[str]:
         """Return the names of the arguments without which the expansion fails.
 
-        They are found by leaving out each argument in turn.
+        The arguments are found by leaving out each argument in turn.
         """
         needed_values = dict(values)
         for name in values:
@@ -357,7 +357,8 @@ def _with_numbered_keys(diagnostics: Iterable[Diagnostic]) -> Iterator[tuple[Key
 def _is_excused(run: _Run, runs: Sequence[_Run], common: frozenset[Key]) -> bool:
     """Return whether a set fails only because its values do not fit together.
 
-    This is the case if the set is mixed from several sources, or if the values that vary succeed in another run.
+    This is the case if the set is mixed (see `ArgumentSet.is_mixed`), or if the values that vary succeed in another
+    run.
     """
     if run.is_fine(common) or not run.argument_set.varied:
         return False
@@ -422,7 +423,7 @@ def _runtime_value_note(sets: Sequence[ArgumentSet]) -> tuple[Note, ...]:
 def _may_depend_on_argument(code: str) -> bool:
     """Return whether an error may depend on the value of an argument.
 
-    Such errors concern a name, a file, or how the robot is connected.
+    Such errors concern a name, a file, or the connections between the robot's links.
     """
     if code.startswith("URDF"):
         return code not in HOLDS_FOR_PARTS

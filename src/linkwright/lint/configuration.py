@@ -127,7 +127,7 @@ def _syntax_error(source: SourceText, error: Exception) -> Diagnostic:
 
 
 class _Reader:
-    """A reader that turns a TOML table into settings and collects the mistakes in `findings`."""
+    """A reader that converts a TOML table to settings and collects findings in `diagnostics`."""
 
     def __init__(self, source: SourceText, prefix: tuple[str, ...]) -> None:
         self._source = source

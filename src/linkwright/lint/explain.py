@@ -1,6 +1,6 @@
 """The documentation pages of codes: docstrings of rules, or sections of ``pages/``.
 
-Each file of ``pages/`` has a section ``## CODE: title`` for each code of one room.
+Each file of ``pages/`` has a section ``## CODE: title`` for each code of one package.
 """
 
 from __future__ import annotations
@@ -59,7 +59,7 @@ def find_page(code_or_name: str) -> Page | None:
 
 
 def rule_page(rule: Rule) -> Page:
-    """Return the page of a rule: its docstring, how to switch it on or off, and its options."""
+    """Return the page of a rule: its docstring, the setting that enables it, and its options."""
     from inspect import cleandoc  # Imported here because a check does not print pages.
 
     title, _, text = cleandoc(rule.__doc__ or "").partition("\n")

@@ -37,7 +37,7 @@ def is_explained(element: Element | None, tag: str) -> bool:
     """Return whether a comment explains the value of a child of an element.
 
     The comment may be next to or above the child, or above the element. Commented-out elements, suppressions, and
-    headings that only name the child explain nothing.
+    headings that only name the child are not explanations.
     """
     if element is None:
         return False
@@ -45,7 +45,7 @@ def is_explained(element: Element | None, tag: str) -> bool:
 
 
 def _comments(element: Element | None, *, beside: bool) -> list[str]:
-    """Return the comments directly above an element or, if `beside` is set, those on its lines."""
+    """Return the comments directly above an element or, if `beside` is set, on its lines."""
     element_span = element_range(element) if element is not None else None
     if element is None or element.source is None or element_span is None:
         return []

@@ -158,7 +158,7 @@ class Extents:
     def volume(self, link: Link) -> float | None:
         """Return the volume in m3 of a link's visuals or collision shapes, whichever is larger.
 
-        A mesh counts with the volume of its bounding box, a simple shape with its own volume. The result is None if a
+        The volume of a mesh is the volume of its bounding box. The result is None if a
         shape cannot be measured.
         """
         totals = []

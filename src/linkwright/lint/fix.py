@@ -53,7 +53,7 @@ def replace_value(element: Element, attribute: str, value: str, *, safe: bool = 
 def rename_attribute(element: Element, old: str, new: str, *, safe: bool = True) -> Fix | None:
     """Return a fix that renames an attribute.
 
-    Return None if the attribute is not written in the file, or the element already has the new one.
+    Return None if the attribute is not written in the file, or the element already has an attribute with the new name.
     """
     source = element.source
     if source is None or new in element.attributes:
@@ -63,7 +63,7 @@ def rename_attribute(element: Element, old: str, new: str, *, safe: bool = True)
 
 
 def add_attribute(element: Element, attribute: str, value: str, *, safe: bool = True) -> Fix | None:
-    """Return a fix that adds an attribute after the existing ones.
+    """Return a fix that adds an attribute after the existing attributes.
 
     Return None if the element is not written in a file, or already has the attribute.
     """

@@ -1,4 +1,4 @@
-"""The selection of findings for the check of a folder, smaller than for a named file.
+"""The selection of findings for the check of a folder, stricter than for a named file.
 
 Users do not usually fix tests, discarded files, vendored copies, or URDF files that xacro generates.
 """
@@ -89,7 +89,7 @@ def relevant_findings(
 
 
 def relevant_package_findings(findings: Iterable[Diagnostic], paths: Sequence[Path]) -> Iterator[Diagnostic]:
-    """Yield the findings about a package, but only the errors of tests and discarded files."""
+    """Yield the findings about a package, but only the errors in tests and discarded files."""
     roots = [path.absolute() for path in paths]
     for diagnostic in findings:
         is_error = diagnostic.severity is Severity.ERROR
@@ -162,7 +162,7 @@ def _is_unused_part(examined: Examined, others: Sequence[Examined]) -> bool:
 def _is_in_minor_folder(file: Path, paths: Sequence[Path]) -> bool:
     """Return whether a file is in a folder of tests, discarded files or vendored copies.
 
-    Only folders below the checked ones count.
+    Only folders below the checked folders are considered.
     """
     folder_names = [file.relative_to(path).parts[:-1] for path in paths if file.is_relative_to(path)]
     return any(_MINOR_FOLDER.fullmatch(part) for parts in folder_names for part in parts)

@@ -30,8 +30,8 @@ class Inclusion:
     Attributes:
         package: the package in a ``$(find ...)`` in front of the path; empty if there is none.
         path: the path in the package, or relative to the file with the include; it can contain expressions.
-        pattern: for a path that is computed, also by an argument with a default, a regular expression for the ends of
-            the paths that it can have; empty if there is none.
+        pattern: a regular expression for the ends of the possible paths if the path is computed, also if only from an
+            argument with a default; empty for other paths.
     """
 
     package: str

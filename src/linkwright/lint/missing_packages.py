@@ -16,7 +16,7 @@ _MISSING = "PKG101"
 def with_package_severity(diagnostics: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
     """Yield the diagnostics, with missing packages that are declared dependencies as warnings.
 
-    Either the package that uses the missing one or a neighbouring package must declare it.
+    Either the package that uses the missing package or a neighbouring package must declare the dependency.
     """
     packages: dict[Path, PackageContext | None] = {}
     for diagnostic in diagnostics:

@@ -1,7 +1,7 @@
 """Fixes of build files and manifests: missing dependencies, and missing install rules.
 
-The new lines have the form of the lines beside them. A file in which the location of a new line is not certain has no
-fix.
+The new lines have the format of the adjacent lines. There is no fix for a file in which the location of a new line is
+uncertain.
 """
 
 from __future__ import annotations
@@ -64,7 +64,7 @@ def setup_folders_fix(package: PackageContext, setup: SetupFile, folders: Iterab
 
 
 def setup_file_fix(package: PackageContext, setup: SetupFile, destination: str, file: str) -> Fix | None:
-    """Return the fix that installs a file by the ``data_files`` of ``setup.py``, or None.
+    """Return the fix that installs a file by the ``data_files`` of ``setup.py``, or None if its place is uncertain.
 
     Args:
         package: the package.
@@ -77,7 +77,7 @@ def setup_file_fix(package: PackageContext, setup: SetupFile, destination: str, 
 
 
 def cmake_folder_fix(source: SourceText, folder: str, *, safe: bool) -> Fix | None:
-    """Return the fix that installs a folder by ``CMakeLists.txt``, or None.
+    """Return the fix that installs a folder by ``CMakeLists.txt``, or None if its place is uncertain.
 
     A folder directly in the package is added to a command that installs folders into the share folder. For any other
     folder, or without such a command, a command is added before ``ament_package()``.
@@ -127,7 +127,7 @@ def _installed_folders(statement: Statement) -> tuple[Token, ...]:
 
 
 def _data_files_fix(setup: SetupFile, entries: list[str], imports: tuple[Edit, ...], *, safe: bool) -> Fix | None:
-    """Return the fix that adds entries to ``data_files``, or None if it is not a list."""
+    """Return the fix that adds entries to ``data_files``, or None if this is not possible."""
     listed = _data_files_list(setup)
     if listed is None:
         return None
@@ -153,7 +153,7 @@ def _data_files_fix(setup: SetupFile, entries: list[str], imports: tuple[Edit, .
 
 
 def _after_last(source: SourceText, last: tuple[int, int], entries: list[str]) -> Edit:
-    """Return the edit that inserts entries after the last one.
+    """Return the edit that inserts entries after the last entry.
 
     If the last entry is on its own line, so is each new entry.
     """

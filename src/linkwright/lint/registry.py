@@ -49,7 +49,10 @@ def unusable_rules() -> tuple[Diagnostic, ...]:
 
 
 def has_external_rules() -> bool:
-    """Return whether another package adds rules, whose findings may depend on anything."""
+    """Return whether another package adds rules.
+
+    Findings must then not be cached, because external rules may depend on anything.
+    """
     return any(is_external(rule) for rule in _all_rules(include_packages=False)[0])
 
 

@@ -109,7 +109,7 @@ class Rule:
             span: the location, if it differs from the location of the element or attribute.
             source: the text that contains `span`, for the excerpt.
             notes: facts that explain the finding, with their locations.
-            hint: how to fix the problem.
+            hint: advice for fixing the problem.
             fix: a change to the source that fixes the problem.
             severity: the severity, if it differs from the rule's.
         """

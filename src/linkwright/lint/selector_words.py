@@ -38,4 +38,4 @@ def selector_hint(text: str) -> Phrase:
     suggestions = nearest(text, candidates, limit=1)
     if suggestions:
         return phrase("did you mean {names}?", names=quoted_names(suggestions))
-    return phrase("give a code such as LW201, the beginning of one, or the name of a rule")
+    return phrase("give a code such as LW201, the beginning of a code, or the name of a rule")

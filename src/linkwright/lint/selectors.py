@@ -17,7 +17,7 @@ def matches(selectors: Iterable[str], code: str) -> bool:
 
 
 def specificity(selectors: Iterable[str], code: str) -> int:
-    """Return how specific the best match of canonical selectors with a code is.
+    """Return the specificity of the best match between canonical selectors and a code.
 
     The result is 0 for no match, 1 for ``ALL``, and more for a longer selector.
     """

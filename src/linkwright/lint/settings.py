@@ -1,4 +1,4 @@
-"""The settings of rules: which run, how severe their findings are, and their options."""
+"""The settings of rules: the selection of rules, the severity of findings, and options."""
 
 from __future__ import annotations
 
@@ -81,7 +81,7 @@ class Settings:
     def is_ignored(self, code: str) -> bool:
         """Return whether a code is ignored.
 
-        The selector that ignores the code must be at least as specific as the one that selects it.
+        The selector that ignores the code must be at least as specific as the selector that selects the code.
         """
         selection_specificity = specificity((*(self.select or ()), *self.extend_select), code)
         return specificity(self.ignore, code) > 0 and specificity(self.ignore, code) >= selection_specificity

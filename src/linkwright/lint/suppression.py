@@ -97,7 +97,7 @@ class Suppressions:
     def audits(self, code: str) -> bool:
         """Return whether the findings with a code are needed, even if not selected.
 
-        They show whether a comment that suppresses them is used.
+        Such findings show whether a comment that suppresses them is used.
         """
         if not self._audits:
             return False

@@ -82,10 +82,10 @@ _EXPECTED_ATTRIBUTES = (
 
 
 def is_expected_element(tag: str) -> bool:
-    """Return whether authors expect an element to have an effect, because its name is known.
+    """Return whether the author of an element expects an effect, because its name is known.
 
-    Known names occur in URDF or in a related format. Any other name is a private extension, such as one that a
-    vendor's software reads.
+    Known names occur in URDF or in a related format, or contain the name of a URDF element as a word. Any other name
+    is a private extension, such as one that a vendor's software reads.
     """
     return tag in _EXPECTED_ELEMENTS or not PARENT_TAGS.keys().isdisjoint(words_of(tag))
 
@@ -104,7 +104,7 @@ def reader_hints(subject: Subject) -> dict[Span | None, str]:
 
 
 def intended_element(rule: ElementRule, child: Element) -> str | None:
-    """Return the allowed element that was probably intended by an unknown one, or None."""
+    """Return the allowed element that the author of an unknown element probably intended, or None."""
     if child.tag in PARENT_TAGS:
         return None
     allowed_tags = [child.tag for child in rule.children]
@@ -125,7 +125,7 @@ def is_misspelt(name: str, intended: str) -> bool:
 
 
 def intended_attribute(place: Place, attribute: str) -> str | None:
-    """Return the absent attribute that was probably intended by an unknown one, or None."""
+    """Return the absent attribute that the author of an unknown attribute probably intended, or None."""
     absent_attributes = [rule.name for rule in place.rule.attributes if rule.name not in place.element.attributes]
     equivalent = _OTHER_ATTRIBUTES.get(attribute.casefold())
     if equivalent in absent_attributes:
@@ -139,7 +139,10 @@ def location_phrase(place: Place) -> str:
 
 
 def attribute_name_span(element: Element, attribute: str) -> Span | None:
-    """Return the location of an attribute's name in the source, or None if it is not found."""
+    """Return the location of an attribute's name, or None if the element has no source.
+
+    If the source does not contain the attribute, the location of the element is returned.
+    """
     from linkwright.xmltree.positions import attribute_name_range
 
     source = element.source

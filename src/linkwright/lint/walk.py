@@ -23,7 +23,7 @@ def joints(subject: Subject) -> Iterator[tuple[Joint, Element]]:
 
 
 def joint_children(subject: Subject, tag: str) -> Iterator[tuple[Joint, Element, Element]]:
-    """Yield each joint that has a child element with a tag, with its own element and the child.
+    """Yield each joint that has a child element with a tag, with the joint's element and the child.
 
     Only the first such child is yielded, because readers use only this one.
     """
@@ -39,7 +39,7 @@ _SIMULATORS = lazy_pattern(r"gz|gazebo|ign|mujoco|webots|isaac|unity|drake|bulle
 def is_for_simulation(subject: Subject) -> bool:
     """Return whether a description has elements for Gazebo, or the plugin of a simulator.
 
-    Mock hardware, such as ``mock_components/GenericSystem``, does not count, because it needs no physics.
+    Mock hardware, such as ``mock_components/GenericSystem``, is not a simulator, because it needs no physics.
     """
     plugins = (
         plugin.text()

@@ -183,7 +183,7 @@ def _missing_mesh_findings(models: Iterable[Model], finder: ResourceFinder) -> I
 
 
 def _inertial_findings(link: Link, inertial: Inertial) -> Iterator[Diagnostic]:
-    """Yield the findings of the rules for robots' inertials, and one on non-finite values."""
+    """Yield the findings of the rules for robots' inertials, and a finding on non-finite values."""
     tensor = inertial.inertia
     robot_inertial = urdf.Inertial(
         inertial.mass,

@@ -1,7 +1,8 @@
 """The definitions and uses in the unexpanded xacro files of a description.
 
-Expressions are not evaluated. Therefore, branches that are not taken and macros that are not called count, too. Names
-are matched without regard to scopes, because xacro's scopes are dynamic and a rule about unused names must be sure.
+Expressions are not evaluated. Therefore, the facts include branches that are not taken and macros that are not called.
+Names are matched without regard to scopes, because xacro's scopes are dynamic and a rule about unused names must not
+report a used name.
 """
 
 from __future__ import annotations
@@ -360,7 +361,7 @@ class XacroFacts:
 
     @cached_property
     def _misses_files(self) -> bool:
-        """Whether a branch that is not taken includes a file that was not read."""
+        """Whether a file that was not read is included in a branch that is not taken."""
         known_names = {path.name for path in self.files} | {path.name for path in self.neighbours}
         for facts in self.files.values():
             for include in facts.includes:

@@ -1,6 +1,6 @@
 """The properties, arguments and packages that a text uses, found without evaluating it.
 
-Names are used in ``${...}`` and ``$(...)``. The lexer is that of the xacro room, and Python's `ast` parses the
+Names are used in ``${...}`` and ``$(...)``. The lexer of the xacro room splits the text, and Python's `ast` parses the
 expressions. A text that composes a name from values is *open*: the names that it uses are not known before the
 evaluation.
 """

@@ -1,4 +1,4 @@
-"""Extensions of Linkwright. Packages declare them as entry points.
+"""Extensions of Linkwright, which packages declare as entry points.
 
 Linkwright declares its own extensions in the same way. Each group, such as ``linkwright.displays`` or
 ``linkwright.page_features``, belongs to one subpackage. The entry points of all installed packages are read once, and
@@ -27,7 +27,7 @@ _NODES_GROUP = "linkwright.nodes"
 _READ_PREFIXES = (_OWN_PREFIX, "launch_ros.")
 """The prefixes of the groups that are read.
 
-They are the groups of Linkwright, and those of launch_ros, which packages also extend.
+They are the groups of Linkwright, and the groups of launch_ros, which packages also extend.
 """
 
 
@@ -48,7 +48,8 @@ class EntryPoint(NamedTuple):
         """Import the module, and return the object.
 
         Raises:
-            Exception: the module cannot be imported, or AttributeError, it has no such attribute.
+            Exception: the module cannot be imported.
+            AttributeError: the module has no such attribute.
         """
         module, _, attribute = self.value.partition(":")
         loaded = import_module(module.strip())

@@ -25,12 +25,12 @@ WATCHED_FILES = (
 
 
 async def show_progress(server: LanguageServer, title: Phrase, work: asyncio.Future[Any]) -> None:
-    """Show progress while work takes long, if the editor supports it.
+    """Show a progress indicator for long-running work, if the editor supports it.
 
     Args:
-        server: the server.
-        title: the title of the progress.
-        work: the work.
+        server: the language server, after its initialization.
+        title: the title of the indicator.
+        work: the future of the work, which this function also waits for.
     """
     await asyncio.wait([work], timeout=_PROGRESS_AFTER)
     window = server.client_capabilities.window

@@ -26,10 +26,11 @@ from linkwright.language.format import Document, Format
 from linkwright.language.formats import format_of
 from linkwright.language.includes import real
 from linkwright.language.values import ValuedText, values_in
-from linkwright.language.workspace import Workspace
+from linkwright.language.workspace import MAX_CHARACTERS, Workspace
 from linkwright.lint.targets import XML_FILES
 from linkwright.lsp.findings import as_diagnostics
 from linkwright.lsp.folders import show_progress
+from linkwright.lsp.large_files import findings_of_process
 from linkwright.lsp.positions import UTF_16, TextPositions
 from linkwright.lsp.protocol import LeanProtocol
 from linkwright.lsp.robot_views import RobotViews
@@ -76,6 +77,7 @@ class LinkwrightServer(LanguageServer):
         self._check_thread = ThreadPoolExecutor(1, thread_name_prefix="check")
         self._preparations: dict[Format, asyncio.Future[object]] = {}
         self._submitted_work: dict[Path, list[Future[object]]] = {}
+        self._large_checks: dict[Path, asyncio.Task[None]] = {}
         self._check_loop: asyncio.Task[None] | None = None
         self._progress_task: asyncio.Task[None] | None = None
         self.robot_views = RobotViews()
@@ -85,8 +87,7 @@ class LinkwrightServer(LanguageServer):
     def open_folders(self, folders: Iterable[Path]) -> None:
         """Open the folders of the editor, and start to check changed files."""
         BoundedCache.divisor = _CACHE_DIVISOR
-        if self._check_loop is not None:
-            self._check_loop.cancel()
+        self._cancel_checks()
         self._is_indexed.clear()
         self._values.clear()
         previous = self.project
@@ -99,8 +100,7 @@ class LinkwrightServer(LanguageServer):
 
     def stop(self) -> None:
         """Stop the checks, and end the pages of robots."""
-        if self._check_loop is not None:
-            self._check_loop.cancel()
+        self._cancel_checks()
         self._check_thread.shutdown(wait=False, cancel_futures=True)
         self.robot_views.close()
 
@@ -113,6 +113,11 @@ class LinkwrightServer(LanguageServer):
             format_ = format_of(path)
             if format_ is not None:
                 self._preparation(format_)
+            if len(self.workspace.text_documents[uri].source) > MAX_CHARACTERS:
+                notice = phrase(
+                    "'{file}' is too large for completions and hovers: only its findings are shown", file=path.name
+                )
+                self.window_show_message(types.ShowMessageParams(types.MessageType.Info, localized(notice)))
 
     def file_changed(self, uri: str) -> None:
         """Schedule checks of a file and of the descriptions that include it, and update robot pages."""
@@ -131,24 +136,24 @@ class LinkwrightServer(LanguageServer):
             self.file_changed(uri)
 
     def xml_text(self, document: types.TextDocumentIdentifier) -> tuple[Path, TextPositions | None]:
-        """Return the path and the text of an XML document, with None if the text is unreadable.
+        """Return the path and the text of an XML document, with None if it is large or unreadable.
 
         For other documents, the path is empty and the text is None.
         """
         path = path_of(document.uri)
         if path is None or not path.name.endswith((*XML_FILES, ".xml")):
             return Path(), None
-        return path, self.positions(path)
+        return path, self._usual_positions(path)
 
     def supported_text(self, document: types.TextDocumentIdentifier) -> tuple[Path, TextPositions | None]:
-        """Return the path and the text of a document in a supported format, with None if it is unreadable.
+        """Return the path and the text of a document in a supported format.
 
-        For other documents, the path is empty and the text is None.
+        The text is None if it is large or unreadable. For other documents, the path is empty and the text is None.
         """
         path = path_of(document.uri)
         if path is None or (format_of(path) is None and not path.name.endswith((*XML_FILES, ".xml"))):
             return Path(), None
-        return path, self.positions(path)
+        return path, self._usual_positions(path)
 
     async def when_prepared(self, path: Path) -> None:
         """Wait for the index, and for the imports that the format of a file needs."""
@@ -173,12 +178,12 @@ class LinkwrightServer(LanguageServer):
         return context
 
     def format_context(self, document: types.TextDocumentIdentifier) -> FormatContext | None:
-        """Return a document with its format, or None if it has no format of its own or is unreadable."""
+        """Return a document with its format, or None if it has no format of its own, or is large or unreadable."""
         path = path_of(document.uri)
         format_ = None if path is None else format_of(path)
         if path is None or format_ is None or self.project is None:
             return None
-        positions = self.positions(path)
+        positions = self._usual_positions(path)
         if positions is None:
             return None
         return FormatContext(format_, Document(self.project, self.texts(), real(path), positions.text), positions)
@@ -256,6 +261,11 @@ class LinkwrightServer(LanguageServer):
             return None
         return cached[1]
 
+    def _usual_positions(self, path: Path) -> TextPositions | None:
+        """Return the positions of a file's text, or None if it is large or unreadable."""
+        positions = self.positions(path)
+        return None if positions is None or len(positions.text) > MAX_CHARACTERS else positions
+
     def uri_of(self, path: Path) -> str:
         """Return the URI of a file, in the editor's spelling if the file is open."""
         file = real(path)
@@ -313,8 +323,37 @@ class LinkwrightServer(LanguageServer):
         return False
 
     async def _check(self, project: Workspace, subject: Path, texts: dict[Path, str], changed: set[Path]) -> None:
-        """Check one subject, and publish its findings."""
+        """Check one subject, and publish its findings.
+
+        A subject with a large file is checked in another process, which does not delay other checks.
+        """
+        if any(project.is_large(file, texts) for file in (subject, *changed)):
+            previous = self._large_checks.get(subject)
+            if previous is not None:
+                previous.cancel()
+            check = self._check_in_process(project, subject, texts, changed)
+            self._large_checks[subject] = asyncio.get_running_loop().create_task(check)
+            return
         self._publish(await self._attempt(partial(project.check, subject, texts, changed), subject) or {}, texts)
+
+    async def _check_in_process(
+        self, project: Workspace, subject: Path, texts: dict[Path, str], changed: set[Path]
+    ) -> None:
+        """Check one subject in a separate process, and publish its findings."""
+        findings = await findings_of_process(project.folders, subject, texts)
+        if self._large_checks.get(subject) is asyncio.current_task():
+            del self._large_checks[subject]
+        if findings is None:
+            _log.error("The check of '%s' failed", subject)
+            return
+        found = await self._attempt(partial(project.record, subject, findings, texts, changed), subject)
+        self._publish(found or {}, texts)
+
+    def _cancel_checks(self) -> None:
+        """Cancel the running and the waiting checks."""
+        for check in (*self._large_checks.values(), *((self._check_loop,) if self._check_loop is not None else ())):
+            check.cancel()
+        self._large_checks.clear()
 
     def _publish(self, findings_by_file: Mapping[Path, Sequence[Diagnostic]], texts: Mapping[Path, str]) -> None:
         """Publish the findings about files, except open files that have changed since the check."""

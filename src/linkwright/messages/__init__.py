@@ -84,4 +84,4 @@ __getattr__ = deferred(
         "yaml_text": ("to_yaml",),
     },
 )
-"""Texts of messages, which nodes do not use; and classes made of numpy's arrays, which take long to import."""
+"""Lazy imports of functions that nodes rarely use, and of classes that import numpy (slow)."""

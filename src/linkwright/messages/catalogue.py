@@ -24,7 +24,7 @@ _LATER_SUFFIX = " jazzy"
 
 @cache
 def packages() -> tuple[str, ...]:
-    """Return the names of the packages, sorted."""
+    """Return the sorted names of the packages that come with Linkwright."""
     return tuple(sorted(name[:-4] for name in os.listdir(_FOLDER) if name.endswith(".txt")))  # noqa: PTH208 - as above
 
 

@@ -1,4 +1,4 @@
-"""Checks the values assigned to fields, as the classes of rosidl_generator_py (Humble) do.
+"""Check the values assigned to fields, as the classes of rosidl_generator_py (Humble) do.
 
 The setters that `linkwright.messages.classes` compiles test for the usual case themselves and call these functions for
 all other cases. The functions return the value to store, or raise an AssertionError with the same message as in rclpy.

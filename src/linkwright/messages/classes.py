@@ -1,4 +1,4 @@
-"""Creates the classes of messages, services and actions from generated code, on first use.
+"""Create the classes of messages, services and actions from generated code, on first use.
 
 The generated constructor and setters contain only the code that the fields need. They test for the usual case inline
 (``value.__class__ is float``) and leave all other cases to `linkwright.messages.checks`. The property of a field reads
@@ -83,7 +83,7 @@ def build_class(structure: Structure, base: type, classes: dict[str, type], modu
 
 
 class _FieldCode:
-    """Generates the code for one field."""
+    """A generator of the code for one field."""
 
     def __init__(self, field: Field, classes: dict[str, type], scope: dict[str, Any]) -> None:
         self.field = field

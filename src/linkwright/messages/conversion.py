@@ -1,4 +1,4 @@
-"""Converts messages to plain data and to comma-separated values, as rosidl_runtime_py does."""
+"""Convert messages to plain data and to comma-separated values, as rosidl_runtime_py does."""
 
 from __future__ import annotations
 

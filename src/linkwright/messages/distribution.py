@@ -1,4 +1,4 @@
-"""Determines which ROS 2 distribution to follow where distributions differ."""
+"""Determine which ROS 2 distribution to follow where distributions differ."""
 
 from __future__ import annotations
 

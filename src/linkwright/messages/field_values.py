@@ -1,4 +1,4 @@
-"""Sets the fields of a message from plain data, such as the YAML of ``ros2 topic pub``."""
+"""Set the fields of a message from plain data, such as the YAML of ``ros2 topic pub``."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ class _InvalidValueError(Exception):
 
 
 class _Setter:
-    """Sets fields from plain data, and collects all mistakes."""
+    """A setter of fields from plain data that collects all mistakes."""
 
     def __init__(self, *, expand_header: bool, expand_time: bool) -> None:
         self._expand_header = expand_header

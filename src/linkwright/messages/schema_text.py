@@ -1,4 +1,4 @@
-"""Writes the definition of a message type, followed by the definitions of its nested types.
+"""Write the definition of a message type, followed by the definitions of its nested types.
 
 The format is MCAP's ``ros2msg`` schema encoding, which rosbag2's SQLite files and Foxglove also use.
 """

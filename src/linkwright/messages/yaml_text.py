@@ -1,4 +1,4 @@
-"""Writes messages as YAML that is identical to the output of ``ros2 topic echo``.
+"""Write messages as YAML that is identical to the output of ``ros2 topic echo``.
 
 The format is PyYAML's, but PyYAML takes milliseconds for a message of a few hundred numbers, which is too slow for
 /tf. Therefore this module writes the lines itself, from a plan for each class. It uses PyYAML only for strings, because
@@ -48,7 +48,7 @@ def to_yaml(
 
 
 class _Writer:
-    """Appends the YAML lines of one message to a list.
+    """A writer that appends the YAML lines of one message to a list.
 
     A path describes the containers around a value: ``m`` for a mapping, ``s`` for a list.
     """

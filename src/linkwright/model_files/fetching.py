@@ -72,7 +72,7 @@ class _ConnectionLostError(OSError):
 
 
 def _fetch_rest(entry: ModelEntry, address: str, part_file: Path, progress: Progress) -> bool:
-    """Try once from the end of the part, and return whether the file is complete."""
+    """Request the rest of a file once, append it to the part, and return whether the file is complete."""
     received = _file_size(part_file)
     request = urllib.request.Request(address, headers={"User-Agent": f"linkwright/{__version__}"})  # noqa: S310 - http and https only, see `installing`
     if received:

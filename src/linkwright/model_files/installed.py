@@ -16,7 +16,7 @@ _BLOCK_BYTES = 1 << 20
 def models_folder() -> Path:
     """Return the folder ``linkwright/models`` in ``XDG_DATA_HOME`` or ``~/.local/share``.
 
-    It is not a cache: an offline user cannot download models again.
+    The folder is not a cache, because an offline user cannot download models again.
     """
     return data_folder() / "models"
 

@@ -90,7 +90,7 @@ def _install_local(entry: ModelEntry, source: Path, target: Path) -> Path:
 
 
 def _install_file(entry: ModelEntry, file: Path, target: Path, origin: str | None = None) -> Path:
-    """Install a downloaded file."""
+    """Verify and install a downloaded file."""
     check_sum(entry, file, entry.sha256, origin)
     with _draft(entry, target) as draft:
         if entry.folder:
@@ -102,7 +102,7 @@ def _install_file(entry: ModelEntry, file: Path, target: Path, origin: str | Non
 
 
 def _install_folder(entry: ModelEntry, folder: Path, target: Path) -> Path:
-    """Install an unpacked model."""
+    """Verify and install an unpacked model."""
     verify(entry, folder)
     with _draft(entry, target) as draft:
         for name in entry.files:

@@ -50,7 +50,7 @@ def load_onnxruntime() -> Any:
 
 
 def load_session(file: Path, gpu: str | None = None, threads: int = 0) -> Any:
-    """Return an ``onnxruntime.InferenceSession``.
+    """Return an ``onnxruntime.InferenceSession`` for an ONNX file.
 
     Args:
         file: the ONNX file.

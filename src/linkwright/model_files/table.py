@@ -22,7 +22,7 @@ class ModelEntry:
     """A model that can be downloaded.
 
     Attributes:
-        name: its name in `linkwright models`.
+        name: the model's name in `linkwright models`.
         kind: ``speech`` or ``vision``.
         address: the publisher's URL.
         megabytes: the approximate download size.

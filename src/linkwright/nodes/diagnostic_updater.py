@@ -1,4 +1,4 @@
-"""Publishes a node's diagnostics on ``/diagnostics`` every second (diagnostic_updater)."""
+"""Periodic publication of a node's diagnostics on ``/diagnostics`` (diagnostic_updater)."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class Health:
 
 
 class DiagnosticUpdater:
-    """Publishes the diagnostics of a node once a second of the node's clock.
+    """A publisher of a node's diagnostics, which publishes once per second of the node's clock.
 
     Args:
         node: the node, whose name is the prefix of the task's name.

@@ -36,7 +36,7 @@ class ReadWorld(Protocol):
 
 
 class FileFollower(Protocol):
-    """The host of a node, which watches the node's files.
+    """A host that watches the files of its node.
 
     All methods are called on the event loop.
     """
@@ -68,8 +68,6 @@ class FileFollower(Protocol):
         """Watch the file from which this process expanded a description.
 
         Each new version of the description is passed on. If this process did not expand the description, do nothing.
-
-        If this process did not expand the description, do nothing.
 
         Args:
             text: the description.

@@ -1,4 +1,4 @@
-"""Looks up the poses of frames for nodes that transform messages."""
+"""Lookup of frame poses for nodes that transform messages."""
 
 from __future__ import annotations
 

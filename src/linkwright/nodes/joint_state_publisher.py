@@ -59,8 +59,8 @@ class _Quantity:
     def spread(self, layout: JointLayout, *, scaled: bool, shifted: bool) -> Array | None:
         """Return a value for each published joint, for a message.
 
-        The result is None if no joint has a value. A joint that mimics a joint without a value has 0, as in the ROS
-        node.
+        The result is None if no joint has a value. Otherwise, a joint without a value has 0, as in the ROS node. The
+        same applies to a joint that mimics a joint without a value.
 
         Args:
             layout: the joints.
@@ -97,9 +97,9 @@ class JointPositions:
     def take_over(self, layout: JointLayout, settings: JointSettings) -> None:
         """Change to another layout.
 
-        Joints that are free in both layouts and have left their initial position keep their state, clamped to the new
-        limits. All other joints start at their zero position, or without a position if ``publish_default_positions`` is
-        false.
+        Joints that are free in both layouts keep their velocities and efforts. Those that have left their initial
+        position, or would otherwise have no position, also keep their position, clamped to the new limits. All other
+        joints start at their zero position, or without a position if ``publish_default_positions`` is false.
         """
         old_states, old_rows = self._free_states(), self._rows
         old_zeros = {joint.name: joint.zero for joint in self.layout.free}

@@ -1,4 +1,4 @@
-"""joint_state_publisher_gui: joint_state_publisher with sliders, which the viewer shows."""
+"""joint_state_publisher_gui: joint_state_publisher with sliders in the viewer."""
 
 from __future__ import annotations
 

@@ -30,7 +30,7 @@ class NodeCommand:
 
 
 CommandParser = Callable[[Sequence[str]], NodeCommand | None]
-"""Returns the node that replaces a program, given its command line.
+"""A function that returns the node that replaces a program, given its command line.
 
 The command line starts with the program. The result is None if the node does not replace it.
 """

@@ -149,7 +149,7 @@ class SingleNode:
 
 
 Factory = Callable[[Graph, NodeOptions], RunningNode]
-"""Starts a node. Raises LinkwrightError if the node cannot start."""
+"""A function that starts a node. It raises LinkwrightError if the node cannot start."""
 
 
 def create_node(

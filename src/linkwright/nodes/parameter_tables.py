@@ -91,7 +91,7 @@ def parameter(
         read_only: whether the value cannot change after the declaration.
         check: the constraint on the value.
         only: the only distribution that has the parameter, `HUMBLE` or `JAZZY`; empty if both have the parameter.
-            Each of them also covers the distributions near it.
+            `HUMBLE` includes all distributions before Iron, and `JAZZY` includes Iron and later.
         later: the default in Iron and later, if it differs.
     """
     return field(default=default, metadata={_PROPERTIES: _Properties(description, read_only, check, only, later)})
@@ -216,9 +216,9 @@ class ParameterTable(Generic[P]):
         self.values = self._read()
 
     def unknown(self) -> Iterator[tuple[str, Phrase | None]]:
-        """Yield each given parameter that does not exist.
+        """Yield the name of each given parameter that does not exist.
 
-        Each is yielded with a suggestion of the intended name, or None.
+        Each name is yielded with a suggestion of the intended name, or None.
         """
         for name in self._node.undeclared_overrides():
             if not name.startswith(_COMMON_PARAMETERS):
@@ -240,7 +240,7 @@ class ParameterTable(Generic[P]):
 
 
 class _Reader:
-    """Declares and reads the parameters of tables.
+    """A reader that declares and reads the parameters of tables.
 
     Attributes:
         declared: the declared parameters by name, including previously declared ones.

@@ -1,7 +1,6 @@
 """robot_state_publisher: publishes transforms from joint states.
 
-The node follows the ROS 2 node of that name (Humble 3.0.3 and later; see the notes on each rule), with these deliberate
-differences:
+The node follows the ROS 2 node of that name (Humble 3.0.3 and later), with these deliberate differences:
 
 - A message that the throttle delays is published as soon as the throttle permits, unless a newer message arrives
   before. The ROS node drops the message, so the last move of a slider can be missing.
@@ -123,7 +122,7 @@ class Conversion:
 
 
 class RobotTransforms:
-    """Computes the transforms of one robot.
+    """The transforms of one robot, computed from joint states.
 
     Args:
         robot: the description.
@@ -192,11 +191,11 @@ class JointGroup:
     def __init__(self, rows: NDArray[np.intp]) -> None:
         self.rows = rows
         self.positions: NDArray[np.float64] | None = None
-        """A copy of the transforms published last, because a publisher may reuse its message."""
+        """A copy of the last published positions. A copy is needed because a publisher may reuse its message."""
 
 
 class Throttle:
-    """Decides when transforms may be published, from the publication times of the joints.
+    """A limit on the rate at which the transforms of the same joints are published.
 
     Times are in nanoseconds, and 0 means never. A message may be published when its stamp is at least one interval
     after the last publication of the joint that was published least recently. Messages that repeat the previous
@@ -205,7 +204,7 @@ class Throttle:
     does not delay a move that follows it.
 
     Args:
-        interval_ns: the minimum time between two messages about the same joints.
+            interval_ns: the minimum time between two messages about the same joints.
     """
 
     def __init__(self, interval_ns: int) -> None:
@@ -248,7 +247,7 @@ class Throttle:
         return min(int(publication_times[group.rows].min()), now_ns) + self.interval_ns
 
     def is_in_order(self, group: JointGroup, stamp_ns: int) -> bool:
-        """Return whether every joint of the group was published before, and none of them later."""
+        """Return whether all joints were published before, and none with a later stamp."""
         stamps = self._stamp_ns[group.rows]
         return bool(stamps.all() and (stamps <= stamp_ns).all())
 
@@ -292,8 +291,8 @@ class RobotStatePublisher(SingleNode):
 
     Raises:
         LinkwrightError: the node cannot start: no description (NODE101), an invalid description (NODE102, with its
-            errors), a frequency out of range (NODE103), a parameter of the wrong type (GRAPH201), or an invalid QoS
-            override (GRAPH208).
+            errors), a frequency out of range (NODE103), a file that cannot be read (NODE104), a parameter of the wrong
+            type (GRAPH201), or an invalid QoS override (GRAPH208).
     """
 
     DEFAULT_NAME = "robot_state_publisher"

@@ -1,4 +1,4 @@
-"""Declares the parameters of nodes that are required or set by command-line arguments."""
+"""Declaration of parameters that are required or set by command-line arguments."""
 
 from __future__ import annotations
 

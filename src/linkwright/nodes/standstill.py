@@ -1,4 +1,4 @@
-"""Stops a robot when the publisher of its forwarded velocities disappears.
+"""Stopping of a robot when the publisher of its forwarded velocities disappears.
 
 See `linkwright.graph.endpoints.commander.Commander`.
 """

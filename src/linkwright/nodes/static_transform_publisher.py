@@ -25,7 +25,7 @@ HELP = f"""A command line utility for manually sending a static transform.
 
 usage: {USAGE}
 
-A translation is in metres, angles are in radians. By position, which is deprecated:
+Translations are in metres, and angles are in radians. Deprecated forms with positional arguments:
 static_transform_publisher X Y Z YAW PITCH ROLL FRAME_ID CHILD_FRAME_ID
 static_transform_publisher X Y Z QX QY QZ QW FRAME_ID CHILD_FRAME_ID"""
 _TRANSLATION = ("--x", "--y", "--z")

@@ -1,4 +1,4 @@
-"""Publishes velocities as Twist or TwistStamped, depending on the subscribers."""
+"""Publication of velocities as Twist or TwistStamped, depending on the subscribers."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def velocity_types(node: Node, topic: str, stamped: bool | None) -> tuple[str, .
 
 
 class VelocityTopic:
-    """Publishes velocities on a topic whose type is Twist or TwistStamped.
+    """A publisher of velocities on a topic whose type is Twist or TwistStamped.
 
     If the topic has another type, nothing is published.
 
@@ -41,7 +41,7 @@ class VelocityTopic:
         foreign_type: a type on the topic that is neither Twist nor TwistStamped, or None.
 
     Raises:
-        LinkwrightError: if `topic` is not a valid topic name.
+        LinkwrightError: `topic` is not a valid topic name.
     """
 
     def __init__(self, node: Node, topic: str, stamped: bool | None = None, frame_id: str = "") -> None:

@@ -1,7 +1,7 @@
 """The ament resource index of packages' resources (``ament_index_python.resources``).
 
-Packages in source trees count as registered under the type ``packages``. Their other resources are known only after a
-build.
+Packages in source trees are treated as registered under the type ``packages``. Their other resources are known only
+after a build.
 """
 
 from __future__ import annotations
@@ -65,7 +65,7 @@ def has_resource(resource_type: str, resource_name: str) -> str | bool:
 
 
 def get_resources(resource_type: str) -> dict[str, str]:
-    """Return the resources of a type: name -> prefix.
+    """Return the prefix of each resource of a type, by resource name.
 
     Raises:
         InvalidResourceTypeNameError: the type is invalid.

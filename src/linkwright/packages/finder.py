@@ -197,7 +197,7 @@ class PackageFinder:
         self._suggestions.clear()
         self._scans.clear()
 
-    # --- the places -----------------------------------------------------------------------------------------
+    # --- locations ------------------------------------------------------------------------------------------
 
     def _candidate_shares(self, name: str) -> Iterator[Path | None]:
         yield self._extra.get(name)

@@ -23,7 +23,7 @@ def package_name(folder: Path) -> str | None:
     """Return the name in a folder's ``package.xml``, or None if the file or its name is missing.
 
     The name is found by a search through the text, without an XML parser: a search for packages reads many manifests,
-    and a broken one must not stop it.
+    and a broken manifest must not stop the search.
     """
     try:
         text = (folder / MANIFEST).read_text(encoding="utf-8", errors="replace")
@@ -36,7 +36,7 @@ def package_name(folder: Path) -> str | None:
 def enclosing_package(path: Path) -> tuple[str, Path] | None:
     """Return the name and folder of the package that contains a file or folder, or None.
 
-    The package is the nearest folder above with a ``package.xml``.
+    The package is the nearest enclosing folder with a ``package.xml``.
     """
     for folder in (path, *path.parents):
         name = package_name(folder)

@@ -7,11 +7,12 @@ installed files at their installed paths and all other files from the sources. A
 such as a launch file with ``os.path.join``, then finds the files that would exist after a build. Files that require
 compilation are replaced by Linkwright's files, if there are any.
 
-Linkwright's substitutes replace ROS packages that launch files include, such as those of Gazebo and nav2. They contain
-the launch files of those packages and the files that these need, and start Linkwright's nodes. The substitutes are
-registered as entry points in the group ``linkwright.package_substitutes``. Each entry point has the name of a package
-and refers to a module whose folder is a prefix that contains ``share/NAME``. A package that is replaced only by
-modules, messages or nodes, such as rclpy, std_msgs and robot_state_publisher, has a share folder that does not exist.
+Linkwright's substitutes replace ROS packages that launch files include, such as those of Gazebo and nav2. The
+substitutes contain the launch files of these packages and the files that the launch files need, and they start
+Linkwright's nodes. The substitutes are registered as entry points in the group ``linkwright.package_substitutes``. Each
+entry point has the name of a package and refers to a module whose folder is a prefix that contains ``share/NAME``. A
+package that is replaced only by modules, messages or nodes, such as rclpy, std_msgs and robot_state_publisher, has a
+share folder that does not exist.
 """
 
 from __future__ import annotations
@@ -82,7 +83,7 @@ def _partly_replaced_packages() -> frozenset[str]:
 def is_substitute(share: Path) -> bool:
     """Return whether a share folder belongs to a substitute for a ROS package.
 
-    A substitute contains the launch files that others include, but not the rest of the package.
+    A substitute contains the launch files that other packages include, but not the rest of the package.
     """
     return install_prefix(share) == _PARTIAL_PREFIX or share == _share_with_files(share.name)
 
@@ -125,7 +126,7 @@ def _text_with_targets(folder: Path) -> str | None:
 
 
 def _is_compiled(folder: Path, text: str) -> bool:
-    """Return whether a package with this text of its ``CMakeLists.txt`` must be compiled."""
+    """Return whether a package must be compiled, given the text of its ``CMakeLists.txt``."""
     from linkwright.diagnostics import SourceText
     from linkwright.packages.readers.cmake import read_cmake
 

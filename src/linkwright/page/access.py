@@ -108,7 +108,7 @@ def _read(path: Path) -> tuple[float, PortToken | None]:
 
 
 def _is_private(status: os.stat_result) -> bool:
-    """Return whether only this user can read and write a regular file.
+    """Return whether a file is regular and only this user can read and write it.
 
     On Windows, which protects the folders of users, only the kind of the file is checked.
     """
@@ -137,7 +137,7 @@ TOKEN_PARAMETER = "token"  # noqa: S105 - the name of a query parameter
 
 
 class Gate:
-    """Checks whether requests may access the server.
+    """The check whether requests may access the server.
 
     Args:
         host: the name that the server is bound to, which is also accepted as a host name.
@@ -235,7 +235,7 @@ PATIENCE = 10.0
 
 
 class Admission:
-    """Limits the number of connections to a server.
+    """The limit on the number of connections to a server.
 
     A connection is admitted when it has sent the token, or requested a file with a secret address. When the limit is
     reached, a new connection replaces the oldest connection that is not admitted. If all connections are admitted, the

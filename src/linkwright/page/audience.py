@@ -50,7 +50,7 @@ _MEASUREMENT_COUNT = 20
 
 
 class LoopLag:
-    """Measures the lag of the event loop, from its creation until it is closed.
+    """A measurement of the lag of the event loop, from creation until `close`.
 
     Messages from a page wait for this time before they are read, and messages to a page before they are sent.
     """
@@ -409,7 +409,7 @@ _MAX_BURST = 4000.0
 
 
 class Pace:
-    """Limits the rate of messages of a page, so that it cannot block other pages.
+    """A limit on the rate of messages of a page, so that the page cannot block other pages.
 
     Args:
         clock: returns the time in seconds.

@@ -104,7 +104,7 @@ class FileRefusedError(Exception):
 
 @dataclass(slots=True)
 class MeshIndex:
-    """Finds the files that one description refers to, and collects their folders."""
+    """A finder of the files of one description that collects their folders."""
 
     finder: PackageFinder
     folders: dict[str, ServedFolder] = field(default_factory=dict)
@@ -296,7 +296,10 @@ class Downloads:
         return f"/export/{key}/{quote(file.name)}"
 
     def withdraw(self, key: str) -> Download | None:
-        """Withdraw and return the file that `put` offers under a key, or return None."""
+        """Withdraw and return the file that `offer_once` offers under a key, or return None.
+
+        Files that were offered more than a minute ago are discarded first.
+        """
         now = time.monotonic()
         for old in [expired_key for expired_key, file in self._files.items() if now - file.created_at > _OFFER_SECONDS]:
             del self._files[old]

@@ -135,8 +135,8 @@ class Outbox:
 
     A payload replaces a queued payload with the same key and moves to the end, so payloads are sent in the order of
     their creation. Large content keeps its position, because the most frequent content would otherwise starve the rest.
-    Frame tables and transforms have a separate queue, which precedes and alternates with the other queue. A slider
-    therefore moves the scene immediately, and other payloads are not starved on a slow connection.
+    Frame tables and transforms have a separate queue. The two queues alternate, beginning with the separate one. A
+    slider therefore moves the scene immediately, and other payloads are not starved on a slow connection.
 
     Attributes:
         is_held: whether the connection is full, in which case only frame tables and transforms are taken.
@@ -220,7 +220,7 @@ class _InTransit:
 
 
 class ConnectionMeter:
-    """Measures the connection to one page.
+    """A meter of the connection to one page.
 
     A page acknowledges large messages, so that the full path is measured, including tunnels with buffers. For a page
     without acknowledgements, only the time in which the socket accepts the data is known.

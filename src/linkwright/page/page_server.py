@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class PageServer:
-    """Listens at an address, and checks the token of pages.
+    """A server that listens at an address and checks the token of pages.
 
     Args:
         host: the address to listen on; any address except loopback admits other machines with the token.

@@ -99,7 +99,9 @@ class _Services:
 
 
 class WebServer:
-    """Serves a viewer, and serves the files of the page even before the viewer exists.
+    """The web server of a viewer.
+
+    The files of the page are served even before the viewer exists.
 
     Args:
         gate: checks requests.
@@ -400,7 +402,7 @@ def _is_from_here(request: web.Request) -> bool:
 
 
 def _own_configuration(request: web.Request) -> str:
-    """Return the page's own configuration in a request, or empty for the shared configuration."""
+    """Return the name of the page's own configuration, or an empty string for the shared configuration."""
     key = request.query.get("own", "")
     return key if _OWN_CONFIGURATION_KEY.fullmatch(key) else ""
 

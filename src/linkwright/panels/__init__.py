@@ -1,4 +1,4 @@
 """The page features of a viewer, each in a module or package.
 
-They handle most requests of pages.
+The features handle most requests of pages.
 """

@@ -64,7 +64,7 @@ class Request(Generic[Message]):
 
 
 class ConfigurationFeature(PageFeature):
-    """Handles requests of pages about configurations.
+    """The feature that handles requests of pages about configurations.
 
     Unsaved edits are discarded only if the page confirms it.
 

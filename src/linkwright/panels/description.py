@@ -42,7 +42,7 @@ OnValues = Callable[[dict[str, str]], object]
 
 
 class ArgumentsFeature(PageFeature):
-    """Shows a form for arguments in all pages.
+    """The feature that shows a form for arguments in all pages.
 
     The values from the first page that answers are used.
     """
@@ -162,7 +162,7 @@ _Request = AskDescription | AskDescriptionText | AskInertia | AskProvenance
 
 
 class DescriptionFeature(PageFeature):
-    """Answers requests of pages about descriptions in a thread, one at a time.
+    """The feature that answers requests about descriptions in a thread, one at a time.
 
     If a page repeats a request before it is answered, only the last request is answered.
     """
@@ -300,7 +300,7 @@ def _text(
 
 
 class DiagnosticsFeature(PageFeature):
-    """Shows the findings about the description in all pages."""
+    """The feature that shows the findings about the description in all pages."""
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)

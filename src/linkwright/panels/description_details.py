@@ -40,7 +40,7 @@ _MAX_CALLS = 20
 
 
 class SourcePositions:
-    """Looks up the source positions of the links and joints of one description.
+    """The source positions of the links and joints of one description.
 
     Args:
         text: the expanded description.

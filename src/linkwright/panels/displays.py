@@ -19,7 +19,7 @@ from linkwright.rviz.displays.catalogue import display_classes
 
 
 class DisplaysFeature(PageFeature):
-    """Forwards messages of pages to displays."""
+    """The feature that forwards messages of pages to displays."""
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
@@ -58,7 +58,7 @@ class DisplaysFeature(PageFeature):
 
 
 class PointsFeature(PageFeature):
-    """Sends the fields of selected points.
+    """The feature that sends the fields of selected points to pages.
 
     Pages have only the positions and colours of points.
     """

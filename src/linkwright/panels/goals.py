@@ -11,7 +11,7 @@ from linkwright.messages import get_action
 
 
 class GoalSender:
-    """Sends poses to an action whose goals are poses, such as nav2's ``navigate_to_pose``.
+    """A sender of poses to an action with goal poses, such as nav2's ``navigate_to_pose``.
 
     Args:
         node: the node that owns the action client.

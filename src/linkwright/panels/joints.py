@@ -37,7 +37,7 @@ class NodeWithSliders(RunningNode, Protocol):
 
 
 class JointsFeature(PageFeature):
-    """Connects the Joints panel of pages with the sliders of a node that moves the joints."""
+    """The feature that connects the Joints panel with the sliders of a node that moves joints."""
 
     RECEIVES: ClassVar[tuple[type, ...]] = (SetJoint, SetJoints, RandomizeJoints, CenterJoints)
 

@@ -29,7 +29,7 @@ _MAX_NEW_MESSAGES = 16
 
 
 class LiveHistory:
-    """Stores the messages of the viewer's subscriptions, and delivers earlier ones again.
+    """The latest messages of the viewer's subscriptions, which can be delivered again.
 
     The history creates no subscriptions. While a past time is shown, new messages are stored but not shown.
 
@@ -140,7 +140,7 @@ class LiveHistory:
     def messages_between(
         self, topics: Mapping[str, SavedTopic], start_ns: int, end_ns: int, *, simulated: bool
     ) -> list[Recorded]:
-        """Return the stored messages between two times, and earlier ones for the state at the start.
+        """Return the stored messages between two times, and earlier messages for the state at the start.
 
         Args:
             topics: see `topics`.

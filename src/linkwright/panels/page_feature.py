@@ -95,7 +95,7 @@ class PageFeature:
         """Start the feature when the viewer starts."""
 
     def opening(self) -> list[ServerMessage]:
-        """Return the messages that do not concern a configuration, for a page that has just opened."""
+        """Return the messages for a newly opened page that do not concern a configuration."""
         return []
 
     def configured(self, manager: VisualizationManager) -> list[ServerMessage]:
@@ -210,7 +210,7 @@ def _load_declarations(logger: Logger) -> Iterator[OnDemand]:
 
 
 class OnDemandFeatures(PageFeature):
-    """Creates features on demand, and passes on the message for which a feature was created.
+    """The feature that creates other features on demand, and forwards the first message.
 
     Each feature is created once. Later messages are passed to it directly.
     """

@@ -46,7 +46,7 @@ _MAX_FILES = 20
 
 
 class RecordingFeature(PageFeature):
-    """Records topics for pages.
+    """The feature that records topics for pages.
 
     A recording continues when the page that started it is closed, and is completed when the program ends.
 

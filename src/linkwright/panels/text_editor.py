@@ -1,4 +1,4 @@
-"""The connection of pages with a text editor: selects the element at its cursor, and reports selected elements."""
+"""Selects the element at the cursor of a text editor in pages, and reports selected elements."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from linkwright.panels.page_feature import FeatureHost, PageFeature
 
 
 class TextEditorFeature(PageFeature):
-    """Selects the element at the cursor of a text editor in all pages.
+    """The feature that selects the element at a text editor's cursor in all pages.
 
     Attributes:
         selected: called with the source range of each element that a user selects in a page.
@@ -34,7 +34,7 @@ class TextEditorFeature(PageFeature):
         return [EditorAttached()]
 
     def show(self, file: Path, line: int) -> None:
-        """Select the element at a line in the pages, if one is written there.
+        """Select the element at a line in all pages, if the line contains one.
 
         Args:
             file: the source file.
@@ -77,7 +77,9 @@ class TextEditorFeature(PageFeature):
 
 
 def element_at(description: Description, file: Path, line: int) -> tuple[ElementKind, str] | None:
-    """Return the kind and name of the innermost element at a line, or of the first element of a macro call there.
+    """Return the kind and name of the innermost element at a line, or None.
+
+    If the line contains only a macro call, the result is the call's first element.
 
     Args:
         description: the description.

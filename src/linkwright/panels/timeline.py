@@ -55,7 +55,7 @@ class _ElapsedStart:
 
 
 class TimeFeature(PageFeature):
-    """Sends the values of the Time panel to pages, and applies the settings of the panel.
+    """The feature that sends the values of the Time panel to pages, and applies its settings.
 
     A clock that runs at the speed of the wall clock is sent once, and pages advance it themselves. Other clocks are
     sent while they change.
@@ -196,7 +196,9 @@ _CAUGHT_UP_NS = 100_000_000
 
 
 class TimelineFeature(PageFeature):
-    """Sends the position in a recording or in the last minutes, and controls playback.
+    """The feature that controls playback of a recording or of the last minutes.
+
+    The position is sent to pages.
 
     Without a recording or a live history, the feature has no effect. A recording starts to play when the first page
     opens.

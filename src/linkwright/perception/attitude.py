@@ -42,7 +42,7 @@ class World(Enum):
 
     @property
     def up(self) -> float:
-        """1 if z points up, else -1."""
+        """The z component of the up direction: 1, or -1 for NED."""
         return -1.0 if self is World.NED else 1.0
 
 
@@ -83,7 +83,7 @@ class MadgwickFilter:
 
     Attributes:
         gain: the size of the correction, in rad/s.
-        zeta: the rate at which the gyroscope's drift is learnt, in rad/s per second.
+        zeta: the rate at which the gyroscope's drift is estimated, in rad/s per second.
         world: the axes of the world.
         orientation: the orientation of the body in the world.
         drift: the drift of the gyroscope, in rad/s.
@@ -147,15 +147,15 @@ class MadgwickFilter:
 
 @dataclass(slots=True)
 class ComplementaryFilter:
-    """A filter that integrates the gyroscope, and corrects a fraction of the error.
+    """A complementary filter: integrates the gyroscope, and corrects it with the other sensors.
 
-    The other sensors measure the error. The world axes are north, west, up.
+    Each measurement corrects a fraction of the error. The world axes are north, west, up.
 
     Attributes:
         gain_acc: the fraction of the error that the accelerometer corrects at each measurement, 0 to 1.
         gain_mag: the fraction of the error that the magnetometer corrects at each measurement, 0 to 1.
         bias_alpha: the fraction of the difference by which the bias is updated at each measurement at rest, 0 to 1.
-        do_bias_estimation: whether the bias is learnt.
+        do_bias_estimation: whether the bias is estimated.
         do_adaptive_gain: whether the accelerometer has less weight while the body accelerates.
         orientation: the orientation of the body in the world.
         bias: the bias of the gyroscope, in rad/s.
@@ -171,7 +171,7 @@ class ComplementaryFilter:
     _last_rates: Vector3 = (0.0, 0.0, 0.0)
 
     def update(self, rates: Vector3, acceleration: Vector3, magnetic: Vector3 | None, seconds: float) -> None:
-        """Update the orientation with a measurement; see `MadgwickFilter.update`."""
+        """Update the orientation with a measurement. See `MadgwickFilter.update`."""
         if self.do_bias_estimation and self._is_at_rest(rates, acceleration):
             self.bias = _add_scaled(self.bias, _add_scaled(rates, self.bias, -1.0), self.bias_alpha)
         self._last_rates = rates

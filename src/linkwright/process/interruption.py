@@ -28,7 +28,10 @@ if TYPE_CHECKING:
 
 
 INTERRUPTED = 130
-"""The exit status of a program that Ctrl-C ended: 128 plus the number of SIGINT, as in shells."""
+"""The exit status of a program that Ctrl-C ended.
+
+As in shells, it is 128 plus the number of SIGINT.
+"""
 
 _DELAY_SECONDS = 0.01
 

@@ -87,7 +87,7 @@ _COLLECTION_SECONDS = 0.1
 
 
 class GraphChanges:
-    """Calls callbacks when the graph changes.
+    """The callbacks for changes of the graph.
 
     The graph is watched only while there are callbacks.
 
@@ -132,7 +132,7 @@ class GraphChanges:
 
 
 class HeldTime:
-    """Holds the viewer's clock at a past time while the history is shown.
+    """A switch that stops the viewer's clock at a past time while the history is shown.
 
     Attributes:
         switching: whether the clock is being held or released right now; displays must not reset then.

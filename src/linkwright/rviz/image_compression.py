@@ -22,7 +22,7 @@ _SPARE_FACTOR = 2.5
 
 
 class ImageCompressor:
-    """Compresses a display's images to WebP.
+    """A compressor of a display's images to WebP.
 
     The last suitable scale and quality for each size are stored, and are tried first for the next image.
     """

@@ -301,7 +301,7 @@ def has_visuals(robot: Robot, finder: PackageFinder) -> bool:
 
 
 class SceneBuilder:
-    """Converts a robot to the page's form.
+    """A converter of robots to the page's form.
 
     Each visual has the colour of its own material, whereas RViz colours links with several visuals incorrectly. A
     collision has the colour of the link's first visual, as in RViz.

@@ -1,6 +1,6 @@
 """XML languages as data: tables of elements and attributes.
 
-They are used for reading, writing and explaining.
+The tables are used for reading, writing and explaining.
 
 A language is a tree of `ElementRule` objects. This package contains no language itself; URDF's is
 `linkwright.urdf.schema`.

@@ -209,7 +209,7 @@ class Report(Protocol):
         """Report that an element has none of the alternative children, one of which is required."""
 
     def unknown_choice(self, child: Element, rule: ElementRule, owner: Element) -> None:
-        """Report a child that is not among the allowed ones in this version of the language."""
+        """Report a child that is not allowed in this version of the language."""
 
 
 Read = Callable[[Element, Element, Report], Any]
@@ -220,7 +220,7 @@ _Memory = dict[tuple[str, ...], Any]
 
 
 class ElementReader(NamedTuple):
-    """A compiled rule.
+    """The reader of the elements of a rule.
 
     Attributes:
         read: the function that returns the object of an element, or `UNREADABLE`. For an element whose values are

@@ -17,7 +17,7 @@ class ValueType:
 
     Attributes:
         name: the name in messages and documentation, such as ``3 numbers``.
-        read: the function that parses a text, and raises `ValueError` for an invalid one.
+        read: the function that parses a text, and raises `ValueError` for an invalid text.
         write: the function that formats a value, and returns None for a value that is not written.
     """
 
@@ -90,14 +90,14 @@ class ElementRule:
         attributes: the rules of the attributes, in the order of the documentation.
         children: the rules of the children that are read, in the order in which they are written.
         required: whether the parent element cannot be read without this element.
-        many: whether all elements with the tag are read; otherwise, only the first one is.
+        many: whether all elements with the tag are read; otherwise, only the first element is read.
         since: the version that added the element.
         text: the rule of the text inside, for an element whose value is its text.
         choice: whether the first child selects one of several kinds, so that its object is the object of this element.
         make: the function that creates the object from keyword arguments: the fields of attributes and children. The
             object must not be false. None if the values are fields of the parent's object, as for
             ``<mass value="1"/>``.
-        located: whether `make` takes the element as the argument ``element``.
+        located: whether `make` receives the element as the argument ``element``.
         field: the field of the parent's object; by default, the field with the name of the tag.
         get: the function that returns the value to write from the parent's object, if this is not simply the field.
         default: the default of an absent element: an object, or the tuple of values for the fields of the parent's

@@ -9,7 +9,7 @@ from linkwright.schema.rules import AttributeRule, ElementRule
 from linkwright.xmltree import Element, Text
 
 Completion = Callable[[Element, ElementRule, Any], None]
-"""A function that extends the element of an object by content that its rule does not read."""
+"""A function that adds content without a rule to the element of an object."""
 
 
 def write_element(rule: ElementRule, instance: Any, complete: Completion | None = None) -> Element:
@@ -20,7 +20,8 @@ def write_element(rule: ElementRule, instance: Any, complete: Completion | None 
     Args:
         rule: the rule of the element.
         instance: the object, with a field for each attribute and child.
-        complete: a function that is called for each object with its own element, with this element and its rule.
+        complete: a function that is called for each object with its own element, with the element, its rule and the
+            object.
     """
     if rule.choice:
         child_rule = next(child for child in rule.children if type(instance) is child.make)

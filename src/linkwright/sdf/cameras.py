@@ -69,7 +69,7 @@ class Camera:
         clip: the minimum and the maximum distance at which the camera sees objects.
         noise: the noise on each colour value; colour values are from 0 to 1.
         distortion: the distortion of the lens; None for a lens without distortion.
-        intrinsics: the intrinsics, which override the field of view; None to compute them from it.
+        intrinsics: the intrinsics, which override the field of view; None to compute them from the field of view.
         depth_clip: the range of a depth camera; None to use `clip`.
         segmentation_type: ``semantic`` or ``instance`` (also ``panoptic``).
         box_type: ``2d``, ``visible_2d``, ``full_2d`` or ``3d``.

@@ -26,7 +26,7 @@ from linkwright.urdf import model as urdf
 from linkwright.xmltree import Element, Text
 
 _PathsByTag = Mapping[str, tuple[str, ...]]
-"""Maps an old tag in ``<gazebo>`` to the paths of the SDF elements that it represents."""
+"""A mapping from an old tag in ``<gazebo>`` to the paths of the SDF elements that it represents."""
 
 _MODEL_TAGS: _PathsByTag = {"static": ("static",)}
 _LINK_TAGS: _PathsByTag = {
@@ -74,7 +74,7 @@ class LinkExtension:
     """The settings of a link in ``<gazebo>``.
 
     Attributes:
-        link: an SDF link with sensors, lights and whether gravity acts; its shapes, mass and pose do not apply.
+        link: an SDF link with the sensors, lights and gravity setting; its shapes, mass and pose do not apply.
         visual: settings for each visual of the link, except geometry and pose.
         collision: settings for each collision of the link, except geometry and pose.
     """
@@ -85,7 +85,7 @@ class LinkExtension:
 
 
 class Extensions:
-    """The ``<gazebo>`` elements of a robot, parsed and by ``reference``.
+    """The ``<gazebo>`` elements of a robot, grouped by the name in ``reference``.
 
     Args:
         robot: the robot with the ``<gazebo>`` elements.
@@ -102,7 +102,7 @@ class Extensions:
     def model(self, robot: Robot) -> Model:
         """Return an SDF model from the ``<gazebo>`` elements that apply to the whole robot.
 
-        It contains plugins, and links and joints that URDF cannot express.
+        The model contains plugins, and links and joints that URDF cannot express.
         """
         model_element = _element_at(robot.element, "model", robot.name)
         for gazebo in self._by_name.get("", ()):

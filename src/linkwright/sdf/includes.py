@@ -22,7 +22,10 @@ from linkwright.xmltree.reader import read_bytes
 _MAX_DEPTH = 64
 """The maximum depth of nested includes."""
 _MOST = 100_000
-"""The maximum number of included models: a few lines can create billions if each model includes another twice."""
+"""The maximum number of included models.
+
+A few lines can create billions of models if each model includes another one twice.
+"""
 
 Entity = Model | Light | Actor
 
@@ -176,7 +179,7 @@ class _Resolver:
         return None
 
     def _check_name(self, entity: Entity | None, include: Include, names: set[str]) -> None:
-        """Report an included model whose name is in `names`, and add its name to them."""
+        """Report an included model whose name is in `names`, and add its name to `names`."""
         if not isinstance(entity, Model):
             return
         if entity.name in names:

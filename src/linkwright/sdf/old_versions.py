@@ -24,7 +24,7 @@ _NEW_NAMES = {
 """The new names of attributes and elements, by the tag of the parent element and the old name."""
 _ORIGIN, _POSE = "origin", "pose"
 _VALUE_ATTRIBUTES = ("pose", "rgba", "xyz", "angle", "enabled", "link", "name")
-"""Attributes that contained the value of an element that now has it as text."""
+"""Attributes whose values became the text of their elements in SDF 1.3."""
 _MATCH_OLD_VERSION = re.compile(r"1\.[012]").fullmatch
 
 

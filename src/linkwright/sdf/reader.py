@@ -103,7 +103,7 @@ WITHOUT_EFFECT = {
     "road": {"material"},
     "metal": {"subsurface"},
 }
-"""Child elements, by their parent, that Linkwright knows and ignores, and those that ros2_control reads itself."""
+"""Child elements, by their parent, that Linkwright recognizes but ignores, and those that ros2_control reads itself."""
 OPEN = frozenset({"plugin", "gui", "state"})
 """Elements with content that other programs define, and the state that Gazebo saved."""
 

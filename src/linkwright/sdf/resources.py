@@ -1,6 +1,6 @@
 """Resolution of the URIs of models and their files.
 
-These are ``model://``, ``package://`` and ``file://`` URIs, paths, and addresses on Fuel.
+The URIs are ``model://``, ``package://`` and ``file://`` URIs, paths, and addresses on Fuel.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ _HOOKED_PATH = re.compile(
     rf"(?:{'|'.join(SEARCH_VARIABLES)})"
     r"(?:;|\s+[\"']?\$\{?(?:AMENT|COLCON)_CURRENT_PREFIX\}?/)share(?:/(?P<path>[^\s\"';:]*))?"
 )
-"""Finds ``VARIABLE;share/PATH`` and ``VARIABLE "$AMENT_CURRENT_PREFIX/share/PATH"`` in environment hooks."""
+"""The pattern of ``VARIABLE;share/PATH`` and ``VARIABLE "$AMENT_CURRENT_PREFIX/share/PATH"`` in environment hooks."""
 _GAZEBO_MEDIA_PREFIX = "media/"
 """The path prefix of files that Gazebo classic ships, such as the meshes of actors."""
 _MEDIA_SUBFOLDERS = ("", "models", "media/models", "Media/models")
@@ -308,7 +308,7 @@ def _around(folder: Path) -> tuple[Path, ...]:
 def model_file(folder: Path) -> Path | Missing:
     """Return the SDF file in a model's folder, or the reason why there is none.
 
-    It is the file with the newest supported version in ``model.config``, or else ``model.sdf``.
+    The file is the one with the newest supported version in ``model.config``, or else ``model.sdf``.
     """
     newest: tuple[int, Path] | None = None
     with suppress(LinkwrightError):

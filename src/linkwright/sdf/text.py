@@ -2,7 +2,7 @@
 
 Their parser, TinyXML2, accepts more than XML allows.
 
-For example, they accept whitespace and comments before the XML declaration, and bytes that are not UTF-8.
+For example, it accepts whitespace and comments before the XML declaration, and bytes that are not UTF-8.
 """
 
 from __future__ import annotations

@@ -32,7 +32,10 @@ _URDF_JOINT_TYPES: dict[str, urdf.JointType] = {
 }
 """The URDF joint type for each SDF type. Joints of any other type become floating joints."""
 _UNBOUNDED = 1e16
-"""The number that SDF uses for an unbounded limit; also written to URDF, which has no value for it."""
+"""The number that SDF uses for an unbounded limit.
+
+It is also written to URDF, which cannot express an unbounded limit.
+"""
 _AMBIENT_INTENSITY, _DIFFUSE_INTENSITY = 0.4, 0.8
 """The intensities of the light in a default Gazebo world, from which sdformat_urdf computes one colour."""
 
@@ -40,7 +43,7 @@ _AMBIENT_INTENSITY, _DIFFUSE_INTENSITY = 0.4, 0.8
 class _ConversionError(Exception):
     """Raised when a model cannot be converted to a robot.
 
-    It carries the reason, the element to report and a hint.
+    The exception contains the reason, the element to report and a hint.
     """
 
     def __init__(self, reason: Phrase, element: Element | None, hint: Phrase | None = None) -> None:
@@ -184,9 +187,9 @@ class _Converter:
         )
 
     def _frame(self, link: str, parent_joints: dict[str, Joint]) -> Transform:
-        """Return the pose in the model of the frame that a link has in URDF.
+        """Return the pose of a link's URDF frame in the model.
 
-        It is the frame of the parent joint or, for the root link, the frame of the link.
+        The URDF frame of a link is the frame of the parent joint or, for the root link, the frame of the link.
         """
         return self._frames.pose(parent_joints[link].name if link in parent_joints else link)
 

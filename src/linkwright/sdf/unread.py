@@ -38,7 +38,7 @@ def links_of_static_models(elements: Iterable[Element]) -> frozenset[int]:
 def changes_nothing(child: Element, parent: Element, static_links: frozenset[int]) -> bool:
     """Return whether reading an element would make no difference.
 
-    The element is then empty, repeats a default, or is not defined in SDF and has the value zero or false.
+    Examples are an empty element, a scale of 1, and an element that SDF does not define with the value zero or false.
     """
     if (parent.tag, child.tag) in _HARMLESS_PAIRS or (child.tag == "static" and id(parent) in static_links):
         return True

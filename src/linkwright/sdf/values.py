@@ -19,7 +19,7 @@ _NUMBER_PATTERN = re.compile(
     r"[+-]?(?:(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?|inf(?:inity)?|nan)", re.IGNORECASE
 )
 _STREAM_NUMBER = r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
-"""Matches a number as C++ reads it from a stream."""
+"""The pattern of a number as C++ reads it from a stream."""
 _TRUTH_VALUES = {"true": True, "1": True, "false": False, "0": False}
 
 Color = tuple[float, float, float, float]
@@ -58,7 +58,7 @@ def _joined(values: Iterable[float]) -> str:
 def leading_number(text: str) -> float | None:
     """Return the number at the start of a text, or None if there is none.
 
-    This is what ``std::stod`` reads in libsdformat.
+    libsdformat reads the same number with ``std::stod``.
     """
     number_match = _NUMBER_PATTERN.match(text.strip())
     return None if number_match is None else float(number_match[0])
@@ -67,7 +67,7 @@ def leading_number(text: str) -> float | None:
 def leading_numbers(text: str, count: int) -> tuple[float, ...] | None:
     """Return the first `count` numbers of a text, or None if there are fewer.
 
-    This is what the operator ``>>`` reads in libsdformat.
+    libsdformat reads the same numbers with the operator ``>>``.
     """
     numbers_match = re.match(rf"\s*{_STREAM_NUMBER}(?:\s+{_STREAM_NUMBER}){{{count - 1}}}", text)
     return None if numbers_match is None else tuple(map(float, numbers_match[0].split()))
@@ -138,7 +138,7 @@ TIME = ValueType("seconds, or seconds and nanoseconds", _time, plain)
 POSE = ValueType("6 numbers", _pose_numbers, _joined)
 
 COUNTS = {VECTOR2: 2, VECTOR3: 3, COLOR: 4, POSE: 6}
-"""How many numbers a value has, by type."""
+"""The number of components of a value, by type."""
 
 
 def choice(*names: str) -> ValueType:

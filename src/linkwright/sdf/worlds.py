@@ -139,7 +139,7 @@ class Sdf:
 def gravity_of(world: World) -> Vector3:
     """Return the effective gravity of a world in m/s2.
 
-    This is the world's own gravity, or the gravity of its physics (up to SDF 1.5), or the default.
+    The world's own gravity takes precedence over the gravity of its physics (up to SDF 1.5), and over the default.
     """
     if world.gravity is not None:
         return world.gravity
@@ -154,7 +154,7 @@ def with_populations(world: World) -> World:
 
 
 def physics_of(world: World) -> Physics:
-    """Return the physics settings to use: those marked as default, or else the first.
+    """Return the physics settings that a world marks as default, or else the first settings.
 
     For a world without physics settings, return SDF's defaults.
     """

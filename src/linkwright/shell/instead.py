@@ -17,7 +17,7 @@ _ROS2_HINT = phrase(
     "this is a ROS 1 command; the commands of ROS 2 begin with `ros2`, as in `ros2 launch` and `ros2 topic list`"
 )
 _SIMULATION_HINT = phrase(
-    "run a launch file that starts it, which uses Linkwright's simulation: `ros2 launch "
+    "run a launch file, which starts Linkwright's simulation instead: `ros2 launch "
     "gazebo_ros gazebo.launch.py world:=FILE`"
 )
 

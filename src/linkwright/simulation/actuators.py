@@ -9,7 +9,7 @@ from linkwright.sdf.poses import SEPARATOR
 from linkwright.simulation.scene.scene import Scene
 
 _SERVO_SPEED = 2.0
-"""The default speed of a servo in rad/s or m/s."""
+"""The speed of a servo if neither the caller nor the joint limits it, in rad/s or m/s."""
 
 
 class ActuatedSimulation(Protocol):
@@ -105,7 +105,8 @@ class Servo:
         simulation: the simulation that contains the joint.
         joint: the name of the joint.
         name: the name of the constraint that holds the joint.
-        speed: the maximum speed in rad/s (or m/s), limited to the joint's speed limit; infinite if there is no limit.
+        speed: the maximum speed in rad/s (or m/s), limited to the joint's speed limit. If both are infinite, the servo
+            moves at 2 rad/s (or m/s).
     """
 
     def __init__(self, simulation: ActuatedSimulation, joint: str, name: str, speed: float) -> None:

@@ -13,7 +13,9 @@ from linkwright.diagnostics import missing_extra
 
 @cache
 def load_mujoco() -> Any:
-    """Return the module ``mujoco``, which has no type annotations.
+    """Return the module ``mujoco``, with its printed warnings disabled.
+
+    The module has no type annotations.
 
     Raises:
         LinkwrightError: SIM101, MuJoCo is not installed.
@@ -27,4 +29,7 @@ def load_mujoco() -> Any:
 
 
 def _discard_warning(text: str) -> None:
-    """Discard a MuJoCo warning: callers find the warnings in MuJoCo's data and report them."""
+    """Discard a MuJoCo warning.
+
+    Callers read the warnings from MuJoCo's data instead, and report them.
+    """

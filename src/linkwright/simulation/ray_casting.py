@@ -31,8 +31,8 @@ def cast(
     Args:
         model: MuJoCo's model.
         data: MuJoCo's data.
-        origin: the common origin of the rays, shape (3,), in m.
-        rays: the directions of the rays as unit vectors, shape (rays, 3).
+        origin: the common origin of the rays in the world, shape (3,), in m.
+        rays: the directions of the rays in the world as unit vectors, shape (rays, 3).
         groups: for each geom group, 1 if the rays can hit its geoms and 0 otherwise, shape (GROUPS,).
         apart_from: the index of a body that the rays pass through; -1 for none.
         reach: the maximum length of the rays, in m.

@@ -31,18 +31,18 @@ from linkwright.simulation.solving import Solving
 _MAX_VALUE = 1e10
 """A position or velocity of at least this value, in m, rad, m/s or rad/s, counts as unstable, as in MuJoCo."""
 _SAFE_SQUARED_SUM = _MAX_VALUE * _MAX_VALUE
-"""If the sum of squares is below this bound, no single value exceeds `_BEYOND`."""
+"""If the sum of squares is below this bound, no single value exceeds `_MAX_VALUE`."""
 
 
 class UnstableError(LinkwrightError):
-    """Raised when a position or velocity is not finite or is out of bounds (SIM120)."""
+    """The error SIM120: a position or velocity is not finite or is out of bounds."""
 
 
 class Simulation:
     """A simulated world.
 
-    The class never waits and does not use real time: `advance` computes as fast as it can, and the same calls give the
-    same bits. Only one thread at a time may use a simulation.
+    The class never waits and does not use real time: `advance` computes as fast as it can, and the same calls give
+    exactly the same results. Only one thread at a time may use a simulation.
 
     Args:
         world: the world, with its includes resolved.
@@ -179,7 +179,7 @@ class Simulation:
         self._is_current = False
 
     def _on_jump(self, body: Any) -> None:
-        """Record that a body of MuJoCo's model was placed where it may overlap with other bodies."""
+        """Wake the tree of a body that was moved, and limit the speed at which overlaps separate."""
         self._stepper.expect_overlaps()
         self._sleep.wake_tree(int(self.model.body_treeid[body]))
         self._is_current = False
@@ -230,7 +230,7 @@ class Simulation:
         Args:
             joint: the name of the joint.
             speed: the maximum speed in rad/s (or m/s), limited to the joint's speed limit. If both are infinite, the
-                maximum speed is 2.
+                servo moves at 2 rad/s (or m/s).
         """
         servo = Servo(self, joint, self.scene.add_servo(joint), speed)
         self._new_servos.append(servo)
@@ -407,7 +407,7 @@ class Simulation:
         return float(self.model.body_subtreemass[self.model.body(self._root(name)[0]).id])
 
     def wheel_radius(self, link: str) -> float | None:
-        """Return the largest radius in m of a wheel's round collisions, or None.
+        """Return the largest radius in m of a wheel's round collisions, or None if there is none.
 
         Raises:
             KeyError: there is no such link.

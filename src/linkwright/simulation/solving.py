@@ -16,7 +16,7 @@ from linkwright.simulation.sleep import Sleep
 _MIN_MOTORS, _MIN_TREES = 16, 8
 """The minimum numbers of motors and trees for which solving all bodies together may be faster."""
 _ISLAND_COST, _AWAKE_COST = 80, 300
-"""Costs of an island besides its motors, and of a tree that is not asleep; in motors that are iterated over.
+"""The costs of an island without its motors, and of a tree that is awake, in units of a motor's cost.
 
 Measured with 4 to 100 mbots: an island costs 2.5 us, and 0.03 us for each motor; mbot itself, as a box, 9 us.
 """
@@ -29,7 +29,7 @@ _CHECKS_TOGETHER = 50
 class Solving:
     """A selector of the solver of a simulation.
 
-    The selection depends only on the state of the simulation, so that the same calls give the same bits.
+    The selection depends only on the state of the simulation, so the same calls give exactly the same results.
 
     Args:
         schedule: the schedule of the simulation.

@@ -1,4 +1,4 @@
-"""Makes the stand-ins importable as ``launch``, ``rclpy`` and so on."""
+"""Activation of the stand-ins, which makes them importable as ``launch``, ``rclpy`` and so on."""
 
 from __future__ import annotations
 
@@ -47,9 +47,9 @@ def activate() -> None:
 
 
 class _LazyInterfaceFinder:
-    """Installs the interface finders on the first import of a module such as ``std_msgs.msg``.
+    """A finder that installs the interface finders on the first import of an interface module.
 
-    It is last on ``sys.meta_path``, and does not derive from the abstract base class, which is slow to import.
+    The finder is last on ``sys.meta_path``. It does not derive from the abstract base class, which is slow to import.
     """
 
     def find_spec(
@@ -70,7 +70,7 @@ class _LazyInterfaceFinder:
 
 
 class _WorkspaceModuleFinder:
-    """Finds Python modules of the workspace's packages for users' launch files and modules."""
+    """A finder of the Python modules of workspace packages, for users' launch files and modules."""
 
     def find_spec(
         self,

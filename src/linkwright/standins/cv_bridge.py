@@ -43,7 +43,7 @@ def getCvType(encoding_name: str) -> int:  # name as in cv_bridge
 
 
 class CvBridge:
-    """Converts between sensor_msgs images and numpy arrays.
+    """A converter between sensor_msgs images and numpy arrays.
 
     Attributes:
         cvtype_to_name: OpenCV's names of pixel types without ``CV_``, such as ``8UC3``, by OpenCV's type number.

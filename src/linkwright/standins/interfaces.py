@@ -25,7 +25,7 @@ from linkwright.messages.message import ActionType, ServiceType
 
 
 class InterfaceFinder(MetaPathFinder):
-    """Finds interface packages and their modules, such as ``std_msgs.msg`` and its submodules."""
+    """A finder of interface packages and their modules, such as ``std_msgs.msg``."""
 
     def find_spec(
         self,
@@ -38,7 +38,7 @@ class InterfaceFinder(MetaPathFinder):
 
 
 class NamespaceFinder(MetaPathFinder):
-    """Finds ``my_msgs.msg`` in source folders, instead of Python's namespace packages.
+    """A finder of ``my_msgs.msg`` in source folders, in place of Python's namespace packages.
 
     If a package's sources are on the path, such as ``my_msgs/msg`` with ``.msg`` files, Python's own finder creates an
     empty namespace package for the folder. This finder therefore comes before Python's finder, and handles interface
@@ -103,7 +103,7 @@ def _interfaces(package: str, kind: str) -> list[str]:
 
 
 class _PackageLoader(Loader):
-    """Creates the module of an interface package, which contains only submodules."""
+    """A loader of the module of an interface package, which contains only submodules."""
 
     def create_module(self, spec: ModuleSpec) -> ModuleType | None:
         return None
@@ -120,7 +120,7 @@ class _PackageLoader(Loader):
 
 
 class _KindLoader(Loader):
-    """Creates a module such as ``<package>.msg``, whose classes are created on first use."""
+    """A loader of a module such as ``<package>.msg``, whose classes are created on first use."""
 
     def __init__(self, names: list[str]) -> None:
         self._names = names
@@ -153,7 +153,7 @@ class _KindLoader(Loader):
 
 
 class _InterfaceLoader(Loader):
-    """Creates a module such as ``std_srvs.srv._set_bool``, with the same classes as rosidl's."""
+    """A loader of a module such as ``std_srvs.srv._set_bool``, with the same classes as rosidl's."""
 
     def __init__(self, type_name: str) -> None:
         self._type_name = type_name

@@ -81,7 +81,9 @@ class Subscriber(SimpleFilter):
 
 
 class Cache(SimpleFilter):
-    """Caches the newest messages of a filter for lookups by time, and forwards each message.
+    """A cache of the newest messages of a filter for lookups by time.
+
+    The cache also forwards each message.
 
     Args:
         f: the filter.
@@ -145,7 +147,7 @@ class Cache(SimpleFilter):
 
 
 class TimeSynchronizer(SimpleFilter):
-    """Outputs sets of messages with the same stamp, one message from each filter.
+    """A filter that outputs sets of messages with the same stamp, one from each input filter.
 
     Args:
         fs: the filters.
@@ -185,7 +187,7 @@ class TimeSynchronizer(SimpleFilter):
 
 
 class ApproximateTimeSynchronizer(TimeSynchronizer):
-    """Outputs sets of messages, one from each filter, whose stamps are close together.
+    """A filter that outputs sets of messages with similar stamps, one from each input filter.
 
     Args:
         fs: the filters.

@@ -67,7 +67,7 @@ def _finder_for_path(path: str) -> _Finder:
 
 
 class _Finder:
-    """Finds the modules of one package, or all packages that have a table."""
+    """A finder of the modules of one package, or of all packages that have a table."""
 
     def __init__(self, package: str) -> None:
         self._package = package
@@ -86,7 +86,7 @@ class _Finder:
 
 
 class _Loader:
-    """Creates a module that imports its names on first use."""
+    """A loader that creates a module whose names are imported on first use."""
 
     def __init__(self, entries: table.Module) -> None:
         self._described = entries

@@ -18,7 +18,10 @@ from linkwright.graph.time.values import ClockType, Duration, Time
 
 @dataclass(slots=True)
 class StorageOptions:
-    """The location and format of a recording, and the limits at which it is split into files."""
+    """The location and format of a recording, and the limits at which it is split into files.
+
+    Sizes are in bytes, durations in seconds, and times in nanoseconds since the epoch.
+    """
 
     uri: str
     storage_id: str = ""
@@ -46,9 +49,9 @@ class ConverterOptions:
 
 @dataclass(slots=True)
 class StorageFilter:
-    """Selects topics by name and by regular expression.
+    """A filter that selects topics by name and by regular expression.
 
-    By default, it selects all topics.
+    By default, the filter selects all topics.
     """
 
     topics: list[str] = field(default_factory=list)
@@ -125,7 +128,7 @@ class TopicMetadata:
             setattr(self, name, value)
 
     def equals(self, other: TopicMetadata) -> bool:
-        """Return whether the metadata of another topic are equal."""
+        """Return whether this metadata equals that of another topic."""
         return self == other
 
 
@@ -188,9 +191,9 @@ class BagMetadata:
 
 
 class MetadataIo:
-    """Reads and writes ``metadata.yaml``.
+    """A reader and writer of ``metadata.yaml`` files.
 
-    It is written in version 8, for Humble and later.
+    The files are written in version 8, for Humble and later.
     """
 
     def metadata_file_exists(self, uri: str) -> bool:

@@ -185,7 +185,7 @@ class _Transport:
 
 
 class Recorder(_Transport):
-    """Records topics until `cancel` is called."""
+    """A recorder of topics, which runs until `cancel` is called."""
 
     def record(
         self, storage_options: StorageOptions, record_options: RecordOptions, node_name: str = "rosbag2_recorder"
@@ -217,7 +217,7 @@ class Recorder(_Transport):
 
 
 class Player(_Transport):
-    """Plays recordings."""
+    """A player of recordings."""
 
     def play(self, storage_options: StorageOptions, play_options: PlayOptions) -> None:
         """Play a recording until it ends or `cancel` is called.
@@ -259,7 +259,7 @@ class Player(_Transport):
 
 
 class Reindexer:
-    """Rebuilds the metadata of recordings."""
+    """A tool that rebuilds the metadata of recordings."""
 
     def reindex(self, storage_options: StorageOptions) -> None:
         """Rebuild the ``metadata.yaml`` of a recording from its files.

@@ -67,7 +67,7 @@ def compression_mode_to_string(mode: CompressionMode) -> str:
 
 
 class SequentialReader:
-    """Reads messages in the order of their timestamps."""
+    """A reader of messages in the order of their timestamps."""
 
     def __init__(self) -> None:
         self._bag: BagReader | None = None
@@ -254,7 +254,7 @@ def _time(stamp_ns: int) -> Time:
 
 
 class SequentialWriter:
-    """Writes messages.
+    """A writer of recordings.
 
     The recording is complete after the writer is closed or garbage collected.
     """
@@ -360,7 +360,7 @@ class SequentialCompressionWriter(SequentialWriter):
 
 
 class Info:
-    """Reads the metadata of recordings."""
+    """A reader of the metadata of recordings."""
 
     def read_metadata(self, uri: str, storage_id: str = "") -> BagMetadata:
         """Return the metadata of a recording.
@@ -377,7 +377,7 @@ class Info:
 
 
 class LocalMessageDefinitionSource:
-    """Provides the definitions of message types."""
+    """A source of the definitions of message types."""
 
     def get_full_text(self, root_topic_type: str) -> MessageDefinition:
         """Return the definition of a type.

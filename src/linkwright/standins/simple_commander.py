@@ -49,7 +49,7 @@ _ACTION_TYPES = {
 
 
 class BasicNavigator(Node):
-    """Sends tasks to nav2.
+    """A node that sends tasks to nav2.
 
     A task runs in the background until `isTaskComplete` returns True.
 

@@ -95,7 +95,7 @@ def packages() -> list[str]:
 def read(package: str) -> dict[str, Module]:
     """Return the modules of a package by full name.
 
-    A package without a table has none.
+    For a package without a table, the result is empty.
     """
     try:
         text = (FOLDER / f"{package}.txt").read_text(encoding="utf-8")

@@ -224,7 +224,8 @@ def quaternion_slerp(
         quat0: the quaternion for fraction 0.
         quat1: the quaternion for fraction 1.
         fraction: the position between the two quaternions, from 0 to 1.
-        spin: the number of additional half turns.
+        spin: the number of additional full turns of the body. As in transformations.py, the result is a unit
+            quaternion only if the number is even.
         shortestpath: whether to take the path with the smaller angle.
     """
     q0, q1 = unit_vector(np.asarray(quat0, dtype=float)[:4]), unit_vector(np.asarray(quat1, dtype=float)[:4])
@@ -321,7 +322,7 @@ def compose_matrix(
         shear: the factors for x-y, x-z and y-z.
         angles: the Euler angles (``sxyz``) in radians.
         translate: the translation vector.
-        perspective: the last row of the matrix.
+        perspective: the last row of the matrix of the projection.
     """
     matrix = np.eye(4)
     if perspective is not None:
@@ -341,7 +342,7 @@ def compose_matrix(
 
 
 def decompose_matrix(matrix: ArrayLike) -> tuple[Vector, list[float], list[float], Vector, Vector]:
-    """Return the scale, shear, Euler angles (``sxyz``), translation and last row of a matrix.
+    """Return the scale, shear, Euler angles (``sxyz``), translation and perspective of a matrix.
 
     This is the inverse of `compose_matrix`.
 

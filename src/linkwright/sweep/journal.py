@@ -48,7 +48,7 @@ class Journal:
         if resume:
             if not is_present:
                 message = phrase("there is no unfinished sweep '{path}'", path=display_path(table))
-                hint = phrase("omit `--resume` to start one")
+                hint = phrase("omit `--resume` to start a new sweep")
                 raise LinkwrightError(Diagnostic("SWEEP109", message, hint=hint))
             self._read()
         elif is_present:

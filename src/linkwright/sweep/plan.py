@@ -54,7 +54,7 @@ def with_values(scenario: Scenario, texts: Mapping[str, str], seeds: int | None)
     Args:
         scenario: the scenario.
         texts: for the name of each changed parameter, YAML values separated by commas.
-        seeds: the number of seeds, from 0 on; None for the seeds of the file.
+        seeds: the number of seeds, starting at 0; None for the seeds of the file.
 
     Raises:
         LinkwrightError: SWEEP106, there is no such parameter; SWEEP105, the values are not valid.
@@ -69,7 +69,7 @@ def with_values(scenario: Scenario, texts: Mapping[str, str], seeds: int | None)
 
 
 def fingerprint(scenario: Scenario, runs: Sequence[Run]) -> str:
-    """Return a hash of the scenario's file and of its runs."""
+    """Return a hash of the scenario's file, and of the parameters and seeds of the runs."""
     plan = json.dumps([(run.parameters, run.seed) for run in runs])
     return hashlib.sha256(scenario.path.read_bytes() + plan.encode()).hexdigest()
 

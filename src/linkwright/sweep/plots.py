@@ -21,7 +21,7 @@ _POINT_RADIUS = 3.0
 class Axis:
     """An axis of a plot.
 
-    Calling it converts a value to a coordinate in the drawing.
+    Calling an axis converts a value to a coordinate in the drawing.
 
     Attributes:
         low, high: the values at both ends.
@@ -97,7 +97,8 @@ def scatter(
 ) -> str:
     """Return a scatter plot of a result against a parameter, in SVG.
 
-    It has a point for each run, and a line through the mean results of equal parameter values.
+    The plot has a point for each run, up to `_MAX_POINTS`, and a line through the mean results of equal parameter
+    values.
     """
     is_numeric = all(isinstance(value, int | float) and not isinstance(value, bool) for value in parameter_values)
     names = [] if is_numeric else list(dict.fromkeys(map(str, parameter_values)))
@@ -124,7 +125,7 @@ def scatter(
 def _mean_line(positions: Sequence[float], values: Sequence[float], x_axis: Axis, y_axis: Axis) -> str:
     """Return a line through the mean of the values at each position, in SVG.
 
-    It is empty if there is only one position, or if there are few values for each position.
+    The line is empty if there is only one position, or if there are few values for each position.
     """
     groups: dict[float, list[float]] = {}
     for position, value in zip(positions, values, strict=True):

@@ -21,10 +21,13 @@ _RUNS_PER_PROCESSOR = 2
 """The number of runs that are submitted ahead for each processor of the cluster."""
 
 _PATIENCE = 10.0
-"""The seconds that a machine has to answer."""
+"""The timeout of a connection to the cluster, in seconds."""
 
 _scenario: Scenario | None = None
-"""The scenario that this process of the cluster has loaded. Ray uses a process for several runs."""
+"""The scenario that this process of the cluster has loaded.
+
+Ray uses a process for several runs.
+"""
 
 
 def run_on_ray(path: Path, runs: Iterable[Run], address: str, report: Report) -> None:
@@ -61,9 +64,7 @@ def run_on_ray(path: Path, runs: Iterable[Run], address: str, report: Report) ->
                     if attempts[run.row] < MAX_ATTEMPTS:
                         pending.appendleft(run)
                     else:
-                        report(
-                            Outcome(run.row, error=f"the process that ran it was lost, twice: {type(error).__name__}")
-                        )
+                        report(Outcome(run.row, error=f"the process of the run was lost twice: {type(error).__name__}"))
     finally:
         ray.shutdown()
 
@@ -85,7 +86,7 @@ def _connect(path: Path, address: str) -> Any:
     except (ConnectionError, ValueError, RuntimeError, OSError) as error:
         reason = foreign(" ".join(str(error).split()))
         message = phrase("there is no Ray cluster at '{address}': {reason}", address=address, reason=reason)
-        hint = phrase("start one with `ray start --head`, and use the address 'auto' on that machine")
+        hint = phrase("start a cluster with `ray start --head`, and use the address 'auto' on that machine")
         raise LinkwrightError(Diagnostic("SWEEP114", message, hint=hint)) from None
     return ray
 

@@ -33,7 +33,7 @@ _DECLARATION_ATTRIBUTE = "__linkwright_scenario__"
 _MODULE_NAME = "linkwright_scenario"
 SEED = "seed"
 COLUMNS = ("row", SEED, "error")
-"""The names of the columns that every table has. No parameter or result can have these names."""
+"""The names of the columns of every table. Parameters and results cannot have these names."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,7 +59,10 @@ class Normal:
 
 
 Values = Sequence[Value] | Uniform | Normal
-"""The values of a parameter: a list, or a distribution from which one value is drawn for each seed."""
+"""The values of a parameter: a list or a distribution.
+
+One value is drawn from a distribution for each seed.
+"""
 
 
 @dataclass(frozen=True)
@@ -208,7 +211,7 @@ def _check_names(function: Callable[..., object], parameters: Mapping[str, objec
         message = phrase(
             "a parameter cannot be named {names}: the table already has this column", names=quoted_names(reserved)
         )
-        hint = phrase("give it another name")
+        hint = phrase("rename the parameter")
     elif unknown:
         message = phrase(
             "the function '{function}' does not accept {names}", function=function.__name__, names=quoted_names(unknown)
@@ -243,7 +246,7 @@ def _load_module(path: Path) -> ModuleType:
     except SyntaxError as error:
         line, column = error.lineno or 1, error.offset or 1
         span = Span(display_path(Path(error.filename or path)), line, column, line, column)
-        message = phrase("this is not valid Python: {reason}", reason=foreign(error.msg))
+        message = phrase("the file is not valid Python: {reason}", reason=foreign(error.msg))
         raise LinkwrightError(Diagnostic("SWEEP102", message, span)) from None
     except OSError as error:
         if error.filename != str(path):

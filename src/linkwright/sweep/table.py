@@ -51,7 +51,7 @@ class Table:
 
     @property
     def failed(self) -> list[int]:
-        """The indices in the columns of the rows that have an error."""
+        """The indices of the rows with an error."""
         return [index for index, error in enumerate(self.columns["error"]) if error]
 
 

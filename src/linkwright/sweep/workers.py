@@ -60,7 +60,7 @@ def run_locally(path: Path, runs: Iterable[Run], workers: int, report: Report) -
                 if attempts[run.row] < MAX_ATTEMPTS:
                     pending.appendleft(run)
                 else:
-                    report(Outcome(run.row, error=f"the process that ran it {exit_description}, twice"))
+                    report(Outcome(run.row, error=f"the process of the run {exit_description}, twice"))
     finally:
         for worker in (*busy_workers.values(), *idle_workers):
             worker.stop()
@@ -69,7 +69,7 @@ def run_locally(path: Path, runs: Iterable[Run], workers: int, report: Report) -
 
 
 class _Worker:
-    """A process that executes one run after another, with a connection to it."""
+    """A process that executes one run after another, and the connection to it."""
 
     def __init__(self, path: Path) -> None:
         spawn = multiprocessing.get_context("spawn")

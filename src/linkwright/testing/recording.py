@@ -22,9 +22,9 @@ class Recording:
 
     The method ``record`` of a stepped graph creates a recording.
 
-    The subscription is created when a node first publishes or subscribes to the topic, which determines its type. A
-    recording can therefore be created before the node under test. Messages that a transient local publisher stores are
-    included.
+    Without a message type, the recording subscribes when a node first publishes or subscribes to the topic, because
+    this node determines the type. A recording can therefore be created before the node under test. Messages that a
+    transient local publisher stores are included.
 
     Attributes:
         topic: the absolute name of the topic.

@@ -260,7 +260,7 @@ class SteppedSimulation(SteppedGraph):
     ``/pause_physics`` and so on; `spawn` and `delete` do the same as the first two services.
 
     Topics have the same names as in ``linkwright sim``: ``/cmd_vel``, ``/odom``, ``/scan``. Worlds and robots are read
-    once per process; a robot whose files have changed is read again.
+    once per process, and again if their files have changed.
 
     Args:
         world: an SDF file, or the name of a world.

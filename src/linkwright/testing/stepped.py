@@ -156,7 +156,7 @@ class AsyncSteppedGraph:
         Args:
             service: the name of the service.
             request: the request message.
-            timeout: the maximum time to advance until the response arrives, in seconds.
+            timeout: the time to advance if the response does not arrive immediately, in seconds.
 
         Returns:
             The response.

@@ -45,7 +45,7 @@ class SteppedGraph:
         start: the time of day at the start, in seconds since the epoch.
         strict: whether the step in which a callback fails raises the callback's error; otherwise errors are only
             logged.
-        steps: the asynchronous graph to wrap, with which `start` and `strict` are not used; None to create one.
+        steps: the asynchronous graph to wrap, for which `start` and `strict` are ignored; None to create one.
     """
 
     def __init__(

@@ -190,7 +190,7 @@ class Robot:
     Attributes:
         version: the file's ``version`` attribute as (major, minor), or (1, 0) if it is missing.
         root: the name of the only link without a parent joint.
-        extensions: the elements that other rooms read: ``gazebo``, ``ros2_control``, ``transmission``, ``sensor``, ...
+        extensions: the elements for other packages: ``gazebo``, ``ros2_control``, ``transmission``, ``sensor``, ...
     """
 
     name: str

@@ -16,8 +16,8 @@ from __future__ import annotations
 
 import re
 from collections import defaultdict
-from collections.abc import Iterable
-from itertools import takewhile
+from collections.abc import Iterable, Mapping
+from itertools import dropwhile, takewhile
 
 from linkwright.diagnostics import Diagnostic, Note, Phrase, did_you_mean, joined, phrase
 from linkwright.loading.deferred import lazy_pattern
@@ -103,7 +103,7 @@ def _resolve_visual(fields: dict[str, Any], materials: MaterialTable, owner: Ele
 
 
 class MaterialTable:
-    """The materials defined so far, by name, and the references to undefined ones."""
+    """The materials defined so far, by name, and the references to undefined materials."""
 
     __slots__ = ("_findings", "_undefined", "materials")
 
@@ -137,7 +137,7 @@ class MaterialTable:
     def resolve(self, material: Material, owner: Element) -> Material | None:
         """Return the material that applies to a visual, or None if it is not yet defined.
 
-        A name that is defined here for the first time is added to the table.
+        A material that the visual defines under a new name is added to the table.
         """
         is_definition = material.rgba is not None or material.texture is not None
         if not material.name:
@@ -152,7 +152,7 @@ class MaterialTable:
         return known
 
     def report_undefined(self) -> None:
-        """Report the references to materials that were not defined at that point."""
+        """Report the references to materials without a previous definition."""
         for material, owner in self._undefined:
             element = material.element
             assert element is not None
@@ -177,8 +177,8 @@ def read_material(element: Element, owner: Element, findings: UrdfReport) -> Mat
 def read_joint(element: Element, findings: UrdfReport) -> Joint:
     """Return a joint.
 
-    If it cannot be read, report this and mark the model as refused. As in urdfdom, the axis is 1 0 0 without
-    ``<axis>``, but 0 0 0 for an ``<axis>`` without 'xyz'.
+    If the joint has errors, they are reported, and the model is marked as refused. As in urdfdom, the axis is 1 0 0
+    without ``<axis>``, but 0 0 0 for an ``<axis>`` without 'xyz'.
     """
     errors_before = findings.error_count
     rule = JOINT if element.attributes.get("type") in _AXIS_TYPES else _WITHOUT_AXIS
@@ -234,6 +234,7 @@ _OTHER_FORMATS = {
 }
 _MODEL_TAGS = frozenset({"link", "joint", "material"})
 _MAX_NAMES = 3
+_MAX_CYCLE = 8
 
 PartT = TypeVar("PartT", Link, Joint)
 
@@ -378,6 +379,7 @@ def _check_mimics(joints: dict[str, Joint], findings: UrdfReport) -> None:
 
     urdfdom does not check this.
     """
+    cycles = _mimic_cycles(joints)
     for joint in joints.values():
         if joint.mimic is None:
             continue
@@ -391,18 +393,29 @@ def _check_mimics(joints: dict[str, Joint], findings: UrdfReport) -> None:
                 "URDF180", message, element, "joint", hint=did_you_mean(target, joints.keys() - {joint.name})
             )
             continue
-        chain = [joint.name]
-        while target in joints and target not in chain:
-            chain.append(target)
-            mimic = joints[target].mimic
-            if mimic is None:
-                break
-            target = mimic.joint
-        else:
-            if target == joint.name:
-                message = phrase("joint '{name}' mimics itself", name=joint.name)
-                if len(chain) > 1:
-                    message = phrase("the mimic joints form a cycle: {value}", value=" -> ".join([*chain, target]))
-                findings.warning(
-                    "URDF181", message, element, "joint", hint=phrase("remove <mimic> from one of the joints")
-                )
+        if joint.name in cycles:
+            message = phrase("joint '{name}' mimics itself", name=joint.name)
+            if target != joint.name:
+                value = " -> ".join((*cycles[joint.name], joint.name))
+                message = phrase("the mimic joints form a cycle: {value}", value=value)
+            findings.warning("URDF181", message, element, "joint", hint=phrase("remove <mimic> from one of the joints"))
+
+
+def _mimic_cycles(joints: Mapping[str, Joint]) -> dict[str, list[str]]:
+    """Return the mimic joints on a cycle, each with the cycle from it on, shortened after some names."""
+    leaders = {joint.name: joint.mimic.joint for joint in joints.values() if joint.mimic is not None}
+    cycles: dict[str, list[str]] = {}
+    seen: set[str] = set()
+    for start in leaders:
+        path: dict[str, None] = {}
+        name = start
+        while name in leaders and name not in seen:
+            seen.add(name)
+            path[name] = None
+            name = leaders[name]
+        if name in path:
+            cycle = [*dropwhile(name.__ne__, path)]
+            twice, more = [*cycle, *cycle], ["..."] if len(cycle) > _MAX_CYCLE else []
+            shown = min(len(cycle), _MAX_CYCLE)
+            cycles.update((name, [*twice[k : k + shown], *more]) for k, name in enumerate(cycle))
+    return cycles

@@ -90,7 +90,7 @@ class Findings:
         hint: Phrase | None = None,
         notes: Sequence[Note] = (),
     ) -> None:
-        """Report a construct that urdfdom silently accepts but that is probably not intended."""
+        """Report a construct that urdfdom silently accepts, although it is probably not intended."""
         self._add(Severity.WARNING, code, message, element, attribute, hint, notes)
 
     def duplicate(self, kind: str, name: str, element: Element, first: Element | None) -> None:
@@ -332,7 +332,7 @@ def _number_hint(rule: ElementRule, attribute: AttributeRule, value: str) -> Phr
 
 
 def _joint_type_hint(type_text: str) -> Phrase:
-    """Return a hint on how to correct an unknown joint type."""
+    """Return a hint for correcting an unknown joint type."""
     lower_case = type_text.strip().casefold()
     if lower_case in JOINT_TYPES:
         return phrase("write '{text}'", text=lower_case)
@@ -345,7 +345,7 @@ def _joint_type_hint(type_text: str) -> Phrase:
 
 
 def _shape_hint(tag: str, shapes: tuple[ElementRule, ...]) -> Phrase:
-    """Return a hint on how to correct an unknown shape."""
+    """Return a hint for correcting an unknown shape."""
     if tag.startswith("xacro:"):
         return phrase("xacro did not evaluate this: expand the file with xacro first")
     names = [shape.tag for shape in shapes]

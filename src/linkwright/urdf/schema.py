@@ -113,7 +113,7 @@ def check_sizes(geometry: Geometry, shape: Element, owner: Element, findings: Fi
 
 
 def check_link_name(link_names: tuple[str], element: Element, owner: Element, findings: Findings) -> tuple[str]:
-    """Check that a joint's parent or child link has a name that is not empty."""
+    """Check that the name of a joint's parent or child link is not empty."""
     if not link_names[0]:
         message = phrase("'link' in <{tag}> of {owner} is empty", tag=element.tag, owner=owner_name(owner))
         findings.error("URDF124", message, element, "link", hint=phrase("give the name of a link"))
@@ -131,7 +131,7 @@ def check_dynamics(dynamics: Dynamics, element: Element, owner: Element, finding
 
 
 def check_limit(limit: Limit, element: Element, owner: Element, findings: Findings) -> Limit:
-    """Check that bounds are ordered and magnitudes positive, as URDF 1.2 requires.
+    """Check that bounds are ordered and magnitudes not negative, as URDF 1.2 requires.
 
     In the result, a missing deceleration is equal to the acceleration.
     """

@@ -21,7 +21,7 @@ _MAX_VISITS = 64
 def children_of(robot: Robot) -> Mapping[str, tuple[Joint, ...]]:
     """Return the child joints of every link, by link name.
 
-    The joints are ordered by name. A leaf has none.
+    The joints are ordered by name. A leaf has no child joints.
     """
     children: dict[str, list[Joint]] = {name: [] for name in robot.links}
     for _, joint in sorted(robot.joints.items()):
@@ -32,7 +32,7 @@ def children_of(robot: Robot) -> Mapping[str, tuple[Joint, ...]]:
 def parent_joints(robot: Robot) -> Mapping[str, Joint]:
     """Return the parent joint of every link except the root, by link name.
 
-    Of several parent joints, the last one by name counts, as in urdfdom.
+    Of several parent joints, the last joint by name is returned, as in urdfdom.
     """
     return {joint.child: joint for _, joint in sorted(robot.joints.items())}
 

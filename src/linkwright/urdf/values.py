@@ -88,7 +88,7 @@ def numbers(text: str) -> tuple[float, ...]:
 
 
 def number_hint(text: str) -> Phrase | None:
-    """Return a hint on how to correct a value that is not a number, or None."""
+    """Return a hint for correcting a value that is not a number, or None."""
     stripped = text.strip()
     if not stripped:
         return phrase("give a number")
@@ -116,7 +116,7 @@ def number_hint(text: str) -> Phrase | None:
 
 
 def vector_hint(text: str, count: int) -> Phrase | None:
-    """Return a hint on how to correct a value that is not `count` numbers, or None."""
+    """Return a hint for correcting a value that is not `count` numbers, or None."""
     if "${" in text or "$(" in text:
         return number_hint(text)
     if not text.strip():

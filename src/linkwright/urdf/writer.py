@@ -1,4 +1,7 @@
-"""The writer of robots as URDF. The reader returns an equal robot from the text."""
+"""The writer of robots as URDF.
+
+From the text, the reader returns an equal robot.
+"""
 
 from __future__ import annotations
 

@@ -40,7 +40,7 @@ class _Guest:
 
 
 class GuestRecordings:
-    """Shows recordings to the pages that uploaded or made them.
+    """The recordings shown to the pages that uploaded or made them.
 
     Args:
         host: the viewer whose server serves the pages.

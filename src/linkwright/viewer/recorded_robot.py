@@ -63,7 +63,7 @@ def robot_of(bag: BagReader, library: DescriptionLibrary) -> Robot | None:
 
 
 class RecordingWithTransforms:
-    """Publishes a recording, and transforms computed from its joint states.
+    """A publisher of a recording, and of transforms computed from its joint states.
 
     The transforms are the same as robot_state_publisher's. Joints without a joint state are at zero, or in the
     middle of their limits if the limits exclude zero.

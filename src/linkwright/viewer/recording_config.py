@@ -16,7 +16,7 @@ from linkwright.urdf import Robot
 from linkwright.viewer.recorded_robot import description_topic, namespace_of_transforms
 
 _SETTLING_NS = 2_000_000_000
-"""The duration at the start of the transforms after which the frames are read, in nanoseconds."""
+"""The time between the first transform and the reading of the frames, in nanoseconds."""
 
 _PREFERRED_ROOTS = ("map", "odom", "world", "base_link", "base_footprint")
 """The preferred Fixed Frames if there are several root frames, the best first (REP 105)."""

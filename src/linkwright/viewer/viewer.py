@@ -41,7 +41,7 @@ _FIXED_FRAME_PARAMETER = "fixed_frame"
 
 
 class Viewer:
-    """Shows a graph in a browser, as RViz does.
+    """A viewer that shows a graph in a browser, as RViz does.
 
     A viewer must be created while an asyncio loop is running. The edits of pages are in `config`. Pages save them, or
     the program does with `config.save`.
@@ -193,7 +193,7 @@ class Viewer:
 
     @property
     def manager(self) -> VisualizationManager:
-        """The manager that all pages share that do not have a separate configuration."""
+        """The manager shared by all pages without a separate configuration."""
         return self.managers.shared
 
     @property

@@ -32,7 +32,7 @@ class Detections:
         return len(self.scores)
 
     def name(self, index: int) -> str:
-        """Return the class name of the detection with an index."""
+        """Return the class name of the detection at an index."""
         return self.names[int(self.classes[index])]
 
     @classmethod

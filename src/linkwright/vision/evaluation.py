@@ -13,7 +13,7 @@ from linkwright.vision.detections import Detections
 OVERLAPS = tuple(round(0.5 + 0.05 * step, 2) for step in range(10))
 """The minimum intersection over union of a correct box: 0.50, 0.55, ... 0.95."""
 MOST = 100
-"""The maximum number of detections in an image that count, the most certain ones."""
+"""The maximum number of detections per class and image that count, the most certain first."""
 _RECALL_LEVELS: NDArray[np.floating] = np.linspace(0.0, 1.0, 101)
 _CONFUSION_SCORE, _CONFUSION_OVERLAP = 0.5, 0.5
 
@@ -148,9 +148,9 @@ def evaluate(names: Sequence[str], truth: Sequence[GroundTruth], predictions: Se
 
 
 def best_f1_threshold(names: Sequence[str], truth: Sequence[GroundTruth], predictions: Sequence[Detections]) -> float:
-    """Return the score threshold at which F1 over all classes is greatest.
+    """Return the score threshold at which F1 over all classes is highest.
 
-    For the arguments, see `evaluate`; `found` are the predictions.
+    The arguments are those of `evaluate`.
 
     Returns:
         A score between 0.05 and 0.95; 0.5 if no object was found.

@@ -40,7 +40,7 @@ _CLOSE_CHECK_INTERVAL = 0.05
 
 
 class DepartureMonitor(Protocol):
-    """Decides whether a remote publisher that disappeared was lost or left in order."""
+    """Decides whether a remote publisher that disappeared was lost or left in an orderly way."""
 
     def watch(self, lost: Callable[[EndpointInfo], None]) -> None:
         """Register a callback for lost publishers."""
@@ -234,7 +234,7 @@ class BackgroundTransport(ABC):
 
         The callback may be called from any thread.
         """
-        self._outside.watch(partial(run_logged, self._logger, "a callback for changes outside", callback))
+        self._outside.watch(partial(run_logged, self._logger, "a callback for changes to remote nodes", callback))
 
     def watch_lost(self, callback: Callable[[EndpointInfo], None]) -> None:
         """Register a callback for lost remote publishers.
@@ -243,7 +243,7 @@ class BackgroundTransport(ABC):
         """
 
         def notify(publisher: EndpointInfo) -> None:
-            run_logged(self._logger, "a callback for publishers that are lost", partial(callback, publisher))
+            run_logged(self._logger, "a callback for lost publishers", partial(callback, publisher))
 
         self._departed.watch(notify)
         self._do(lambda _: None)  # wakes the engine, which monitors processes from now on
@@ -251,7 +251,7 @@ class BackgroundTransport(ABC):
     def close(self) -> None:
         """Leave the domain, after waiting at most a second for reliable messages to be acknowledged.
 
-        If the domain is still being joined, this method first waits for that, for at most 10 s.
+        If the domain is still being joined, this method first waits until joining ends, for at most 10 s.
         """
         if self._closed:
             return

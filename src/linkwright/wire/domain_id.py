@@ -1,4 +1,4 @@
-"""Reads ROS_DOMAIN_ID, the domain of this process."""
+"""Read ROS_DOMAIN_ID, the domain of this process."""
 
 from __future__ import annotations
 

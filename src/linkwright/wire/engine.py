@@ -35,7 +35,7 @@ class Engine(ABC):
     """
 
     refusal: ClassVar[type[Exception]]
-    """The exception of the wire's library, which is logged without a traceback."""
+    """The exception class of the transport's library, which is logged without a traceback."""
 
     def __init__(self, work: Work, logger: Logger) -> None:
         self._work = work
@@ -47,7 +47,10 @@ class Engine(ABC):
 
     @abstractmethod
     def wake(self) -> None:
-        """Wake the thread that processes the queue of requests. Callable from any thread."""
+        """Wake the thread that processes the queue of requests.
+
+        Any thread may call this method.
+        """
 
     @abstractmethod
     def close(self) -> None:

@@ -1,4 +1,4 @@
-"""Calls functions and reports their exceptions, so that the calling thread continues."""
+"""Call functions and report their exceptions, so that the calling thread continues."""
 
 from __future__ import annotations
 

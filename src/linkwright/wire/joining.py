@@ -1,4 +1,4 @@
-"""Chooses the transport of a process, DDS or Zenoh.
+"""Choose the transport of a process, DDS or Zenoh.
 
 ``RMW_IMPLEMENTATION=rmw_zenoh_cpp`` selects Zenoh, as in ROS 2, and any other value selects DDS. If the variable is not
 set, DDS is used, or Zenoh if only Zenoh is installed.

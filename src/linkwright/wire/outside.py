@@ -19,7 +19,7 @@ class Outside(ABC):
     def __init__(self) -> None:
         self._watchers: list[Callable[[], None]] = []
         self.changed_at = time.monotonic()
-        """The time of the last change, by the steady clock."""
+        """The time of the last change, in seconds of the steady clock."""
 
     @abstractmethod
     def nodes(self) -> list[NodeIdentity]:

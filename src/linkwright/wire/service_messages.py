@@ -1,4 +1,4 @@
-"""Serializes and deserializes requests and responses, for all transports.
+"""Serialize and deserialize requests and responses, for all transports.
 
 This happens in transport threads, which also serve other endpoints. A failure there is logged like the failure of a
 callback, and does not propagate.

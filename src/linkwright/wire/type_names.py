@@ -1,4 +1,4 @@
-"""Converts the names of ROS types to and from their names on the wire, for DDS and Zenoh."""
+"""Convert the names of ROS types to and from their names on the wire, for DDS and Zenoh."""
 
 from __future__ import annotations
 

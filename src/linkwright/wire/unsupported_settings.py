@@ -40,7 +40,7 @@ def refuse_enforced_security(environment: Mapping[str, str] | None = None) -> No
     No node may join the graph without security then.
 
     Args:
-        environment: the environment variables; those of this process if omitted.
+        environment: the environment variables; by default, the variables of this process.
 
     Raises:
         LinkwrightError: DDS121, security is enforced.
@@ -50,7 +50,10 @@ def refuse_enforced_security(environment: Mapping[str, str] | None = None) -> No
         raise LinkwrightError(
             Diagnostic(
                 "DDS121",
-                phrase("ROS_SECURITY_STRATEGY is Enforce, but Linkwright has no DDS security: it does not join"),
+                phrase(
+                    "ROS_SECURITY_STRATEGY is Enforce, but Linkwright does not support DDS security, so it does not "
+                    "join the domain"
+                ),
                 hint=phrase(
                     "set ROS_SECURITY_ENABLE=false for this command, so that it joins nodes without security; "
                     "nodes with security need a real ROS 2"

@@ -26,7 +26,7 @@ class BoundedCache(Generic[_Key, _Value]):
         size_of: the function that returns the size of a value.
 
     Attributes:
-        divisor: what the maximum sizes of all caches are divided by. The limits suit a command that reads a thousand
+        divisor: the divisor of the maximum sizes of all caches. The limits suit a command that reads a thousand
             robots once. A process that runs for days and expands a text again after each edit needs less, because it
             never reads the earlier versions of the text again.
         values: the cached values, by key. This is a plain dict because it is read for each text of a description.

@@ -47,7 +47,7 @@ class CommentSweeper:
         self._marker_siblings: list[Node] | None = None
 
     def sweep(self, siblings: list[Node], *, followed: bool) -> bool:
-        """Remove the comments above a tag, which are at the end of a list of siblings.
+        """Remove the comments directly above a tag from the end of a list of siblings.
 
         Args:
             siblings: the expanded nodes above the tag.

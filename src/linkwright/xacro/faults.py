@@ -1,6 +1,6 @@
 """Mistakes that occur when a text is evaluated, and the origin of elements.
 
-The code that finds a mistake knows the text and the offsets in it, but not the element that contains the text.
+The code that finds a mistake has the text and the offsets in it, but not the element that contains the text.
 Therefore, a `Fault` first has offsets only. The code that evaluates the text of an element adds the location, and
 each property on the way adds a note.
 """
@@ -70,7 +70,7 @@ def frames(innermost: Frame | None) -> Iterator[Frame]:
 def trail(innermost: Frame | None) -> tuple[Note, ...]:
     """Return notes on all frames, innermost first.
 
-    If there are very many frames, the outermost ones are only counted.
+    If there are very many frames, the outermost frames are only counted.
     """
     notes: list[Note] = []
     for site, same_site_frames in groupby(frames(innermost), key=lambda frame: frame.site):
@@ -102,7 +102,7 @@ class InactiveDefinition(NamedTuple):
 
     Attributes:
         note: the message and the location of the definition.
-        hint: how to fix the mistake, or None if the definition does not determine the fix.
+        hint: advice for fixing the mistake, or None if the definition does not determine the fix.
     """
 
     note: Note
@@ -117,7 +117,7 @@ class Fault(Exception):  # noqa: N818 - it becomes a diagnostic, and is not part
         message: the diagnostic's message.
         start: the offset of the mistake in the text being evaluated, or None for the whole text.
         end: the offset after the mistake, or None for the whole text.
-        hint: how to fix the mistake.
+        hint: advice for fixing the mistake.
         span: the location of the mistake, or None until it is known.
         source: the text that contains the span.
         notes: notes on how the evaluation reached this location, innermost first.
@@ -219,7 +219,9 @@ def inactive_definition(
 
 @lru_cache(maxsize=16)
 def _definitions(text: str, tag: str) -> tuple[str, dict[str, int]]:
-    """Return a text with blank comments, and the offset of the first element with a tag for each of their names.
+    """Return a text without its comments, and the offset of the first element with a tag for each name.
+
+    Spaces replace the comments, so that offsets stay valid.
 
     The result is stored, because a description whose arguments are missing has hundreds of undefined names.
     """

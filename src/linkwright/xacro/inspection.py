@@ -32,7 +32,7 @@ def arguments_of(
     limits: Limits | None = None,
     root_dir: str | Path | None = None,
 ) -> tuple[Argument, ...]:
-    """Return the arguments of a file and of its included files, starting with the declared ones.
+    """Return the arguments of a file and of its included files, declared arguments first.
 
     The arguments are also found if the file cannot be expanded without them.
 

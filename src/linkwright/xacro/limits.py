@@ -72,7 +72,7 @@ class recursion_limit_for:  # noqa: N801 - it is called in a ``with`` statement,
                 sys.setrecursionlimit(_before)
 
 
-# --- counting what an expansion does ----------------------------------------------------------------------------------
+# --- counting the steps of an expansion -------------------------------------------------------------------------------
 
 _MAX_CALL_DEPTH = 50
 _LAMBDA_COST = 8

@@ -135,7 +135,7 @@ class MacroTable:
         self._entries[name] = entry
 
     def find(self, name: str) -> Macro | MacroTable | None:
-        """Return the macro or table bound to a name in this table or the enclosing ones, or None."""
+        """Return the macro or table bound to a name in this or an enclosing table, or None."""
         table: MacroTable | None = self
         while table is not None:
             entry = table._entries.get(name)

@@ -84,7 +84,7 @@ class _LeftOutError(Exception):
 
 
 class _PartsExpander(Expander):
-    """An expander that leaves out the parts that fail.
+    """An expander that leaves out parts with errors.
 
     Attributes:
         trusted: whether all names still have the values of the complete expansion.
@@ -182,7 +182,7 @@ class _PartsExpander(Expander):
             self.trusted_remark_count = len(self.session.diagnostics)
 
     def _may_define_names(self, node: Element) -> bool:
-        """Return whether a tag that is left out might have defined a name that later tags use."""
+        """Return whether a tag that was left out might have defined names for later tags."""
         tags = {element.tag for element in node.walk()}
         if tags & _DECLARING_TAGS:
             return True

@@ -38,7 +38,7 @@ class Run:
 
     Attributes:
         nodes: the elements, with the texts and comments between them.
-        size: the number of elements that the nodes count as; eight texts or comments count as one element.
+        size: the number of elements in the nodes, plus one eighth of the number of texts and comments between them.
         height: the maximum nesting depth of the elements.
     """
 

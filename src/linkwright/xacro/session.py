@@ -295,7 +295,7 @@ class Session:
     # findings
 
     def warn_of_unused_arguments(self) -> None:
-        """Warn about passed arguments that no file declares or uses: they may be misspelt."""
+        """Warn about passed arguments that no file declares or uses, because they may be misspelt."""
         self.current_node = self.frame = None
         for name in self.arguments:
             if name not in self.known_arguments:
@@ -322,7 +322,7 @@ class Session:
             code: the code of the diagnostic.
             message: the message of the diagnostic.
             span: the location, or None for the location of the text being evaluated.
-            hint: how to fix the problem.
+            hint: advice for fixing the problem.
             severity: the severity of the diagnostic.
             called: the function that the finding is about, if the text being evaluated calls one.
 
@@ -386,7 +386,7 @@ class Session:
         return warning
 
     def reporter(self, name: str, code: str, severity: Severity) -> Callable[..., str]:
-        """Return the function that shows messages: ``xacro.message``, ``warning`` or ``error``."""
+        """Return the function that shows messages, such as ``xacro.message`` or ``xacro.error``."""
 
         def report(*words: Any, **_options: Any) -> str:
             text = foreign(" ".join(map(sandbox.as_text, words))) or phrase("here")

@@ -1,6 +1,6 @@
 """Decoding of the bytes of a file to text.
 
-A file that is valid UTF-8 is read as UTF-8, whatever its XML declaration says, as in ros/xacro. Any other file is read
+A file that is valid UTF-8 is read as UTF-8, regardless of its XML declaration, as in ros/xacro. Any other file is read
 in the encoding that it declares.
 """
 

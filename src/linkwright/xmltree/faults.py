@@ -35,7 +35,7 @@ _TEMPLATE_LANGUAGES = (
     ),
     (lazy_pattern(r"\{[%#].*?[%#]\}", re.DOTALL), "Jinja", phrase("render it with Jinja, and pass that file")),
 )
-"""A pattern for the tags of each template language, its name, and a hint."""
+"""For each template language, a pattern for its tags, its name, and a hint."""
 _DASHES_IN_COMMENT = lazy_pattern(r"<!--(?:(?!-->).)*--$", re.DOTALL)
 _NAME = lazy_pattern(r"[^\s=/>\"'&;<]+")
 

@@ -1,4 +1,4 @@
-"""A formatter for XML that changes only indentation, spaces in tags, and blank lines.
+"""A formatter for XML that changes only the whitespace inside tags and between nodes.
 
 Everything else is unchanged: the order of attributes, quotes, entities, comments, processing instructions, line
 endings, elements with text, and values that contain line endings. An element on one line stays on one line if it
@@ -59,7 +59,7 @@ class _Node:
     def is_verbatim(self) -> bool:
         """Whether whitespace in the content may be significant, so that the content must not change.
 
-        This is the case if the content has other text or only whitespace, or if the element has ``xml:space``.
+        This is the case if the content is only whitespace or includes text, or if the element has ``xml:space``.
         """
         kinds = (Kind.TEXT, Kind.CDATA)
         return (
@@ -91,7 +91,7 @@ def format_text(text: str, name: str, style: Style = Style()) -> str:  # noqa: B
     formatted = byte_order_mark + layout.document(_nodes(body))
     if not _are_equal(_top_nodes(original), _top_nodes(parse(formatted, name))):
         message = phrase("'{file}' cannot be formatted without changing its meaning", file=name)
-        raise LinkwrightError(Diagnostic("XML303", message, hint=phrase("report this file as a bug")))
+        raise LinkwrightError(Diagnostic("XML303", message, hint=phrase("report this as a bug, and attach the file")))
     return formatted
 
 
@@ -181,7 +181,7 @@ class _Layout:
 
     @staticmethod
     def _is_beside(before: _Node, node: _Node) -> bool:
-        """Return whether two adjacent nodes stay on one line, because one is a comment on the other."""
+        """Return whether one of two adjacent nodes is a comment on the other, so that they share a line."""
         return Kind.COMMENT in (before.token.kind, node.token.kind) and Kind.INSTRUCTION not in (
             before.token.kind,
             node.token.kind,

@@ -1,7 +1,7 @@
 """The nodes of an XML tree, and a context in which the garbage collector runs less often.
 
-Parsing and expanding create many small objects in a short time. Nearly all of them stay alive, and no reference
-cycles become garbage. The collector still searches them repeatedly, which takes up to a tenth of the time.
+Parsing and expanding create many small objects in a short time. Nearly all of these objects stay alive, and no
+reference cycles become garbage. The collector still searches them repeatedly, which takes up to a tenth of the time.
 Occasionally, it searches every object of the program.
 """
 
@@ -97,8 +97,8 @@ class Element:
         source: the text that contains the element, or None for an element created by a program.
         offset: the character offset of the element's ``<`` in the source.
         origin: the chain of macro calls and includes that produced the element in an expansion, or None.
-        plan: the plan of the xacro room for expanding the element, else None. Before changing an element of an expanded
-            tree, set it to None here and in all enclosing elements.
+        plan: the plan for expanding the element with xacro, or None. Before an element of an expanded tree is changed,
+            the plan must be set to None in the element and in all enclosing elements.
     """
 
     __slots__ = ("attributes", "children", "offset", "origin", "plan", "source", "tag")
@@ -167,7 +167,7 @@ class Element:
 
 
 class CachedText:
-    """A cache for the text that is written for an element, so that it is created only once.
+    """A cache for the written text of an element.
 
     Attributes:
         written: the whitespace before the element, and the element's text; None until the element is written.

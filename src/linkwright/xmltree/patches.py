@@ -74,7 +74,7 @@ def indentation(text: str, offset: int) -> str | None:
 
 
 def find_start_tag(element: Element) -> StartTag | None:
-    """Return an element's start tag in its source, or None if it is not in the source.
+    """Return an element's start tag in its source, or None if the source does not contain the tag.
 
     The source does not contain elements that a program or an entity created.
     """
@@ -93,7 +93,7 @@ def find_start_tag(element: Element) -> StartTag | None:
 def element_range(element: Element) -> tuple[int, int] | None:
     """Return the character offsets of an element's ``<`` and after its last ``>``.
 
-    The result is None for an element created by a program.
+    The result is None if the source does not contain the element.
     """
     tag = find_start_tag(element)
     if element.source is None or tag is None:

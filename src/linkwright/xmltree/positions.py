@@ -32,7 +32,7 @@ def attribute_value_range(text: str, offset: int, name: str) -> tuple[int, int] 
 
 
 def attribute_name_range(text: str, offset: int, name: str) -> tuple[int, int] | None:
-    """Return the character offsets of an attribute's name, or None if it is absent.
+    """Return the character offsets of an attribute's name, or None if the attribute is absent.
 
     `offset` is the character offset of the start tag's ``<``.
     """

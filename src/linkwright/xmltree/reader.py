@@ -1,6 +1,6 @@
 """The XML reader that builds a tree with the position of each node.
 
-It reads a file, or a text that replaces the content of a file, such as an unsaved one.
+The input is a file, or a text that replaces the content of a file, such as an unsaved text.
 """
 
 from __future__ import annotations
@@ -89,8 +89,10 @@ def parse(
     Args:
         text: the XML text, or the bytes of a file, which are decoded.
         name: the name of the text in messages: a path, or a name in angle brackets such as ``<stdin>``.
-        blanks: whether to keep text nodes that consist of whitespace; only documents that are written again need them.
-        read_as: a text of the same length to parse instead, in which a lenient parser corrected what XML forbids.
+        blanks: whether to keep text nodes that consist of whitespace; only documents that are written again need such
+            nodes.
+        read_as: a text of the same length to parse instead, in which a lenient parser replaced constructs that XML
+            forbids.
         any_prefix: whether to accept names with undeclared prefixes.
 
     Raises:
@@ -272,7 +274,7 @@ class _Reader:
     # prefixes
 
     def _check_prefixes(self) -> None:
-        """Raise if the prefix of a name is not declared in the element or in an enclosing one."""
+        """Raise if the prefix of a name is not declared in the element or in an enclosing element."""
         if self._any_prefix:
             return
         used_prefixes = {name.partition(":")[0] for name in self._parser.intern if name and ":" in name}

@@ -41,18 +41,18 @@ _ATTRIBUTE_PATTERN = lazy_pattern(r"""(\s*)([^\s=/>"'<]+)\s*=\s*("[^"]*"|'[^']*'
 def stand_in(character: str) -> str:
     """Return the substitute for ``&``, ``<`` or a control character.
 
-    `restore_characters` converts it back.
+    `restore_characters` converts the substitute back.
     """
     return _SUBSTITUTES[character]
 
 
 def can_stand_in(text: str) -> bool:
-    """Return whether substitutes can be used in a text: it contains none of them yet."""
+    """Return whether a text contains no substitutes yet, so that they can be used in the text."""
     return _ANY_SUBSTITUTE.search(text) is None
 
 
 def blank_outside_tags(text: str) -> str:
-    """Return a text of the same length in which comments and CDATA sections are blank."""
+    """Return a text of the same length, with spaces in place of comments and CDATA sections."""
     return _BETWEEN_TAGS.sub(lambda section: " " * len(section[0]), text)
 
 
@@ -176,7 +176,7 @@ def parse_as_tinyxml(
     Args:
         text: the text to parse.
         name: the name of the file in messages.
-        readers: a note for the warnings: which programs accept such a file, and which do not.
+        readers: a note for the warnings on the programs that accept or reject such a file.
         read_as: a text of the same length to parse instead; None for `text`.
 
     Raises:
@@ -333,7 +333,7 @@ def _end_of_root(diagnostic: Diagnostic, text: str) -> int | None:
 def _is_ignored_content(content: str) -> bool:
     """Return whether TinyXML2 ignores the content after the root.
 
-    It does if the elements are well-formed up to the end or to a closing tag without a start tag.
+    The content is ignored if the elements are well-formed up to the end or to a closing tag without a start tag.
     """
     parser = ParserCreate()
     depth = 0

@@ -101,7 +101,7 @@ class Token(NamedTuple):
     def name(self) -> str:
         """The name of a tag as written, or an empty string for other tokens.
 
-        It is also empty for a tag without a name.
+        The result is also empty for a tag without a name.
         """
         name_match = _TAG_NAME.match(self.text) if self.kind in (Kind.START, Kind.END) else None
         return "" if name_match is None else str(name_match[1])

@@ -1,8 +1,8 @@
 """The serialization of a tree to XML text.
 
 The format is the same as from ros/xacro 2.1 on Python up to 3.12: minidom's ``toprettyxml`` with an indentation of two
-blanks, attributes in alphabetical order, no blank text, and elements that contain only text on one line. This writer
-produces it on every Python version.
+spaces, attributes in alphabetical order, no texts of only whitespace, and elements that contain only text on one line.
+This writer produces the same format on every Python version.
 """
 
 from __future__ import annotations

@@ -70,7 +70,7 @@ def test_logging_and_enclave():
             "the levels are unset, debug, info, warn, error, fatal",
         ),
         (["--log-level", "a:=debgu"], "unknown log level 'debgu'", "did you mean 'debug'?"),
-        (["-e", "x"], "'x' is not an enclave", "write a name that begins with a slash, such as /robot/talker"),
+        (["-e", "x"], "'x' is not a valid enclave", "write a name that begins with a slash, such as /robot/talker"),
     ],
 )
 def test_wrong_ros_arguments(arguments, message, hint):

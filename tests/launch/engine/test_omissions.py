@@ -71,7 +71,7 @@ async def test_other_mistakes_end_the_launch_all_the_same(launch) -> None:
 async def test_the_error_offers_the_command(launch) -> None:
     options = {"command_to_skip_missing": "linkwright launch --skip-missing a.launch.py"}
     done = await launch(Node(package="robot_state_publishr", executable="driver"), session_options=options)
-    assert "to skip it and run the rest, run linkwright launch --skip-missing a.launch.py" in done.err
+    assert "to launch without this part, run linkwright launch --skip-missing a.launch.py" in done.err
     assert not done.succeeded
     done = await launch(LogInfo(msg=LaunchConfiguration("typo")), session_options=options)
     assert "--skip-missing" not in done.err

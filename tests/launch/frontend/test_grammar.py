@@ -119,7 +119,7 @@ def test_the_same_anonymous_name_each_time() -> None:
         ("$(var x", "has no closing parenthesis", "add ')' at its end"),
         ("$( var x)", "'$(' is not followed by a name", None),
         ("$(said 'a)", "the quote ' is not closed", None),
-        ("$(said a(b))", "'('", "put quotes around it"),
+        ("$(said a(b))", "'('", "put quotes around the argument"),
         ("$(said a'b')", "there is an unexpected quote in an argument, after 'a'", "quote the whole argument"),
         ("$(vra x)", "there is no substitution 'vra'", "did you mean 'var'?"),
         ("$(not a b)", "not substitution expects 1 argument", None),

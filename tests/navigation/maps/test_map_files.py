@@ -139,7 +139,7 @@ def test_who_saves_is_told_what_will_be_read_otherwise(tmp_path: Path) -> None:
     ("data", "reason"),
     [
         (b"P5\n2 2\n255\n\x00\x01\x02", "it has only 3 of 4 pixels"),
-        (b"P5\n99999 99999\n255\n", "its header declares 99999 x 99999, 255, which is not a valid size"),
+        (b"P5\n99999 99999\n255\n", "the size or the maximum value in its header is not valid: 99999 x 99999, 255"),
         (b"P2\n2 1\n255\n1 x", "its pixels are not numbers"),
         (b"no image", "cannot be read"),
         (b"", "cannot be read"),

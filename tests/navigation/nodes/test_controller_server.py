@@ -132,7 +132,7 @@ async def test_lost_transforms_stop_the_robot(start, log):
     scene.told = False
     assert await goal.ends(5.0) == GoalStatus.ABORTED
     assert scene.velocity == STILL
-    assert any("s old: given up" in record.text for record in log)
+    assert any("s old; the goal is aborted" in record.text for record in log)
 
 
 async def test_a_silent_laser_stops_the_robot(start, log):
@@ -182,4 +182,4 @@ async def test_an_empty_path_and_an_unknown_controller_are_refused(start, log):
 
 async def test_what_has_no_effect_is_named(start, log):
     await start(**DWB)
-    assert any("without effect here: critics" in record.text for record in log)
+    assert any("these parameters have no effect: critics" in record.text for record in log)

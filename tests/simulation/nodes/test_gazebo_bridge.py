@@ -276,7 +276,7 @@ async def test_images_are_there_as_jpeg_while_somebody_listens(stage, encoding, 
 
 @pytest.mark.parametrize(
     ("more", "message"),
-    [("publisher_queue: many", "'publisher_queue' is not a number"), ("lazy: 3", "'lazy' is neither")],
+    [("publisher_queue: many", "'publisher_queue' is not an integer of 0 or more"), ("lazy: 3", "'lazy' is neither")],
 )
 def test_settings_of_a_topic_that_are_none(more, message, tmp_path: Path):
     path = tmp_path / "bridge.yaml"

@@ -120,7 +120,7 @@ def test_a_laser_sees_what_stands_in_the_way(tmp_path):
         )
         test.spawn(box, "box", pose=(1.5, 0.0, 0.3, 0.0, 0.0, 0.0))
         test.tell("/vision/go_to", "ball")
-        assert test.advance_until_said("Something is between me and the ball")
+        assert test.advance_until_said("There is something between me and the ball")
         x, *_ = test.robot_pose()
         assert 0.8 < x < 1.2
 

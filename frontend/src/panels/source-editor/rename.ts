@@ -3,8 +3,11 @@ import { strings } from "../../strings";
 import type { Documents } from "./documents";
 import type { LanguageService } from "./language-service";
 import { confirmRename, type RenamedFile } from "./rename-preview";
-import { pathOf, placeOf, type ServerRange } from "./server-places";
+import { pathOf, placeOf, rangeText, type ServerRange } from "./server-places";
 import { applyWorkspaceEdit, editsByFile, messageOf, type WorkspaceEdit } from "./workspace-edit";
+
+/** The place of a symbol that can be renamed, with its name unless that is the text there. */
+type RenamedPlace = ServerRange | { readonly range: ServerRange; readonly placeholder: string };
 
 /**
  * Asks for a new name for the symbol at the cursor, shows what changes, and renames the symbol in all files, which are
@@ -21,17 +24,18 @@ async function rename(view: EditorView, { client, message }: LanguageService, do
   if (!shown) return "";
   client.sync();
   const place = { textDocument: { uri: shown.uri }, position: placeOf(view.state.doc, view.state.selection.main.head) };
-  const named = await client.request<object, { range: ServerRange; placeholder: string } | null>("textDocument/prepareRename", place);
+  const named = await client.request<object, RenamedPlace | null>("textDocument/prepareRename", place);
   if (named === null) return words.nothingToRename;
-  const newName = await askName(view, named.placeholder);
-  if (newName === null || newName === named.placeholder) return "";
+  const oldName = "placeholder" in named ? named.placeholder : rangeText(view.state.doc, named);
+  const newName = await askName(view, oldName);
+  if (newName === null || newName === oldName) return "";
   client.sync();
   const remarks: string[] = [];
   const stop = message.on((remark) => remarks.push(remark));
   const edit = await client.request<object, WorkspaceEdit | null>("textDocument/rename", { ...place, newName }).finally(stop);
   const files = edit === null ? [] : await renamedFiles(edit, documents);
   if (edit === null || files.length === 0) return [words.nothingToRename, ...remarks].join(" ");
-  if (!(await confirmRename(named.placeholder, newName, files, remarks))) return words.notRenamed;
+  if (!(await confirmRename(oldName, newName, files, remarks))) return words.notRenamed;
   const changed = await applyWorkspaceEdit(client, edit, documents, "rename");
   return words.renamed(newName, changed.length);
 }

@@ -19,6 +19,11 @@ export function placeOf(text: Text, position: number): ServerRange["start"] {
   return { line: line.number - 1, character: position - line.from };
 }
 
+/** Returns the text of a range. */
+export function rangeText(text: Text, { start, end }: ServerRange): string {
+  return text.sliceString(positionIn(text, start), positionIn(text, end));
+}
+
 /** Returns the path of a file's URI; null for other URIs. */
 export function pathOf(uri: string): string | null {
   if (!uri.startsWith("file:///")) return null;

@@ -24,7 +24,7 @@ class AssetRefusedError(Exception):
 
 
 class Assets:
-    """Reads files by their ``package://`` addresses.
+    """A reader of files by their ``package://`` addresses.
 
     Args:
         finder: finds packages; None for the finder of the environment, which is created on demand.

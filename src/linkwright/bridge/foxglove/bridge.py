@@ -192,7 +192,7 @@ class FoxgloveBridge(SingleNode):
             return web.Response(status=426, text="Open this address in Foxglove or Lichtblick.\n")
         await websocket.prepare(request)
         if websocket.ws_protocol is None:
-            await websocket.close(code=1002, message=b"the client speaks none of the protocols")
+            await websocket.close(code=1002, message=b"the client supports none of the subprotocols")
             return websocket
         client = Client(websocket, self._max_queue_bytes)
         session = Session(self._offer, client)

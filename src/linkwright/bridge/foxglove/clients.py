@@ -55,7 +55,7 @@ class Client:
         with suppress(ConnectionError):
             while True:
                 if len(self._control) > _MAX_CONTROL_MESSAGES:
-                    await self._socket.close(code=1008, message=b"too much was left unread")
+                    await self._socket.close(code=1008, message=b"the client reads messages too slowly")
                     return
                 if self._control:
                     message = self._control.popleft()

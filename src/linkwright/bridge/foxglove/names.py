@@ -1,4 +1,4 @@
-"""Filters topics, services and parameters by foxglove_bridge's lists of regular expressions."""
+"""Filter topics, services and parameters by foxglove_bridge's lists of regular expressions."""
 
 from __future__ import annotations
 

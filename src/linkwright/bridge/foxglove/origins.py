@@ -1,4 +1,4 @@
-"""Decides which web pages may connect.
+"""Decide which web pages may connect.
 
 Any page that a user opens could otherwise connect to a server of this machine.
 """

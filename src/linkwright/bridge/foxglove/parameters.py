@@ -17,7 +17,7 @@ _SERVICE = "/get_parameters"
 
 
 class Parameters:
-    """Reads and sets the parameters of other nodes.
+    """Access to the parameters of other nodes.
 
     Args:
         node: the node that sends the requests.

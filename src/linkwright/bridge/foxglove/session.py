@@ -49,7 +49,7 @@ class Offer:
 
 @dataclass(slots=True, eq=False)
 class Session:
-    """Handles the requests of one client.
+    """The session of one client, which handles its requests.
 
     Attributes:
         watches_connections: whether the client is notified of changes to the connection graph.

@@ -92,7 +92,7 @@ class Channels:
 
 
 class Forwarding:
-    """Forwards the messages of a channel to a client.
+    """A subscription that forwards the messages of a channel to a client.
 
     Args:
         node: the node that subscribes.
@@ -131,7 +131,7 @@ class Forwarding:
 
 
 class Publication:
-    """Publishes the messages of a channel that a client has advertised.
+    """A publisher of the messages of a channel that a client has advertised.
 
     Args:
         node: the node that publishes.

@@ -99,7 +99,7 @@ def configure_play(parser: argparse.ArgumentParser) -> None:
         metavar="MILLISECONDS",
         type=_parse_non_negative,
         default=1000.0,
-        help="how long to wait at the end for reliable subscriptions to acknowledge all messages, default 1000",
+        help="the time to wait at the end for reliable subscriptions to acknowledge all messages, default 1000",
     )
     parser.add_argument("--disable-keyboard-controls", action="store_true", help="ignore the keyboard")
     add_overrides_argument(parser)
@@ -113,7 +113,7 @@ def configure_play(parser: argparse.ArgumentParser) -> None:
 
 
 def run_play(arguments: argparse.Namespace) -> int:
-    """Play a recording until it ends or the user interrupts, and return the exit status."""
+    """Play a recording until it ends or is interrupted, and return the exit status."""
     from linkwright.bag import BagReader, PlayOptions
     from linkwright.cli.session import run_in_graph
 

@@ -27,7 +27,7 @@ def configure_record(parser: argparse.ArgumentParser) -> None:
         metavar="TOPIC",
         nargs="+",
         default=[],
-        help="the topics to record, as newer ROS 2 spells the option",
+        help="the topics to record (the option's name in newer ROS 2 releases)",
     )
     parser.add_argument(
         "--topic-types", metavar="TYPE", nargs="+", default=[], help="record every topic of these types"
@@ -64,9 +64,9 @@ def configure_record(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--exclude-topic-types", metavar="TYPE", nargs="+", default=[], help="do not record topics of these types"
     )
-    parser.add_argument("--include-hidden-topics", action="store_true", help="record hidden topics too")
+    parser.add_argument("--include-hidden-topics", action="store_true", help="also record hidden topics")
     parser.add_argument(
-        "--include-unpublished-topics", action="store_true", help="record topics that have only subscriptions too"
+        "--include-unpublished-topics", action="store_true", help="also record topics that have only subscriptions"
     )
     parser.add_argument("--ignore-leaf-topics", action="store_true", help="do not record topics without subscriptions")
     parser.add_argument("--no-discovery", action="store_true", help="record only topics that exist at the start")
@@ -76,7 +76,7 @@ def configure_record(parser: argparse.ArgumentParser) -> None:
         metavar="MILLISECONDS",
         type=int,
         default=100,
-        help="how often to look for new topics, default 100",
+        help="the time between searches for new topics, default 100",
     )
     parser.add_argument(
         "-o", "--output", metavar="FOLDER", help="the folder to create, default rosbag2_ and the date and time"

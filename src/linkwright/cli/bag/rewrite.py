@@ -52,7 +52,10 @@ _PLUGINS = {
         ),
     ),
 }
-"""Linkwright's equivalents of rosbag2's plugins, by the kinds of ``ros2 bag list``. CDR needs no converter."""
+"""Linkwright's equivalents of rosbag2's plugins, by the kinds of ``ros2 bag list``.
+
+CDR needs no converter.
+"""
 
 
 def configure_convert(parser: argparse.ArgumentParser) -> None:
@@ -76,7 +79,7 @@ def configure_convert(parser: argparse.ArgumentParser) -> None:
 
 
 def run_convert(arguments: argparse.Namespace) -> int:
-    """Convert recordings as the file with the output options requests."""
+    """Convert recordings as specified by the file with the output options."""
     from linkwright.bag.rewriting import rewrite
 
     for input_arguments in arguments.input:

@@ -23,7 +23,7 @@ _LAUNCH_METAVAR = "PACKAGE FILE | PATH [NAME:=VALUE ...]"
 def split_line(line: str) -> list[str]:
     """Split a command line up to the cursor into words.
 
-    The last word is the one at the cursor, and may be empty.
+    The last word is the word at the cursor, and may be empty.
     """
     try:
         words = shlex.split(line)

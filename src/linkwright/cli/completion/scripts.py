@@ -9,7 +9,7 @@ import shlex
 from collections.abc import Sequence
 
 FILES = ":files"
-"""The line that makes the shell complete file names too."""
+"""The completion that makes the shell also complete file names."""
 
 _BASH = """\
 _linkwright_complete() {
@@ -102,7 +102,10 @@ function fish_command_not_found
 end
 """,
 }
-"""The handler for unknown commands in each shell. It suggests the replacements for commands of ROS."""
+"""The handler for unknown commands in each shell.
+
+It suggests the replacements for commands of ROS.
+"""
 
 
 def script(shell: str, python: str, commands: Sequence[str]) -> str:

@@ -24,7 +24,10 @@ _XACRO_ARGUMENT = re.compile(r"""<xacro:arg\s[^>]*?\bname\s*=\s*["']([^"']+)["']
 _INTERFACE_KINDS = {"topic": ("msg",), "bag": ("msg",), "service": ("srv",), "action": ("action",)}
 
 Asked = tuple[list[str], list[str], Mapping[str, Any]]
-"""The names of the command and subcommand, the preceding positional arguments, and the table of commands."""
+"""A request for candidates of an argument.
+
+It contains the names of the command and subcommand, the preceding positional arguments, and the table of commands.
+"""
 
 
 def argument_candidates(kind: str, path: list[str], positionals: list[str], table: Mapping[str, Any]) -> Iterable[str]:

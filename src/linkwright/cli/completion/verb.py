@@ -17,7 +17,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.epilog = (
         'Put `eval "$(linkwright completion bash)"` into `~/.bashrc`, `eval "$(linkwright completion zsh)"` into '
         "`~/.zshrc`, or `linkwright completion fish | source` into `~/.config/fish/config.fish`. "
-        "`linkwright shell` has it already."
+        "`linkwright shell` sets up completion by itself."
     )
 
 

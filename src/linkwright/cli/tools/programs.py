@@ -98,4 +98,4 @@ TOOLS: dict[str, Callable[[Sequence[str]], int]] = {
     "launch_test": _launch_test,
     "colcon": _colcon,
 }
-"""For each command, the function that runs it with its arguments and returns the exit status."""
+"""The functions that run the commands with their arguments and return the exit status."""

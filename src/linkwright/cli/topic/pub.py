@@ -22,7 +22,10 @@ if TYPE_CHECKING:
 _KEEP_ALIVE = 0.1
 _WAITING_NOTICE_PERIOD = 1.0
 _MUTUAL_DISCOVERY_DELAY = 0.15
-"""Seconds until a discovered subscription has also discovered the publisher. Earlier messages may be lost."""
+"""Seconds until a discovered subscription has also discovered the publisher.
+
+Earlier messages may be lost.
+"""
 _MessageWithStamps = tuple[Any, list[Callable[[Any], None]]]
 
 
@@ -64,14 +67,14 @@ def configure_pub(parser: argparse.ArgumentParser) -> None:
         metavar="SECONDS",
         type=float,
         default=_KEEP_ALIVE,
-        help="how long to keep running after the last message (default: %(default)s)",
+        help="the time to keep running after the last message (default: %(default)s)",
     )
     parser.add_argument("-n", "--node-name", metavar="NODE", help="the name of the publishing node")
     add_publisher_qos_arguments(parser)
 
 
 def run_pub(arguments: argparse.Namespace) -> int:
-    """Publish the requested number of times, or until the user interrupts the command."""
+    """Publish messages the requested number of times, or until the user interrupts the command."""
     from linkwright.messages import get_message
 
     name = absolute(arguments.topic_name)

@@ -35,7 +35,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--labels", metavar="FILE", type=Path, help="a file with the names of the network's classes, one per line"
     )
     parser.add_argument(
-        "--dictionary", metavar="NAME", help="which markers aruco and apriltag look for, such as 6X6_250"
+        "--dictionary", metavar="NAME", help="the dictionary of the markers for aruco and apriltag, such as 6X6_250"
     )
     parser.add_argument(
         "--threshold", metavar="SCORE", type=fraction, default=0.5, help="the minimum score, default 0.5"

@@ -66,7 +66,7 @@ class ControllerContext:
     Attributes:
         name: the name of the controller and of its node.
         node: the controller's node.
-        update_rate: how often the controller is updated, in Hz.
+        update_rate: the rate of the controller's updates, in Hz.
         robot_description: the URDF of the robot; empty if none is known.
     """
 
@@ -89,7 +89,7 @@ class Controller(ABC, Generic[P]):
         PARAMETERS: the dataclass with the controller's parameters.
         name: the controller's name.
         node: the controller's node, which has the parameters.
-        update_rate: how often the controller is updated, in Hz.
+        update_rate: the rate of the controller's updates, in Hz.
         robot_description: the URDF of the robot; empty if none is known.
         commands: the command interfaces available while the controller is active, in the order of `command_interfaces`.
         states: the state interfaces, in the order of `state_interfaces`.
@@ -123,7 +123,8 @@ class Controller(ABC, Generic[P]):
     def variant(cls, parameter_names: Collection[str]) -> type[Controller[Any]]:  # noqa: ARG003 - overrides use it
         """Return the controller class for which the parameters are intended.
 
-        If two packages use the same type name, this may return another class. `parameter_names` are the set parameters.
+        If two packages use the same type name, this may return another class. `parameter_names` contains the names of
+        the parameters that have values.
         """
         return cls
 
@@ -197,7 +198,7 @@ class Controller(ABC, Generic[P]):
         """
 
     def on_error(self) -> None:
-        """Handle an exception, other than `ControllerError`, of a callback or an update."""
+        """Handle an exception, other than `ControllerError`, that a callback or an update raised."""
 
     def on_set_chained_mode(self, chained: bool) -> None:
         """Handle a change of chained mode, in which another controller commands the references.

@@ -68,7 +68,7 @@ P = TypeVar("P", bound=GripperParameters)
 class Gripper(Controller[P]):
     """The base class of gripper controllers.
 
-    It accepts goals, and decides when they end.
+    The class accepts goals, and determines when they end.
     """
 
     ACTION: ClassVar[str] = "control_msgs/action/GripperCommand"
@@ -188,7 +188,7 @@ class Gripper(Controller[P]):
     def _command(self, error: float, velocity: float, period_s: float) -> float:
         """Write the commands, and return the effort to report.
 
-        By default, this is the maximum effort.
+        By default, the reported effort is the maximum effort.
         """
         self.commands[0].value = self._wanted
         return self._max_effort

@@ -1,6 +1,6 @@
 """Husarion's ``mecanum_drive_controller/MecanumDriveController``.
 
-It is for the robots ROSbot XL and Panther.
+The controller is for the robots ROSbot XL and Panther.
 
 A different controller of ros2_controllers has the same type name. Husarion's controller has the parameters and topics
 of diff_drive_controller, with four named wheels.

@@ -1,4 +1,4 @@
-"""``pid_controller/PidController``, a PID controller of degrees of freedom.
+"""``pid_controller/PidController``: a PID controller for each degree of freedom.
 
 Source: ros2_controllers (parameters, topics, service, interfaces for chaining, feed-forward).
 """
@@ -75,7 +75,7 @@ class PidController(Controller[Parameters]):
         return [f"{dof_name}/{self.parameters.command_interface}" for dof_name in self.parameters.dof_names]
 
     def state_interfaces(self) -> InterfaceNames:
-        """Return the state interfaces by kind, or none if states are received on a topic."""
+        """Return the state interfaces, kind by kind, or none if states are received on a topic."""
         return () if self.parameters.use_external_measured_states else self._interface_names()
 
     def reference_interfaces(self) -> Sequence[str]:

@@ -50,7 +50,7 @@ class VelocityInput:
             node.subscribe("geometry_msgs/msg/Twist", unstamped, self._on_twist, qos, commander=commander)
 
     def open(self) -> None:
-        """Start accepting commands."""
+        """Discard the last command, and start accepting commands."""
         self.forget()
         self._is_open = True
 

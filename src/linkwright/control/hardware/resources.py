@@ -17,7 +17,7 @@ from linkwright.graph.lifecycle.states import ACTIVE, FINALIZED, INACTIVE, UNCON
 from linkwright.graph.log.logger import Logger
 
 HardwareFactory = Callable[[HardwareDescription, Logger], "Hardware | None"]
-"""Creates the hardware of a description, and returns None if the type is not supported."""
+"""A function that creates the hardware of a description, or returns None if the type is not supported."""
 
 N = TypeVar("N", bound=Interface)
 

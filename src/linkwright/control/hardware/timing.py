@@ -27,7 +27,7 @@ class _Statistics:
         self._minimum, self._maximum, self._latest = min(self._minimum, value), max(self._maximum, value), value
 
     def items(self) -> Iterator[tuple[str, float]]:
-        """Iterate over the names and values of the statistics.
+        """Yield the names and values of the statistics.
 
         Before the first value, all statistics except the count are NaN.
         """
@@ -65,7 +65,7 @@ class Timing:
             self._execution.add((perf_counter_ns() - start_ns) / 1e3)
 
     def items(self) -> Iterator[tuple[str, float]]:
-        """Iterate over the names and values of the statistics."""
+        """Yield the names and values of the statistics."""
         for kind, statistics in (("execution_time", self._execution), ("periodicity", self._periodicity)):
             for name, value in statistics.items():
                 yield f"{kind}/{name}", value

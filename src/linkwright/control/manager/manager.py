@@ -180,7 +180,10 @@ class ControllerManager:
         return SavedState(parameters, states)
 
     def resume(self, saved_state: SavedState) -> None:
-        """Load another manager's controllers, and bring them to their states as far as possible."""
+        """Load another manager's controllers, and restore their states as far as possible.
+
+        Parameters of the other manager that this manager lacks are set first.
+        """
         missing_parameters = [
             Parameter(name, value=value)
             for name, value in saved_state.parameters.items()

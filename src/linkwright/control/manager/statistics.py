@@ -65,7 +65,7 @@ class StatisticsTopics:
             self._full_output.publish(message)
 
     def _timings(self, *, enabled: bool) -> Iterator[tuple[str, Timing]]:
-        """Switch measuring on or off, and iterate over the timings with the prefixes of their names."""
+        """Switch measuring on or off, and yield each timing with the prefix of its name."""
         for name, loaded in self._manager.controllers.items():
             loaded.timing = (loaded.timing or Timing()) if enabled else None
             if loaded.timing is not None:

@@ -34,8 +34,8 @@ class Switch:
 
     Attributes:
         activate, deactivate: the names of the controllers to activate and deactivate, in order.
-        to_chained: the names of the controllers that other controllers start to command.
-        from_chained: the names of the controllers that other controllers stop to command.
+        to_chained: the names of the controllers that other controllers start commanding.
+        from_chained: the names of the controllers that other controllers stop commanding.
     """
 
     activate: list[str] = field(default_factory=list)
@@ -124,14 +124,14 @@ class SwitchPlanner:
         return False
 
     def _following_names(self, loaded: Loaded) -> Iterator[str]:
-        """Iterate over the names of the controllers whose references a controller commands."""
+        """Yield the names of the controllers whose references a controller commands."""
         for interface in loaded.claimed_commands([]):
             name = interface.partition("/")[0]
             if name in self._controllers and name != loaded.name:
                 yield name
 
     def _preceding_controllers(self, loaded: Loaded) -> Iterator[Loaded]:
-        """Iterate over the controllers that command the references of a controller."""
+        """Yield the controllers that command the references of a controller."""
         references = set(self._resources.reference_names(loaded.name))
         for other in self._controllers.values():
             if references.intersection(other.claimed_commands([])):

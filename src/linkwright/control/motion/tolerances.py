@@ -35,7 +35,7 @@ class StateTolerance:
         )
 
     def violations(self, position: float, velocity: float, acceleration: float) -> Iterator[tuple[str, float, float]]:
-        """Iterate over the errors outside the tolerance, as name, error and tolerance."""
+        """Yield the errors outside the tolerance, as name, error and tolerance."""
         errors = (
             ("Position", position, self.position),
             ("Velocity", velocity, self.velocity),
@@ -65,7 +65,8 @@ class Tolerances:
     Attributes:
         path: the tolerances of each joint along the trajectory.
         goal: the tolerances of each joint at the end.
-        goal_time_s: how many seconds after the end the goal must be reached; 0 for no limit.
+        goal_time_s: the maximum time from the end of the trajectory until the goal is reached, in seconds; 0 for no
+            limit.
     """
 
     path: tuple[StateTolerance, ...]
@@ -73,16 +74,16 @@ class Tolerances:
     goal_time_s: float = 0.0
 
     def with_path(self, joint: int, tolerance: StateTolerance) -> Tolerances:
-        """Return a copy with another tolerance along the trajectory for the joint with an index."""
+        """Return a copy with another path tolerance for the joint at index `joint`."""
         return replace(self, path=(*self.path[:joint], tolerance, *self.path[joint + 1 :]))
 
     def with_goal(self, joint: int, tolerance: StateTolerance) -> Tolerances:
-        """Return a copy with another tolerance at the end for the joint with an index."""
+        """Return a copy with another goal tolerance for the joint at index `joint`."""
         return replace(self, goal=(*self.goal[:joint], tolerance, *self.goal[joint + 1 :]))
 
 
 def resolved(default: float, goal_value: float) -> float:
-    """Return the tolerance that a default and the value of a goal result in.
+    """Return the tolerance for a goal, or the default if the goal does not specify one.
 
     Raises:
         ValueError: the goal's value is negative and not -1.

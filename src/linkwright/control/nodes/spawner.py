@@ -130,7 +130,7 @@ class Spawner(ManagerProgram):
         return parameters
 
     def _request_unload(self) -> None:
-        """Request to deactivate and unload the controllers, without waiting for responses.
+        """Request the deactivation and unloading of the controllers, without waiting for responses.
 
         The program ends before the responses arrive.
         """

@@ -73,14 +73,14 @@ def argument_sets(path: str | Path, finder: PackageFinder | None = None) -> tupl
     """Return the sets of values that launch files, tests and build files pass to a description.
 
     The search covers the files of the description's package and of neighbouring packages that depend on it. If these
-    have no argument sets, it continues in the other neighbouring packages. No file is executed.
+    packages have no argument sets, the search continues in the other neighbouring packages. No file is executed.
 
     Args:
         path: the file of the description.
-        finder: the finder of packages; by default, one that searches around the file.
+        finder: the finder of packages; by default, a finder that searches around the file.
 
     Returns:
-        The sets without duplicates, the most certain ones first. A call without values has an empty set.
+        The sets without duplicates, the most certain sets first. A call without values has an empty set.
     """
     return ArgumentSets().of(Path(path), finder)
 
@@ -89,7 +89,7 @@ class ArgumentSets:
     """A search for the argument sets of many descriptions that reads each calling file once.
 
     Args:
-        folders: packages to search in addition to those near a file.
+        folders: packages to search in addition to the packages near a file.
     """
 
     def __init__(self, folders: Iterable[Path] = ()) -> None:

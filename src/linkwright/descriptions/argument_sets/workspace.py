@@ -21,11 +21,11 @@ _YAML_SUFFIXES = (".launch.yaml", ".launch.yml", "_launch.yaml", "_launch.yml")
 _LAUNCH_FOLDERS = ("launch", "test", "tests")
 """Folders in which any XML file may be a launch file."""
 _CALL_MARKERS = ("xacro", "MoveItConfigsBuilder", "IncludeLaunchDescription", "<include", "include:")
-"""A file without any of these words calls nothing."""
+"""The words of which any calling file contains at least one."""
 
 
 class CallingFiles:
-    """A cache of the files in packages that call xacro."""
+    """A cache of the files that call xacro, by package."""
 
     def __init__(self) -> None:
         self._read: dict[Path, tuple[CallingFile, ...]] = {}
@@ -39,7 +39,7 @@ class CallingFiles:
 
         Args:
             path: the absolute path of the file.
-            folders: packages to search in addition to those nearby.
+            folders: packages to search in addition to the packages nearby.
         """
         own_package = enclosing_package(path.parent)
         if own_package is None:
@@ -56,7 +56,7 @@ class CallingFiles:
 
         Args:
             path: the absolute path of the file.
-            folders: packages to search in addition to those nearby.
+            folders: packages to search in addition to the packages nearby.
         """
         own_package = enclosing_package(path.parent)
         if own_package is not None:
@@ -74,7 +74,7 @@ class CallingFiles:
                 yield from ((other_name, file) for file in self.of(other_folder))
 
     def of(self, folder: Path) -> tuple[CallingFile, ...]:
-        """Return the calling files in and below a folder, except those of nested packages."""
+        """Return the calling files in and below a folder, except in nested packages."""
         if folder not in self._read:
             parsed_files = (_read(path, folder) for path in _candidate_files(folder))
             self._read[folder] = tuple(

@@ -28,7 +28,7 @@ from linkwright.xmltree import Element
 Kind = Literal["added", "removed", "renamed", "changed"]
 Subject = Literal["robot", "link", "joint", "extension"]
 _Pair = tuple[Element | None, Element | None]
-"""The element in the old description and the element in the new one, each None if there is none."""
+"""The elements in the old and in the new description, each None if there is none."""
 _Part = TypeVar("_Part", Link, Joint)
 
 
@@ -50,7 +50,7 @@ class Difference:
     Attributes:
         subject: the kind of the changed object; ``extension`` is a ``<gazebo>``, ``<ros2_control>``,
             ``<transmission>``, ...
-        name: the object's name in the new description or, for a removed object, in the old one.
+        name: the object's name in the new description or, for a removed object, in the old description.
         kind: the kind of change.
         property: the changed property, such as ``mass`` or ``visual 2 origin xyz``; empty for the whole object.
         old: the value in the old description without its unit, or None if there is none.
@@ -94,8 +94,8 @@ class Side:
     Attributes:
         robot: the robot of the description.
         normalize: a function that makes texts comparable, such as paths in a folder that replaces another folder.
-        resolve: a function that returns the file of a mesh's URI, or None. With such a function, the contents of mesh
-            files are compared, too.
+        resolve: a function that returns the file of a mesh's URI; with this function, the contents of mesh files are
+            compared, too. None to compare only the URIs.
     """
 
     robot: Robot
@@ -103,7 +103,7 @@ class Side:
     resolve: Callable[[str], Path] | None = None
 
     def mesh(self, address: str) -> Path | None:
-        """Return the file of a mesh's URI, or None if it is unknown or does not exist."""
+        """Return the file of a mesh's URI, or None if the file is unknown or does not exist."""
         if self.resolve is None:
             return None
         try:
@@ -118,8 +118,8 @@ def compare(old: Side, new: Side) -> Comparison:
 
     Links and joints are matched by name. An object with a new name is recognised if everything else is equal. Poses are
     compared as poses, not as text, with the tolerances in `linkwright.descriptions.comparison.facts`. Elements outside
-    the robot model (``<gazebo>``, ``<ros2_control>``, sensors) are compared as XML, ignoring blanks, comments and the
-    order of attributes.
+    the robot model (``<gazebo>``, ``<ros2_control>``, sensors) are compared as XML, ignoring white space, comments and
+    the order of attributes.
     """
     return _Comparer(old, new).run()
 

@@ -74,7 +74,7 @@ class Fact:
 
 @dataclass(slots=True)
 class Block:
-    """Properties that are added or removed together, such as those in an ``<inertial>``.
+    """Properties that are added or removed together, such as the properties in an ``<inertial>``.
 
     Attributes:
         name: the tag; empty for the properties that every joint has.
@@ -100,12 +100,12 @@ class Block:
         )
 
     def number(self, name: str, value: float | None, unit: str, element: Element | None, attribute: str) -> None:
-        """Add a property with one number, unless it is None."""
+        """Add a property with one number, unless the number is None."""
         if value is not None:
             self.facts[name] = Fact("", (value,), unit, element, attribute)
 
     def words(self, name: str, value: str, element: Element | None, attribute: str) -> None:
-        """Add a property with a text, unless it is empty."""
+        """Add a property with a text, unless the text is empty."""
         if value:
             self.facts[name] = Fact(value, (), "", element, attribute)
 
@@ -118,7 +118,7 @@ class Block:
 
 
 def nearest(element: Element | None, *tags: str) -> Element | None:
-    """Return the descendant at the end of a path of tags, or the last one that exists.
+    """Return the descendant at the end of a path of tags, or the last existing element on the path.
 
     Without an element, the result is None.
     """
@@ -255,7 +255,7 @@ def match_blocks(
 
 
 def _angle(rotation: Sequence[float], other_rotation: Sequence[float]) -> float:
-    """Return the angle between two rotations in radians, accurate even if it is small."""
+    """Return the angle between two rotations in radians, accurate even for small angles."""
     return 2.0 * min(
         _distance(rotation, other_rotation), _distance(rotation, [-component for component in other_rotation])
     )

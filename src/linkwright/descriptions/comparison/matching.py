@@ -1,6 +1,6 @@
 """The matching of the links and joints of two descriptions.
 
-They match by name, or as renamed if everything else is equal.
+Links and joints match by name, or as renamed if everything else is equal.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from linkwright.urdf import Joint, Link, Robot, children_of
 
 @dataclass(frozen=True, slots=True)
 class Matches:
-    """The names in the new description that match names in the old one, equal or renamed.
+    """The names in the new description that match names in the old description.
 
     Attributes:
         links: the new names of links, by old name.

@@ -61,7 +61,7 @@ class Definitions:
                 yield from (place for path, place in self._values() if path[-len(keys) :] == keys)
 
     def addable_arguments(self, text: str, index: int | None, innermost: Frame | None) -> Iterator[Candidate]:
-        """Yield arguments that could be added to calls that use a parameter's default.
+        """Yield arguments that could be added to calls, in place of a parameter's default.
 
         Args:
             text: a text that contains expressions.

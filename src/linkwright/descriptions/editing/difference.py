@@ -103,7 +103,7 @@ def described(trail: tuple[Element, ...]) -> str:
 def _sibling_index(old: Element, child: Element, index: int, is_owner: bool) -> int:
     """Return the index of a child among its siblings.
 
-    In the owner, `index` does not count the removed element, so the child is searched.
+    In the owner, `index` does not include the removed element, so the index is found by a search for the child.
     """
     return next(position for position, element in enumerate(old.elements()) if element is child) if is_owner else index
 

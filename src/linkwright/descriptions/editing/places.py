@@ -57,12 +57,12 @@ class Candidate:
 
 
 def words(place: Place) -> list[Place]:
-    """Return the ranges of the words in a text, where an expression counts as one word."""
+    """Return the ranges of the words in a text, each expression as a single word."""
     return [place.subrange(*match.span()) for match in _WORD.finditer(place.text)]
 
 
 def literal(place: Place) -> Candidate | None:
-    """Return a candidate for a word that is a literal number, or None for other words."""
+    """Return a candidate for a word that is a literal number, or None for any other word."""
     try:
         value = float(place.text)
     except ValueError:

@@ -83,7 +83,7 @@ class _EditedDescription(NamedTuple):
 class _Planner:
     """The planner of one edit, attribute by attribute and number by number.
 
-    `_current` is the description with the edits so far.
+    `_now` is the description with the edits so far.
     """
 
     def __init__(self, description: Description, request: EditRequest, allowed: Allowed) -> None:
@@ -123,7 +123,7 @@ class _Planner:
             yield "rpy", list(request.rpy)
 
     def set(self, name: str, requested: list[float]) -> None:
-        """Plan the edits that give an attribute the requested numbers."""
+        """Plan the edits that set an attribute to the requested numbers."""
         current_numbers = self._values(name)
         changed_indexes = [
             i for i, (old, new) in enumerate(zip(current_numbers, requested, strict=True)) if not are_close(old, new)

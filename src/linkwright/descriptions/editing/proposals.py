@@ -1,4 +1,4 @@
-"""The candidates for editing a number of an attribute, starting with the most likely one."""
+"""The candidates for editing a number of an attribute, starting with the most likely candidate."""
 
 from __future__ import annotations
 

@@ -100,7 +100,7 @@ def forbidden_file(path: str, reason: object) -> Diagnostic:
 
 
 def changed_file(path: str) -> Diagnostic:
-    """Return the finding that another program has changed a file, so that it is not written."""
+    """Return the finding that a file is not written because another program has changed it."""
     message = phrase(
         "another program has changed '{path}' since it was read, so it is not written", path=display_path(path)
     )

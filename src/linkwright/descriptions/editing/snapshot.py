@@ -45,7 +45,7 @@ class Snapshot:
 
     @classmethod
     def of(cls, description: Description) -> Snapshot:
-        """Return the snapshot of a description that was just read, with the unsaved texts that it was read with."""
+        """Return the snapshot of a description that was just read, with its unsaved texts."""
         texts = {} if description.overlay is None else dict(description.overlay.texts)
         return cls(description, texts, description.document, description.files)
 

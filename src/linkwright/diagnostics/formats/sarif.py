@@ -61,7 +61,7 @@ def _rule(code: str, diagnostics: Iterable[Diagnostic]) -> dict[str, Any]:
 def _message(diagnostic: Diagnostic) -> dict[str, Any]:
     """Return the message of a diagnostic for SARIF (SARIF 2.1.0, 3.11).
 
-    It contains the text, and the template's ID and the arguments for grouping or translation.
+    The message contains the text, and the template's ID and the arguments for grouping or translation.
     """
     message = as_phrase(diagnostic.message)
     hint = f". Hint: {diagnostic.hint}" if diagnostic.hint else ""

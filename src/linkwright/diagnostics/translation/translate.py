@@ -21,7 +21,7 @@ TAGS = {ENGLISH: "en", CHINESE: "zh-CN"}
 LANGUAGES = tuple(TAGS)
 
 _LANGUAGE_VARIABLES = ("LINKWRIGHT_LANG", "LC_ALL", "LC_MESSAGES", "LANG")
-"""The environment variables for the language. The first that is set decides. POSIX orders the last three."""
+"""The environment variables for the language. The first variable that is set is used. POSIX orders the last three."""
 
 _chosen_language: str | None = None
 
@@ -59,8 +59,8 @@ def language() -> str:
 def language_of(locale: str) -> str | None:
     """Return the language of messages for a locale such as ``zh_CN.UTF-8``.
 
-    It is None if there are no messages in the locale's language. Any Chinese locale selects simplified Chinese, because
-    there is no other catalogue for Chinese.
+    The result is None if there are no messages in the locale's language. Any Chinese locale selects simplified Chinese,
+    because there is no other catalogue for Chinese.
     """
     name = locale.strip().replace("-", "_").partition(".")[0].partition("_")[0].casefold()
     return name if name in LANGUAGES else None
@@ -70,7 +70,7 @@ def language_of(locale: str) -> str | None:
 def wording(language: str) -> NullTranslations:
     """Return the catalogue of a language.
 
-    It is read only once, and is empty if there is no compiled catalogue, as in a fresh checkout.
+    The catalogue is read only once. It is empty if there is no compiled catalogue, as in a fresh checkout.
     """
     from gettext import GNUTranslations, NullTranslations  # imported here, because English does not need it
 
@@ -87,7 +87,7 @@ _LABELS = ("error", "warning", "info", "note", "hint", ": ")
 def labels(lang: str | None = None) -> Mapping[str, str]:
     """Return the labels for severities, notes and hints, and the colon that follows them.
 
-    They are in a language of `LANGUAGES`; None for the user's.
+    The labels are in the language `lang`, one of `LANGUAGES`, or by default in the user's language.
     """
     lang = language() if lang is None else lang
     return {label: label if lang == "en" else term(label).translated_text(wording(lang)) for label in _LABELS}
@@ -121,7 +121,7 @@ def translate(diagnostic: Diagnostic, lang: str) -> Diagnostic:
 
 
 def localized(text: str, lang: str | None = None) -> str:
-    """Return a text in a language of `LANGUAGES`, by default the user's.
+    """Return a text in a language of `LANGUAGES`, by default the user's language.
 
     A plain string is returned unchanged.
     """

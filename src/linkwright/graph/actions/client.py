@@ -20,7 +20,7 @@ from linkwright.graph.qos.profile import ACTION_STATUS_QOS, DEFAULT_QOS, SERVICE
 
 
 class ClientGoalHandle:
-    """The client's handle of a goal that the client has sent (rclpy ``ClientGoalHandle``).
+    """The client's handle to a goal that it has sent (rclpy ``ClientGoalHandle``).
 
     Attributes:
         goal_id: the goal's ID (unique_identifier_msgs/msg/UUID).
@@ -50,10 +50,14 @@ class ClientGoalHandle:
     def cancel_goal(self, timeout_sec: float | None = None) -> Any:
         """Request cancellation of the goal, and block until the server responds.
 
-        For the timeout and the errors see `Client.call`.
+        Args:
+            timeout_sec: the maximum wait, in seconds; None for no limit.
 
         Returns:
-            The action_msgs/srv/CancelGoal response; None if it does not arrive in time.
+            The action_msgs/srv/CancelGoal response.
+
+        Raises:
+            TimeoutError: the response did not arrive in time.
         """
         return _wait_for_result(self.cancel_goal_async(), timeout_sec)
 
@@ -68,10 +72,14 @@ class ClientGoalHandle:
     def get_result(self, timeout_sec: float | None = None) -> Any:
         """Request the result, and block until it arrives.
 
-        For the timeout and the errors see `Client.call`.
+        Args:
+            timeout_sec: the maximum wait, in seconds; None for no limit.
 
         Returns:
-            The response with ``status`` and ``result``; None if it does not arrive in time.
+            The response with ``status`` and ``result``.
+
+        Raises:
+            TimeoutError: the response did not arrive in time.
         """
         return _wait_for_result(self.get_result_async(), timeout_sec)
 
@@ -85,7 +93,7 @@ class ClientGoalHandle:
 
 
 class ActionClient(ActionEndpoint):
-    """Sends goals to an action server (rclpy ``ActionClient``).
+    """A client that sends goals to an action server (rclpy ``ActionClient``).
 
     Args:
         node: the node that owns the client.
@@ -154,7 +162,10 @@ class ActionClient(ActionEndpoint):
         )
 
     def wait_for_server(self, timeout_sec: float | None = None) -> bool:
-        """Block the calling thread until a server is available. See `Client.wait_for_service`."""
+        """Block the calling thread until a server is available, and return whether one is.
+
+        For the timeout see `Client.wait_for_service`.
+        """
         return self._handle.graph.wait_until(self.server_is_ready, timeout_sec)
 
     def send_goal(self, goal: Any, timeout_sec: float | None = None, **options: Any) -> Any:
@@ -297,5 +308,5 @@ def _check_handle(goal: object) -> None:
 
 def _wait_for_result(future: Future[Any], timeout_sec: float | None) -> Any:
     if not future.wait(timeout_sec):
-        raise TimeoutError("no response of the action's server in time")
+        raise TimeoutError("the action server did not respond in time")
     return future.result()

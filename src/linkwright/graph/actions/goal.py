@@ -1,4 +1,4 @@
-"""The states of a goal, and the server's handle of it (``rclpy.action.server``)."""
+"""Goal states, responses, and the server's handle to a goal (``rclpy.action.server``)."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ _TRANSITIONS = {
 
 
 class GoalOwner(Protocol):
-    """The part of an action server that its goal handles call."""
+    """The interface through which goal handles call their action server."""
 
     @property
     def action_type(self) -> Any:
@@ -86,7 +86,9 @@ class GoalOwner(Protocol):
 
 
 class ServerGoalHandle:
-    """The server's handle of an accepted goal, usable from any thread.
+    """The server's handle to an accepted goal.
+
+    The methods may be called from any thread.
 
     Attributes:
         request: the goal message.
@@ -134,9 +136,12 @@ class ServerGoalHandle:
         return not self._destroyed and self._status is GoalStatus.CANCELING
 
     def execute(self, execute_callback: Callable[[ServerGoalHandle], Any] | None = None) -> None:
-        """Start executing the goal, by scheduling the given callback or else the server's.
+        """Mark the goal as executing, and schedule its execution.
 
-        The callback also receives a goal that is canceled before it starts, and decides how the goal ends.
+        The given callback executes the goal, or by default the server's execute callback. A goal that was canceled
+        before it starts stays in the state CANCELING.
+
+        The callback receives such a goal, too, and decides how the goal ends.
         """
         with self._lock:
             if not self.is_cancel_requested:

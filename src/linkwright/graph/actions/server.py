@@ -47,12 +47,12 @@ def default_cancel_callback(cancel_request: ServerGoalHandle) -> CancelResponse:
 
 
 async def await_result(value: Any) -> Any:
-    """Return a callback's return value, awaited first if it is awaitable."""
+    """Return a callback's return value, after awaiting it if it is awaitable."""
     return await value if isawaitable(value) else value
 
 
 class ActionServer(ActionEndpoint):
-    """Serves an action (rclpy ``ActionServer``).
+    """The server of an action (rclpy ``ActionServer``).
 
     The server consists of three services and two topics below ``NAME/_action/``. Callbacks may be coroutine functions.
     An execute callback that is not a coroutine function runs in the dispatcher's thread and blocks other callbacks
@@ -265,7 +265,7 @@ class ActionServer(ActionEndpoint):
 
         - An ID selects that goal.
         - A stamp selects all goals that were accepted up to that time.
-        - An ID with a stamp selects that goal and those accepted up to that time.
+        - An ID with a stamp selects that goal and all goals that were accepted up to that time.
         - A request with neither selects all goals.
         """
         uuid = bytes(info.goal_id.uuid)

@@ -172,7 +172,7 @@ def _read_log_config_file(ros: RosArguments, path: str) -> None:
 def _read_enclave(ros: RosArguments, enclave: str) -> None:
     if not re.fullmatch(r"(/|(/[A-Za-z_]\w*)+)", enclave):
         raise _error(
-            phrase("'{enclave}' is not an enclave", enclave=enclave),
+            phrase("'{enclave}' is not a valid enclave", enclave=enclave),
             phrase("write a name that begins with a slash, such as /robot/talker"),
         )
     ros.enclave = enclave

@@ -111,7 +111,7 @@ def check_for_type_support(interface: Any) -> None:
     origin = f", from {module_file}," if module_file else ""
     raise AttributeError(
         f"{interface!r}{origin} is not an interface class that this rclpy can use. This might be a ROS 1 message type, "
-        "or one built for a real ROS 2, which does not go together with Linkwright's rclpy"
+        "or a type built for a real ROS 2, which does not work with Linkwright's rclpy"
     )
 
 
@@ -164,7 +164,7 @@ class Endpoint(Part):
     is_listed = True
     raw = False
     _check_interface: Callable[[Any], None]
-    """Raises an error for the class of an interface that the endpoint cannot carry."""
+    """A function that raises an error for an interface class that the endpoint cannot carry."""
 
     def _describe(self, node: NodeHandle, interface: Any, name: str, qos_profile: QoSProfile) -> None:
         self.node = node
@@ -268,7 +268,10 @@ class TopicEndpoint(Endpoint, Generic[M]):
         return self.interface  # type: ignore[no-any-return]  # made from the name of a type
 
     def set_outside_count(self, count: int) -> None:
-        """Set the number of matching endpoints in other processes. Called by the transport."""
+        """Set the number of matching endpoints in other processes, and report a change.
+
+        The transport calls this method. A change causes a QoS event.
+        """
         previous_count, self._outside_count = self._outside_count, count
         if self.events is not None and count != previous_count:
             self.events.matched(count - previous_count)
@@ -329,7 +332,7 @@ class Presence(Endpoint):
 
     def __init__(self, node: NodeHandle, info: EndpointInfo) -> None:
         if info.kind not in (EndpointKind.SUBSCRIPTION, EndpointKind.CLIENT):
-            raise ValueError(f"{info.kind} cannot be without a part in the graph")
+            raise ValueError(f"a presence represents a subscription or a client, not a {info.kind.value}")
         self.kind = info.kind
         self._describe(node, info.type_name, info.name, info.qos)
         self.type_hash = info.type_hash

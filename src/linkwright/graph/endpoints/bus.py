@@ -78,10 +78,11 @@ class Transport(Protocol):
         """Withdraw an endpoint that was announced with `open_presence`."""
 
     def look_around(self) -> None:
-        """Discover the nodes and endpoints outside the process. Called before each query for them.
+        """Discover the nodes and endpoints outside the process.
 
-        A transport need not start discovery earlier. The first call may block for a few seconds at most. After that
-        call the transport discovers everything continuously.
+        The graph calls this method before each query for remote nodes or endpoints. A transport need not start
+        discovery earlier. The first call may block for a few seconds at most. After that call, discovery continues in
+        the background.
         """
 
     def remote_nodes(self) -> Sequence[NodeIdentity]:
@@ -146,7 +147,7 @@ class _Directory(Generic[E]):
 
 
 class Bus:
-    """Holds all endpoints of the process, and connects the matching ones.
+    """A registry of the endpoints of the process that connects matching endpoints.
 
     All methods may be called from any thread.
     """
@@ -179,7 +180,7 @@ class Bus:
     def _match(self, publisher: Publisher[Any], subscription: Subscription[Any]) -> None:
         """Connect a publisher and a subscription, or warn of incompatible QoS.
 
-        They stay unconnected if their types differ and another subscription of the same node has the publisher's type.
+        Nothing happens if their types differ and another subscription of the same node has the publisher's type.
         """
         type_name = publisher.type_name
         other_subscriptions = () if subscription.type_name == type_name else self._subscriptions.of(subscription.name)
@@ -229,7 +230,7 @@ class Bus:
 
 
 def match(publisher: Publisher[Any], subscription: Subscription[Any]) -> None:
-    """Connect a publisher and a subscription, or warn both nodes of incompatible QoS policies."""
+    """Connect a publisher and a subscription, or warn of different types or incompatible QoS."""
     if publisher.type_name != subscription.type_name:
         subscription.node.logger.warning(
             f"Topic '{publisher.name}' has different types: '{publisher.node_name}' publishes "

@@ -1,4 +1,4 @@
-"""Revokes the last command when its publisher is lost, for example to stop a drive."""
+"""Revoke the last command when its publisher is lost, for example to stop a drive."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 class Commander:
-    """Revokes the current command when the publisher of that command is lost.
+    """A guard that revokes the current command when the publisher of that command is lost.
 
     A publisher that leaves the graph has ended in an orderly way, and its last command stays in force. A lost publisher
     was killed, has crashed or is out of reach, so it cannot replace its command. The loss of one publisher does not

@@ -94,7 +94,7 @@ _END = _Token("end", "")
 
 
 class _Parser:
-    """Parses an expression into a condition, by recursive descent."""
+    """A recursive-descent parser that converts an expression to a condition."""
 
     def __init__(self, options: ContentFilterOptions, message_class: Any) -> None:
         self._text = options.filter_expression

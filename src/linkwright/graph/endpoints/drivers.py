@@ -1,4 +1,4 @@
-"""Detects and logs several publishers that command one robot at the same time."""
+"""Detect and log several publishers that command one robot at the same time."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _QUIET_S = 10.0
 
 
 class Dispute:
-    """Detects publishers whose commands repeatedly replace each other.
+    """A detector of publishers whose commands repeatedly replace each other.
 
     A publisher takes over when its command differs from the previous command, which another publisher sent. In a
     dispute, several publishers take over repeatedly for a while. A handover is not a dispute. Neither is a final stop
@@ -105,10 +105,10 @@ class CommandedNode(Protocol):
 
 
 class DriverWatch:
-    """Warns when several nodes command the same robot at the same time, and names the nodes.
+    """A monitor that warns when several nodes command the same robot at the same time.
 
-    There is one warning whenever the set of these nodes changes. As in ROS and Gazebo, each message takes effect when
-    it arrives. A dispute is reported, not prevented.
+    It logs one warning, with the names of the nodes, whenever the set of these nodes changes. As in ROS and Gazebo,
+    each message takes effect when it arrives. A dispute is reported, not prevented.
 
     Args:
         logger: logs the warnings.

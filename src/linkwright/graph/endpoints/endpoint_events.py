@@ -112,10 +112,10 @@ class EndpointEvents(Entity):
         self._notify(self._callbacks.matched, QoSMatchedInfo(total, max(change, 0), self._match_count, change))
 
     def report_incompatible(self, policy: str) -> bool:
-        """Count an endpoint with incompatible QoS, and queue the callback, if any.
+        """Count an endpoint with incompatible QoS, and queue the callback if there is one.
 
         Returns:
-            Whether the warning in the log is omitted, because there is a callback or the user disabled the default.
+            True if no warning must be logged: a callback exists, or the user disabled the default callbacks.
         """
         total = self._count("incompatible", 1)
         if self._callbacks.incompatible_qos is None:
@@ -252,7 +252,7 @@ class PublisherEvents(EndpointEvents):
     def set_dispatcher(self, dispatcher: Dispatcher | None) -> None:
         """Set the dispatcher that runs the callbacks and monitors the time limits.
 
-        Setting a dispatcher counts as activity.
+        A new dispatcher also restarts the liveliness lease.
         """
         super().set_dispatcher(dispatcher)
         if self._lease_watchdog is not None:

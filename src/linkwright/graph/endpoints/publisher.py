@@ -25,7 +25,7 @@ M = TypeVar("M")
 
 
 class Publisher(TopicEndpoint[M]):
-    """Publishes messages on a topic, from any thread (rclpy ``Publisher``).
+    """A publisher of messages on a topic, usable from any thread (rclpy ``Publisher``).
 
     ``Node.create_publisher`` creates publishers.
 
@@ -186,7 +186,7 @@ class Publisher(TopicEndpoint[M]):
         return tuple(self._receivers_by_subscription)
 
     def hold_for_outside(self, wait_until_sent: Callable[[float | None], bool]) -> None:
-        """Hold messages until `set_outside` is called.
+        """Hold messages for other processes until `set_outside` is called.
 
         The transport calls both, in this order. In ROS 2, a discovered subscription receives all messages of a
         publisher, including the first. The transport creates the writer in its own thread, shortly after the publisher
@@ -207,7 +207,9 @@ class Publisher(TopicEndpoint[M]):
         send: Callable[[Any], None] | None,
         wait_until_acknowledged: Callable[[float | None], bool] | None = None,
     ) -> None:
-        """Set or clear the function that sends messages to other processes. Called by the transport.
+        """Set or clear the function that sends messages to other processes.
+
+        The transport calls this method.
 
         Messages that are held or stored for late joiners are sent first. No message is lost or sent twice.
 

@@ -30,7 +30,7 @@ EVENT_TOPIC_SUFFIX = "/_service_event"
 
 
 class ServiceIntrospectionState(IntEnum):
-    """The parts of requests to publish for introspection, with rclpy's numbers and names."""
+    """The levels of service introspection, with rclpy's numbers and names."""
 
     OFF = 0
     METADATA = 1
@@ -62,7 +62,7 @@ NO_REQUEST_ID = RequestId(bytes(16), 0)
 
 
 class ServiceEvents:
-    """Publishes introspection events for the requests of a client or service.
+    """A publisher of introspection events for the requests of a client or service.
 
     Args:
         endpoint: the client or service, whose node owns the publisher.
@@ -153,7 +153,7 @@ _NO_REQUESTS: deque[Any] = deque(maxlen=0)
 
 
 class Service(IntrospectedEndpoint, Entity, Generic[Request, Response]):
-    """Answers the requests to a service (rclpy ``Service``).
+    """A service server, which answers requests (rclpy ``Service``).
 
     ``Node.create_service`` creates services.
 
@@ -291,7 +291,7 @@ class OutsideService(Protocol):
 
 
 class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
-    """Calls a service (rclpy ``Client``).
+    """A service client, which sends requests (rclpy ``Client``).
 
     ``Node.create_client`` creates clients.
 
@@ -402,7 +402,10 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
         return future.result()
 
     def remove_pending_request(self, future: Future[Any]) -> None:
-        """Cancel a request, whose future will not receive a response."""
+        """Cancel a pending request.
+
+        The future never receives a response.
+        """
         with self._lock:
             cancel = self._pending.pop(future, None)
             self._unsent = deque(

@@ -48,7 +48,7 @@ class CallbackType(Enum):
 
 
 class Subscription(TopicEndpoint[M], Entity):
-    """Receives the messages of a topic (rclpy ``Subscription``).
+    """A subscription to the messages of a topic (rclpy ``Subscription``).
 
     ``Node.create_subscription`` creates subscriptions.
 
@@ -202,7 +202,10 @@ class Subscription(TopicEndpoint[M], Entity):
             self.events.set_outside_liveliness(alive, not_alive)
 
     def count_lost_outside(self, count: int) -> None:
-        """Count lost messages from other processes. Called by the transport."""
+        """Count lost messages from other processes.
+
+        The transport calls this method.
+        """
         if self.events is not None:
             self.events.count_lost(count)
 
@@ -253,14 +256,20 @@ class Subscription(TopicEndpoint[M], Entity):
         return receive
 
     def add_publisher(self, publisher: TopicEndpoint[Any]) -> None:
-        """Record that a publisher of this process was connected. Called by the publisher."""
+        """Record that a publisher of this process was connected.
+
+        The publisher calls this method.
+        """
         self._publishers[publisher] = None
         if self.events is not None:
             self.events.matched(1)
             self.events.liveliness(int(publisher.is_alive), int(not publisher.is_alive))
 
     def remove_publisher(self, publisher: TopicEndpoint[Any]) -> None:
-        """Record that a publisher of this process was disconnected. Called by the publisher."""
+        """Record that a publisher of this process was disconnected.
+
+        The publisher calls this method.
+        """
         if self._publishers.pop(publisher, self) is None and self.events is not None:
             self.events.matched(-1)
             self.events.liveliness(-int(publisher.is_alive), -int(not publisher.is_alive))

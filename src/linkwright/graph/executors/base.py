@@ -53,7 +53,7 @@ class SpunNode(Protocol):
 
 
 def deadline_after(timeout_sec: float | None) -> int | None:
-    """Return the value of ``time.monotonic_ns`` at which a timeout, in seconds, ends.
+    """Return the end of a timeout in seconds, as a value of ``time.monotonic_ns``.
 
     Returns None (no limit) if the timeout is None or negative.
     """
@@ -63,7 +63,7 @@ def deadline_after(timeout_sec: float | None) -> int | None:
 
 
 class Executor:
-    """Runs the callbacks of nodes.
+    """An executor that runs the callbacks of nodes.
 
     This is the base class of all executors, including users' own.
 
@@ -98,9 +98,10 @@ class Executor:
         return bool(self._spinners)
 
     def add_node(self, node: SpunNode) -> bool:
-        """Run the callbacks of a node from now on.
+        """Add a node whose callbacks this executor runs from now on.
 
-        Returns False if the executor already has the node, or was shut down.
+        A node that belongs to another executor is removed from it. Returns False if the executor already has the node,
+        or was shut down.
         """
         with self._nodes_lock:
             if self._is_shutdown or node.handle in self._nodes:
@@ -454,7 +455,7 @@ class SpinningExecutor(Executor):
             self._end_spinning()
 
     def spin_once(self, timeout_sec: float | None = None) -> None:
-        """Wait for a callback, then run it or have it run. See ``Executor.spin_once``."""
+        """Wait for a callback, then run it in this thread or in another. See ``Executor.spin_once``."""
         self._spin_single(timeout_sec, None)
 
     def spin_once_until_future_complete(self, future: Future[Any], timeout_sec: float | None = None) -> None:
@@ -471,7 +472,7 @@ class SpinningExecutor(Executor):
 
     @abstractmethod
     def _turn(self, deadline_ns: int | None, condition: Callable[[], bool] | None) -> None:
-        """Wait for a callback, then run it or have it run.
+        """Wait for a callback, then run it in this thread or in another.
 
         Args:
             deadline_ns: the value of ``time.monotonic_ns`` at which the wait ends; None for no limit.

@@ -23,7 +23,7 @@ from linkwright.process.processors import usable_processors
 
 
 class MultiThreadedExecutor(SpinningExecutor):
-    """Runs callbacks in a pool of threads, as groups allow (rclpy ``MultiThreadedExecutor``).
+    """Runs callbacks in a thread pool, as their groups allow (rclpy ``MultiThreadedExecutor``).
 
     The spinning thread hands work to at most as many threads as the pool has. Other work stays queued in its entities,
     subject to their QoS. `spin_once` does not wait for the work that it handed out to end. If a callback raises an
@@ -163,10 +163,10 @@ class Workers:
         """Stop the threads after the submitted jobs, and wait for the threads to end.
 
         Args:
-            timeout_sec: the maximum wait for each thread, in seconds; None for no limit.
+            timeout_sec: the maximum wait for all threads together, in seconds; None for no limit.
 
         Returns:
-            Whether all have ended. A thread that calls this method does not wait for itself.
+            Whether all threads have ended. A thread of the pool that calls this method does not wait for itself.
         """
         with self._lock:
             threads, self._threads = self._threads, []

@@ -10,10 +10,10 @@ from linkwright.graph.faults import ConditionReachedException, ShutdownException
 
 
 class SingleThreadedExecutor(SpinningExecutor):
-    """Runs callbacks one by one in the spinning thread (rclpy ``SingleThreadedExecutor``).
+    """An executor that runs callbacks one by one in the spinning thread.
 
-    If a callback raises an exception, ``spin`` raises it, too. If the context is shut down during the wait, ``spin``
-    raises ``ExternalShutdownException``.
+    It corresponds to rclpy's ``SingleThreadedExecutor``. If a callback raises an exception, ``spin`` raises it, too. If
+    the context is shut down during the wait, ``spin`` raises ``ExternalShutdownException``.
     """
 
     def is_own_thread(self) -> bool:

@@ -24,7 +24,7 @@ It may be called from any thread, but never by two threads at the same time.
 
 
 class SharedNameMonitor:
-    """Tracks node names of this process that other processes also use, and reports changes.
+    """A monitor of the node names of this process that other processes also use.
 
     Args:
         notify: receives the shared names when they change. None logs a warning for each name when it becomes shared.
@@ -61,7 +61,7 @@ class SharedNameMonitor:
 
 
 NamesAndTypes = list[tuple[str, list[str]]]
-"""Names, sorted, each with the names of the types in use for it, sorted."""
+"""The sorted names of topics, services or actions, each with the sorted names of its types."""
 
 UNKNOWN_NODE = NodeIdentity("_NODE_NAME_UNKNOWN_", "_NODE_NAMESPACE_UNKNOWN_")
 """The owner of an endpoint that discovery has not named yet."""
@@ -156,7 +156,7 @@ def names_and_types(endpoints: Iterable[EndpointInfo], *kinds: EndpointKind) -> 
 
 
 def action_names_and_types(endpoints: Iterable[EndpointInfo], *kinds: EndpointKind) -> NamesAndTypes:
-    """Return the names and types of actions whose feedback topic has endpoints of given kinds.
+    """Return the actions, with types, whose feedback topic has endpoints of the given kinds.
 
     This is how rcl_action finds actions: an action server publishes feedback, an action client subscribes to it.
     """
@@ -319,7 +319,7 @@ class GraphQueries:
         with self._changed:
             self._changed.notify_all()
         for watcher in tuple(self._watchers):
-            run_logged(self._logger, "a callback for changes of the graph", watcher)
+            run_logged(self._logger, "a callback for changes to the graph", watcher)
 
     def watch(self, callback: Callable[[], object]) -> None:
         """Register a callback for changes to nodes and endpoints.

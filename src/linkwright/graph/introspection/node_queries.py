@@ -22,9 +22,9 @@ _HASH = re.compile(r"RIHS01_[0-9a-f]{64}")
 
 
 def has_type_descriptions_by_default(variables: Mapping[str, str] = os.environ) -> bool:
-    """Return whether nodes of the distribution ``ROS_DISTRO`` describe their types.
+    """Return whether nodes offer the type description service by default.
 
-    Such nodes offer the type description service. If ``ROS_DISTRO`` is not set, Humble is assumed.
+    They do if ``ROS_DISTRO`` is Iron or a later distribution. If ``ROS_DISTRO`` is not set, Humble is assumed.
     """
     return not is_before_iron(variables)
 

@@ -141,7 +141,7 @@ class LogPublisher(Protocol):
 
 
 class Rosout:
-    """Publishes the records of a node's logger and its children.
+    """A publisher of the log records of a node's logger and its children on ``/rosout``.
 
     Args:
         publisher: the node's publisher of ``/rosout``.

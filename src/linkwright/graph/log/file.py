@@ -56,7 +56,10 @@ class LogFile:
             self.close()
 
     def close(self) -> None:
-        """Flush buffered records, and close the file."""
+        """Flush buffered records, and close the file.
+
+        Later records are discarded.
+        """
         if self._file is not None:
             with suppress(OSError):
                 self._file.close()

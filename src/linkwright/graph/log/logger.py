@@ -110,7 +110,7 @@ LogSink = Callable[[LogRecord], None]
 
 
 class Logger:
-    """Logs under one name, with the methods of rclpy's loggers.
+    """A named logger with the methods of rclpy's loggers.
 
     The methods ``debug`` to ``fatal`` and `log` accept the filters ``once=True``, ``skip_first=True`` and
     ``throttle_duration_sec=SECONDS``. ``throttle_time_source_type=CLOCK`` sets the clock of the throttle. A filter
@@ -259,7 +259,7 @@ def _caller() -> FrameType:
 
 
 def log_failure(logger: Logger, operation: str, error: BaseException) -> None:
-    """Log a failure: the message of a user's mistake, the traceback of any other exception.
+    """Log a failure, with a traceback unless the user caused it.
 
     Args:
         logger: the logger.
@@ -283,7 +283,7 @@ def run_logged(logger: Logger, operation: str, callback: Callable[[], object]) -
     """
     try:
         callback()
-    except Exception as error:  # noqa: BLE001  # one callback must not take the other nodes of the process with it
+    except Exception as error:  # noqa: BLE001  # a failing callback must not stop the other nodes of the process
         log_failure(logger, operation, error)
 
 

@@ -315,7 +315,7 @@ class LoopDispatcher:
                     continue
                 try:
                     result = call()
-                except Exception as error:  # noqa: BLE001  # one callback must not take other nodes with it
+                except Exception as error:  # noqa: BLE001  # a failing callback must not stop other nodes
                     self.on_error(entity, error)
                 else:
                     if result is not None and isinstance(result, CoroutineType):

@@ -2,7 +2,7 @@
 
 In rclpy the response to a request is processed in the callback group of the client. While one callback of a mutually
 exclusive group runs, no other callback of the group runs, so a callback that blocks until the response arrives blocks
-forever. Here, a response runs no user code and is processed in any case. The mistake is logged as an error, so that it
+forever. Here, a response runs no user code and is processed in any case. Such a wait is logged as an error, so that it
 is found before the program runs on a robot. If the node's parameter `STRICT` is set, the callback hangs as in rclpy.
 """
 
@@ -116,9 +116,9 @@ class StepsByExecutor:
 
 
 class Future(Generic[T]):
-    """A future result.
+    """The result of an operation that may not have ended yet.
 
-    Coroutines of asyncio and of an executor can await it.
+    Coroutines of asyncio and of an executor can await the future.
 
     Args:
         executor: runs the done callbacks (through ``create_task(callback, future)``). Without an executor they are
@@ -158,7 +158,7 @@ class Future(Generic[T]):
         return self._cancelled
 
     def cancel(self) -> None:
-        """Cancel the future: its done callbacks are called, and all waits end.
+        """Cancel the future, call its done callbacks, and end all waits.
 
         Does nothing if the future is done.
         """
@@ -202,9 +202,9 @@ class Future(Generic[T]):
         self._notify()
 
     def add_done_callback(self, callback: Callable[[Any], object]) -> None:
-        """Register a callback that receives this future when the future is done.
+        """Register a callback that receives this future when the future is done or cancelled.
 
-        If the future is done already, the callback is called immediately.
+        If that has already happened, the callback is called immediately.
         """
         with self._lock:
             if not self.ended():
@@ -236,7 +236,10 @@ class Future(Generic[T]):
             self.set_result(result)
 
     def fail(self, exception: BaseException, dispatcher: Any) -> None:
-        """Complete the future with an exception, unless it is done or cancelled. See `hand_over`."""
+        """Complete the future with an exception, unless the future is done or cancelled.
+
+        See `hand_over`.
+        """
         if not self.ended():
             self._run_callbacks_by(dispatcher)
             self.set_exception(exception)

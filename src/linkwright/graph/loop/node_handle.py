@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 class CallbackGroup:
-    """Decides which of its entities may run.
+    """A group of entities that decides which of them may run.
 
     This is the base class for users' own groups. An executor calls `can_execute`, then `beginning_execution`, which may
     still refuse, and finally `ending_execution`. When a callback has ended, the executor calls `can_execute` again for
@@ -230,17 +230,23 @@ class Part(HasHandle):
     """Whether the part is removed after the other parts when its node is destroyed, because they may use it."""
 
     def begin(self) -> None:
-        """Start operating. Called after the node has added the part."""
+        """Start operating.
+
+        The node calls this method after it has added the part.
+        """
 
     def retire(self) -> None:
-        """Stop operating. Called when the node removes the part."""
+        """Stop operating.
+
+        The node calls this method when it removes the part.
+        """
         self.destroyed = True
 
     def set_dispatcher(self, dispatcher: Dispatcher | None) -> None:
         """Set the dispatcher that runs the part's callbacks."""
 
     def destroy(self) -> None:
-        """Remove the part from the graph and the node, and end the calls of its callbacks."""
+        """Remove the part from the graph and the node, and stop calling its callbacks."""
         self.node.remove(self)
 
     def check_alive(self) -> None:
@@ -261,7 +267,7 @@ class NodeHandle(Handle):
     Args:
         graph: the graph that the node belongs to.
         identity: the node's name.
-        remappings: the node's rules for names of topics and services.
+        remappings: the node's remapping rules for topics and services.
         logger: the node's logger.
         dispatcher: runs the node's callbacks; None while there is none.
         copies_messages: whether messages are copied, so that the node may change a message after publishing it.

@@ -1,7 +1,4 @@
-"""Timers call back at a fixed period.
-
-Rates sleep until the next tick.
-"""
+"""Timers, which call back at a fixed period, and rates, which sleep until the next tick."""
 
 from __future__ import annotations
 
@@ -45,7 +42,7 @@ class TimerInfo:
 
 
 class Timer(Entity):
-    """Calls back at a fixed period.
+    """A timer that calls a callback at a fixed period.
 
     A late call does not shift the next one. As in rcl, calls that were missed entirely are skipped. The period is
     measured on the timer's clock, which may be a ROS clock that follows simulated time.
@@ -267,7 +264,7 @@ def _check_period(period_ns: int) -> None:
 
 
 class Rate:
-    """Lets a loop run at a fixed rate: each `sleep` ends with the next tick of a timer.
+    """A fixed rate for a loop: each `sleep` ends with the next tick of a timer.
 
     A thread other than the sleeping thread must run the timer's callbacks. A coroutine calls `wait` instead of `sleep`.
     A late tick does not shift the ticks after it.

@@ -149,7 +149,7 @@ def absolute_namespace(namespace: str) -> str:
 
 
 def join(namespace: str, name: str) -> str:
-    """Join a namespace and a name to a full name."""
+    """Join a namespace and a name into a full name."""
     return f"/{name}" if namespace == "/" else f"{namespace}/{name}"
 
 

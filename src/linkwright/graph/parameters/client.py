@@ -28,7 +28,7 @@ Done = Callable[..., Any]
 
 
 class AsyncParameterClient:
-    """Reads and sets the parameters of another node through its services.
+    """A client that reads and sets the parameters of another node through its services.
 
     Each method that sends a request returns a future that gets the service's response. The optional callback of the
     method is called when the future is done.

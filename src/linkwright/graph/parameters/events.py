@@ -15,7 +15,7 @@ H = TypeVar("H")
 
 @dataclass(eq=False)
 class ParameterCallbackHandle:
-    """The handle with which a callback for one parameter of one node is removed."""
+    """The handle for removing a callback for one parameter of one node."""
 
     parameter_name: str
     node_name: str
@@ -24,7 +24,7 @@ class ParameterCallbackHandle:
 
 @dataclass(eq=False)
 class ParameterEventCallbackHandle:
-    """The handle with which a callback for all events is removed."""
+    """The handle for removing a callback for all events."""
 
     callback: Callable[[Any], object]
 
@@ -97,7 +97,7 @@ def _remove(handle: H, handles: list[H]) -> None:
 
 
 class ParameterEventHandler:
-    """Calls callbacks for the events on ``/parameter_events``, or for single parameters in them.
+    """A registry of callbacks for the events on ``/parameter_events`` or for single parameters.
 
     Callbacks are called in the reverse order of their registration.
 

@@ -98,7 +98,7 @@ class _NestedListError(LinkwrightError):
 
 
 class _Reader:
-    """Reads the YAML events of a parameter file.
+    """A reader of the YAML events of a parameter file.
 
     `_event` is the current event.
     """

@@ -434,7 +434,7 @@ class ParameterServices:
 
 
 class ParameterEvents:
-    """Publishes changes to a node's parameters.
+    """A publisher of the changes to a node's parameters on ``/parameter_events``.
 
     Args:
         publisher: the publisher of ``/parameter_events``.

@@ -203,7 +203,7 @@ class ParameterUninitializedException(ParameterException):
             phrase("The parameter '{name}' is not initialized", name=parameter_name),
             parameter_name,
             code="GRAPH207",
-            hint=phrase("give it a default when it is declared, or a value in a parameter file or with -p"),
+            hint=phrase("declare the parameter with a default, or set it in a parameter file or with -p"),
         )
 
 

@@ -27,7 +27,7 @@ class QoSPolicyKind(IntEnum):
 
 
 def qos_policy_name_from_kind(policy_kind: QoSPolicyKind | int) -> str:
-    """Return the name of a policy in events, given by its kind or number."""
+    """Return the name of a policy, given by its kind or number."""
     return QoSPolicyKind(policy_kind).name
 
 
@@ -65,7 +65,7 @@ class QoSPolicyEnum(IntEnum):
 
 
 class HistoryPolicy(QoSPolicyEnum):
-    """Whether only the last `depth` messages are stored, or all of them."""
+    """The history policy: whether only the last `depth` messages are stored, or all messages."""
 
     SYSTEM_DEFAULT = 0
     KEEP_LAST = 1
@@ -74,7 +74,7 @@ class HistoryPolicy(QoSPolicyEnum):
 
 
 class ReliabilityPolicy(QoSPolicyEnum):
-    """Whether every message arrives."""
+    """The reliability policy: whether lost messages are sent again until they arrive."""
 
     SYSTEM_DEFAULT = 0
     RELIABLE = 1
@@ -84,7 +84,7 @@ class ReliabilityPolicy(QoSPolicyEnum):
 
 
 class DurabilityPolicy(QoSPolicyEnum):
-    """Whether subscriptions that join late receive earlier messages."""
+    """The durability policy: whether subscriptions that join late receive earlier messages."""
 
     SYSTEM_DEFAULT = 0
     TRANSIENT_LOCAL = 1
@@ -94,7 +94,7 @@ class DurabilityPolicy(QoSPolicyEnum):
 
 
 class LivelinessPolicy(QoSPolicyEnum):
-    """The ways in which a publisher asserts that it is alive."""
+    """The liveliness policy: how a publisher asserts that it is alive."""
 
     SYSTEM_DEFAULT = 0
     AUTOMATIC = 1

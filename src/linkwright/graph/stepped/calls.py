@@ -14,7 +14,7 @@ Failure = Callable[[Exception], object]
 
 
 class Calls:
-    """Calls the functions of a plugin, a sensor or a controller.
+    """A caller of the functions of a plugin, a sensor or a controller.
 
     Args:
         on_failure: called with the exception of a function; may call `close`.
@@ -47,7 +47,10 @@ class Calls:
             self.number = previous_number
 
     def fail(self, error: Exception) -> None:
-        """Report an error that occurred elsewhere. Must be called in the simulation's thread."""
+        """Report an error that occurred elsewhere.
+
+        This method must be called in the simulation's thread.
+        """
         if not self.is_closed:
             self._failed(error)
 

@@ -27,7 +27,7 @@ _MAX_PENDING_BATCHES = 4
 
 
 class Exchange:
-    """Carries messages out of the simulation's thread, and commands into it.
+    """Queues for messages out of the simulation's thread, and for commands into it.
 
     Messages are collected and delivered in batches. If the simulation has its own thread, batches are delivered to the
     event loop of the graph, otherwise directly. Commands may come from any thread. The simulation executes them between
@@ -69,7 +69,10 @@ class Exchange:
             dispatcher.call_threadsafe(partial(self._deliver, batch))
 
     def post(self, command: Command) -> None:
-        """Queue a function to be called in the simulation's thread. Callable from any thread."""
+        """Queue a function to be called in the simulation's thread.
+
+        Any thread may call this method.
+        """
         self._commands.append(command)
         self.has_commands.set()
 

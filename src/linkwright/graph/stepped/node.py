@@ -208,7 +208,8 @@ class SteppedNode:
         commands at the same time.
 
         Args:
-            stop_motion: stops the motion of the last command; returns whether there was any motion, which is logged.
+            stop_motion: stops the motion of the last command, and returns whether there was any motion. If there was, a
+                warning is logged.
         """
 
         def lost(publisher: EndpointInfo) -> None:
@@ -232,7 +233,10 @@ class SteppedNode:
         self._endpoints.append(self._node.create_service(srv_type, name, on_request, replying=True))
 
     def post(self, command: Callable[[], object]) -> None:
-        """Queue a function to be called between two steps. Callable from any thread."""
+        """Queue a function to be called between two steps.
+
+        Any thread may call this method.
+        """
         self._exchange.post(partial(self.calls.call, command))
 
     def parameter(self, name: str, default: Any) -> Any:

@@ -36,18 +36,18 @@ class Alarm(Protocol):
 
 
 class AlarmSetter(Protocol):
-    """Schedules calls."""
+    """A scheduler of calls."""
 
     def call_at(self, steady_ns: int, callback: Callable[[], None]) -> Alarm:
-        """Schedule a call for a steady time of the graph, in nanoseconds. Callable from any thread.
+        """Schedule a call for a steady time of the graph, in nanoseconds.
 
-        The callback never runs before this method returns. It must be short: it only marks entities as ready, and never
-        runs a user's code.
+        Any thread may call this method. The callback never runs before this method returns. It must be short: it only
+        marks entities as ready, and never runs a user's code.
         """
 
 
 class SettlingDispatcher(Protocol):
-    """Runs the callbacks of a graph, and can wait until they are done."""
+    """A dispatcher of a graph's callbacks that can wait until they are done."""
 
     async def settle(self) -> None:
         """Wait until no work is ready, including calls that other calls make ready."""
@@ -78,7 +78,7 @@ class Timebase(ABC):
         """Return the current system time."""
         return Time(nanoseconds=self.now_ns(), clock_type=ClockType.SYSTEM_TIME)
 
-    def attach(self, dispatcher: SettlingDispatcher) -> None:  # noqa: B027  # most need not know
+    def attach(self, dispatcher: SettlingDispatcher) -> None:  # noqa: B027  # most timebases do not need it
         """Attach the dispatcher of a graph that uses this timebase."""
 
 

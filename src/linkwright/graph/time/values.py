@@ -253,4 +253,4 @@ def _compare_other_type(kind: str, other: object) -> bool:
 
     if is_before_iron():
         raise TypeError(f"Can't compare {kind} with object of type: {type(other)}")
-    return NotImplemented  # type: ignore[no-any-return]  # what operators give
+    return NotImplemented  # type: ignore[no-any-return]  # the return value of operators

@@ -10,7 +10,7 @@ from linkwright.messages import TFMessage, TransformStamped
 
 
 class TransformBroadcaster:
-    """Publishes transforms that change.
+    """A publisher of transforms that change, on ``/tf``.
 
     Args:
         node: the node that publishes.
@@ -26,7 +26,7 @@ class TransformBroadcaster:
 
 
 class StaticTransformBroadcaster:
-    """Publishes transforms that do not change.
+    """A publisher of transforms that do not change, on ``/tf_static``.
 
     Each message contains all transforms that were sent so far, so that late joiners receive all of them.
 
@@ -40,7 +40,7 @@ class StaticTransformBroadcaster:
         self._sent_transforms: dict[str, TransformStamped] = {}
 
     def sendTransform(self, transform: TransformStamped | Sequence[TransformStamped]) -> None:  # noqa: N802
-        """Publish one transform, or several, together with those sent earlier.
+        """Publish one or several transforms, together with all transforms sent earlier.
 
         A transform replaces an earlier transform with the same child frame.
         """

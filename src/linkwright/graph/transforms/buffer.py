@@ -106,7 +106,7 @@ class _Plan:
 
 
 class TransformBuffer:
-    """Stores the latest transform of each frame, as a display needs it.
+    """A buffer of the latest transform of each frame, for displays.
 
     As in tf2, a frame has one parent, and the transform that was received last applies, regardless of its sender. A
     transform with another parent therefore moves the frame to that parent. Unlike tf2 there is no history: stamps are
@@ -179,7 +179,7 @@ class TransformBuffer:
         As in tf2's ``lookupTransform``, the pose transforms points from the source frame to the target frame.
 
         Returns:
-            Array, shape (7,), of x y z and qx qy qz qw.
+            Array, shape (7,), of x y z (metres) and qx qy qz qw.
 
         Raises:
             LookupException: one of the frames is not known, or its parents form a loop.

@@ -49,7 +49,7 @@ _NOT_DEFINED = "Source or target frame is not yet defined"
 
 
 class BufferCore:
-    """Stores transforms for a limited time.
+    """A buffer that stores transforms for a limited time.
 
     Any thread may use the buffer. Times are ``Time`` objects or messages of builtin_interfaces; zero requests the
     latest transform.

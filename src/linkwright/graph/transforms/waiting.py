@@ -22,7 +22,7 @@ NO_TIME = Duration()
 
 
 class Buffer(BufferCore):
-    """Stores transforms, with lookups that can wait for a transform.
+    """A buffer of transforms, with lookups that can wait for a transform.
 
     Args:
         cache_time: how long transforms are stored; 10 seconds by default.

@@ -57,7 +57,7 @@ class FramePath:
 
 
 class Walker:
-    """Finds paths between frames.
+    """A search for paths between frames in the tree of transforms.
 
     Args:
         caches: the transforms of each frame, by number; None for frames without a parent. The list may grow.

@@ -73,7 +73,7 @@ def _group_id(pid: int) -> int:
 
 
 def end_groups(groups: set[int]) -> None:
-    """End process groups with SIGINT, then SIGTERM, then SIGKILL, as long as they exist."""
+    """Send SIGINT, then SIGTERM, then SIGKILL to process groups until they have ended."""
     for signal_number, seconds in _SIGNAL_STAGES:
         groups = {group for group in groups if send_signal(group, signal_number)}
         deadline = time.monotonic() + seconds

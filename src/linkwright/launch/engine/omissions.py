@@ -14,7 +14,10 @@ _MISSING_SOFTWARE_CODES = frozenset({"LAUNCH101", "LAUNCH124", "LAUNCH131", "LAU
 """The codes of findings that report missing software."""
 
 _UNSET_VALUE_CODES = frozenset({"LAUNCH121", "LAUNCH123", "LAUNCH137"})
-"""The codes of findings about unset values. Skipped parts of the launch may have set such a value."""
+"""The codes of findings about unset values.
+
+Skipped parts of the launch may have set such a value.
+"""
 
 
 class Omissions:
@@ -40,7 +43,8 @@ class Omissions:
     def skip(self, error: LinkwrightError) -> bool:
         """Return whether to skip the part of the launch that raised an error, and record it if so.
 
-        A part is skipped if missing software is the cause. After that, a part with an unset value is skipped too.
+        A part is skipped if third-party software that it needs is missing. With `skip_all`, any missing package,
+        program or file is enough. After a part has been skipped, a part with an unset value is skipped too.
 
         Returns:
             True if the part is skipped; False if the error must be reported.
@@ -76,7 +80,7 @@ class Omissions:
         *other_diagnostics, last_diagnostic = error.diagnostics
         if self._command is None or not _is_missing(error):
             return error.diagnostics
-        note = Note(phrase("to skip it and run the rest, run {command}", command=foreign(self._command)))
+        note = Note(phrase("to launch without this part, run {command}", command=foreign(self._command)))
         return (*other_diagnostics, last_diagnostic.with_changes(notes=(*last_diagnostic.notes, note)))
 
 
@@ -87,7 +91,7 @@ def add_no_skip_note(error: LinkwrightError) -> None:
     """
     *other_diagnostics, last_diagnostic = error.diagnostics
     if _is_missing(error) and last_diagnostic.span is not None:
-        note = Note(phrase("the launch file itself needs it, so no part can be skipped"))
+        note = Note(phrase("the launch file itself needs the missing software, so no part can be skipped"))
         error.diagnostics = (*other_diagnostics, last_diagnostic.with_changes(notes=(*last_diagnostic.notes, note)))
 
 

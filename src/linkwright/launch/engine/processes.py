@@ -28,13 +28,22 @@ if TYPE_CHECKING:
 _HAS_GROUPS = hasattr(os, "killpg")
 _KILL = getattr(signal, "SIGKILL", signal.SIGTERM)
 _DRAIN_SECONDS = 0.2
-"""The seconds to read output after a process has ended, because its children may keep the streams open."""
+"""The maximum seconds to read output after a process has ended.
+
+Its children may keep the streams open.
+"""
 _MAX_LINE_LENGTH = 100_000
 """The maximum number of characters of an incomplete line."""
 _ESCALATION_SECONDS = {"SIGTERM": 0.0, "SIGKILL": 0.5}
-"""Seconds to wait before each signal when the user is impatient, by the name of the signal."""
+"""The seconds to wait before each signal after the user has repeated the interrupt.
+
+The keys are the names of the signals.
+"""
 _TERMINALS = frozenset({"xterm", "gnome-terminal", "konsole", "terminator", "x-terminal-emulator", "xfce4-terminal"})
-"""Terminal programs that launch files use as ``prefix``, so that the process can read the keyboard."""
+"""Terminal programs that launch files use as ``prefix``.
+
+In a terminal, the process can read the keyboard.
+"""
 
 
 class RunningProcess:
@@ -200,7 +209,7 @@ class RunningProcess:
             await loop.connect_read_pipe(partial(_TerminalProtocol, self, stream_number), pipe)
 
     def started(self, transport: asyncio.SubprocessTransport) -> None:
-        """Record that the process is running.
+        """Record that the process is running, and emit `ProcessStarted`.
 
         asyncio calls this method before any output arrives.
         """
@@ -260,7 +269,7 @@ class RunningProcess:
     # --- output ---------------------------------------------------------------------------------------------
 
     def handle_output(self, stream_number: int, chunk: bytes) -> None:
-        """Handle output that the process wrote to stdout (1) or stderr (2)."""
+        """Log output that the process wrote to stdout (1) or stderr (2), and emit it as an event."""
         action = self.plan.action
         action.wrote(stream_number, chunk)
         event_class = events.ProcessStdout if stream_number == 1 else events.ProcessStderr

@@ -112,7 +112,7 @@ class LaunchService:
             return loop is not None and not loop.is_running()
 
     def run(self, *, shutdown_when_idle: bool = True) -> int:
-        """Run until the launch is idle.
+        """Run the launch until it is idle, and return its exit status.
 
         Args:
             shutdown_when_idle: whether the launch ends when it is idle. If False, only `shutdown` and signals end it.

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 
 _REPORT_DELAY_SECONDS = 1.0
-"""The seconds after Ctrl-C until the log names the processes that delay the end of the launch."""
+"""The seconds after Ctrl-C until the processes that delay the end are logged."""
 
 
 class LaunchSession:
@@ -82,7 +82,8 @@ class LaunchSession:
             locals_: the initial locals of the context, such as the path of the launch file.
 
         Returns:
-            Whether the launch succeeded: no entity failed, and something ran even if parts were skipped.
+            Whether the launch succeeded. A launch without failures still fails if parts were skipped without
+            `skip_missing` and no other part started a process or node.
         """
         self.loop = asyncio.get_running_loop()
         self.context.extend_locals(locals_ or {})
@@ -103,7 +104,7 @@ class LaunchSession:
 
     @property
     def is_blocking(self) -> bool:
-        """Whether code of the launch file is running, which blocks the event loop."""
+        """Whether the event loop is blocked because code of the launch file is running."""
         return self._is_visiting
 
     @property
@@ -295,7 +296,7 @@ class LaunchSession:
     def _log_running_processes(self) -> None:
         names = self.processes.names
         if names:
-            self.log.info_line("launch", f"waiting for {', '.join(names)} to end; Ctrl-C again does not wait")
+            self.log.info_line("launch", f"waiting for {', '.join(names)} to end; press Ctrl-C again to end them now")
 
     # --- visits ---------------------------------------------------------------------------------------------
 
@@ -384,7 +385,7 @@ class LaunchSession:
         self._react(event)
 
     def _react(self, event: events.Event) -> None:
-        """Carry out an event that ends the launch, or that stops or signals processes."""
+        """End the launch, or stop or signal processes, as the event requests."""
         if isinstance(event, events.Shutdown):
             if not self.ending:
                 self._begin_shutdown(event)
@@ -413,7 +414,7 @@ class LaunchSession:
         await self.host.start_planned()
         waits_for_fix = any(isinstance(failure, XacroCall) for failure in self._failures)
         if waits_for_fix and not self.host.has_viewer and not self.ending:
-            self.shut_down("the robot cannot be read, and there is no viewer to wait in")
+            self.shut_down("the robot description has errors, and there is no viewer that waits for a fix")
 
     def hold(self, future: asyncio.Future[Any]) -> None:
         """Keep the launch running until a future is done."""

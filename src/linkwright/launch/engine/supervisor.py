@@ -1,4 +1,4 @@
-"""The interface of the session that the modules for processes use."""
+"""The interface through which the modules for processes use the session."""
 
 from __future__ import annotations
 

@@ -21,7 +21,10 @@ from linkwright.packages.programs.code_files import is_linkwright_file
 T = TypeVar("T", bound="Placed")
 
 _STARTER_FOLDERS = (str(Path(__file__).parents[2] / "cli") + os.sep, str(Path(asyncio.__file__).parent) + os.sep)
-"""Folders of the code that may have started Linkwright: its command line, and the event loop."""
+"""The folders of code that may have started Linkwright.
+
+They contain the code of its command line and of the event loop.
+"""
 
 
 class Place(ABC):
@@ -170,7 +173,10 @@ class CodePlace(Place):
         return read_source(self.file)
 
     def span(self, source: SourceText | None = None) -> Span:
-        """Return the range of the expression at the location, or of its entire line before Python 3.11."""
+        """Return the range of the expression at the location.
+
+        Before Python 3.11, the range is that of the entire line.
+        """
         positions = getattr(self.code, "co_positions", None)
         if positions is not None:
             positions_of_instruction = next(islice(positions(), self.instruction // 2, None), None)

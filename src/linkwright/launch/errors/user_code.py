@@ -32,8 +32,9 @@ from linkwright.launch.errors.places import CodePlace, Place, error_at, located,
 from linkwright.packages.programs.code_files import is_user_file
 
 DEEPEST = 300
-"""The maximum nesting depth of launch actions: includes, groups, and functions that return actions.
+"""The maximum nesting depth of launch actions.
 
+Includes, groups, and functions that return actions increase the depth.
 Python's own limit would be exceeded only slightly later, at an unrelated location."""
 
 _MODULE_PATH = re.compile(r" \((?:/|[A-Z]:|unknown location).*\)$")

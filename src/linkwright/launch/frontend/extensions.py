@@ -28,7 +28,7 @@ from linkwright.packages.readers.entry_points import (
 )
 
 ACTIONS = "launch.frontend.launch_extension"
-"""The entry point group of modules that expose actions and substitutions when they are imported."""
+"""The entry point group of modules that expose actions and substitutions on import."""
 PARSERS = "launch.frontend.parser"
 """The entry point group of parsers. The names are the languages."""
 _GROUP_NAMES = {ACTIONS: "launch extension", PARSERS: "parser extension"}
@@ -42,7 +42,7 @@ _BUILTIN_ENTRY_POINTS = {
     PARSERS: {"xml": "linkwright.launch.frontend.xml:Parser", "yaml": "linkwright.launch.frontend.yaml:Parser"},
 }
 _STAND_INS = "linkwright.launch_extensions"
-"""The entry point group of modules that replace launch extensions that are not installed, by their names."""
+"""The entry point group of modules that replace launch extensions of the same name if these are not installed."""
 
 
 def load(group: str) -> Iterator[tuple[str, Any]]:

@@ -29,7 +29,7 @@ def replace_escaped_characters(data: str) -> str:
 
 
 def parse_substitution(string_value: str) -> list[Substitution]:
-    """Return a text as a list of substitutions.
+    """Parse a text into a list of substitutions.
 
     Raises:
         ValueError: LAUNCH119, the text cannot be parsed.
@@ -46,7 +46,7 @@ def parse_if_substitutions(value: Any) -> Any:
     Strings without substitutions are unchanged.
 
     Raises:
-        ValueError: the strings of a list have values of different types.
+        ValueError: the items of a list have different types.
     """
     if not isinstance(value, list):
         return _parse_if(value)
@@ -81,13 +81,13 @@ class _Reader:
         self._place = place
 
     def template(self) -> list[Substitution]:
-        """Return the substitutions of the entire text."""
+        """Parse the entire text, and return its substitutions."""
         substitutions = self._parse_parts(until="", argument=False)
         assert self._at == len(self._text)
         return substitutions
 
     def _parse_parts(self, until: str, argument: bool) -> list[Substitution]:
-        """Return the substitutions of the text up to a closing character.
+        """Parse the text up to a closing character, and return its substitutions.
 
         Args:
             until: the closing quote, at which parsing stops; empty outside quotes.
@@ -147,7 +147,7 @@ class _Reader:
             if self._at == start:
                 self._fail(
                     phrase("an argument contains an opening parenthesis"),
-                    phrase(r"put quotes around it, or write \("),
+                    phrase(r"put quotes around the argument, or write \("),
                 )
             return substitutions
         start = self._at
@@ -172,7 +172,7 @@ class _Reader:
         character = self._text[self._at]
         hint = None if name in substitution_parse_methods else did_you_mean(name, substitution_parse_methods)
         if character == "(":
-            hint = hint or phrase(r"put quotes around it, or write \(")
+            hint = hint or phrase(r"put quotes around the argument, or write \(")
         self._fail(
             phrase(
                 "there is an unexpected {character} after '{text}'",

@@ -63,7 +63,7 @@ def instantiate_action(entity: Entity, parser: Parser) -> Action:
 def instantiate_substitution(
     type_name: str, args: Sequence[Any] | None = None, place: Place | None = None
 ) -> Substitution:
-    """Return the substitution with a name, given a list of substitutions for each argument.
+    """Create the substitution with a name. Each argument is a list of substitutions.
 
     Raises:
         RuntimeError: LAUNCH119, there is no substitution with this name, or its arguments are wrong.

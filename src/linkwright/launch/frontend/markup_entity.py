@@ -99,7 +99,7 @@ class MarkupEntity(Entity):
 
 
 def describe_type(data_type: Any) -> Phrase:
-    """Return words for a type in messages, such as "an integer"."""
+    """Return the phrase for a type in messages, such as "an integer"."""
     type_words = {
         int: phrase("an integer"),
         float: phrase("a number"),

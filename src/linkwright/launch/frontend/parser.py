@@ -33,7 +33,7 @@ class Parser:
 
     @classmethod
     def load_launch_extensions(cls) -> None:
-        """Import all modules of Linkwright and of installed packages with actions and substitutions."""
+        """Import the modules of Linkwright and of installed packages that contain actions or substitutions."""
         if Parser.extensions_loaded:
             return
         for _ in extensions.load(extensions.ACTIONS):
@@ -218,9 +218,7 @@ def _likely_diagnostics(name: str, text: str, errors: Sequence[Exception]) -> tu
     for diagnostics in reports:
         if len(reports) == 1 or diagnostics[0].code.startswith("XML") is looks_like_xml:
             return diagnostics
-    message = phrase(
-        "launch file '{name}' is neither XML nor YAML in the form of a launch file", name=display_path(name)
-    )
+    message = phrase("launch file '{name}' is neither an XML nor a YAML launch file", name=display_path(name))
     return (Diagnostic("LAUNCH107", message),)
 
 

@@ -56,7 +56,7 @@ class LaunchDescriptionSource(Placed):
 
     @property
     def method(self) -> str:
-        """A text for listings that names the source of the description."""
+        """A text for listings that describes how the description is loaded."""
         return self._method
 
     def get_launch_description(self, context: LaunchContext) -> LaunchDescription:
@@ -74,7 +74,7 @@ class LaunchDescriptionSource(Placed):
     def try_get_launch_description_without_context(self) -> LaunchDescription | None:
         """Return the description, or None if its path contains substitutions.
 
-        Those need a launch context.
+        Such substitutions need a launch context.
         """
         if self._description is None and all(
             isinstance(substitution, TextSubstitution) for substitution in self._location
@@ -97,7 +97,7 @@ class LaunchDescriptionSource(Placed):
     def _get_launch_description(self, location: str) -> LaunchDescription:
         """Load the description from the file.
 
-        Users' classes override this method, so it has its name in ROS.
+        Users' classes override this method, so it keeps its name in ROS.
         """
         raise NotImplementedError(f"{type(self).__name__} does not implement how to read '{location}'")
 

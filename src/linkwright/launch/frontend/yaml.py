@@ -137,7 +137,7 @@ class Entity(MarkupEntity):
 
 
 def _format_scalar(value: bool | float) -> str:
-    """Return a YAML boolean or number as a string that parameters read as the same value."""
+    """Format a YAML boolean or number so that a parameter parses the string as the same value."""
     return str(value).lower() if isinstance(value, bool) else str(value)
 
 

@@ -48,7 +48,7 @@ class Action(LaunchDescriptionEntity):
         return list(self.get_sub_entities()) if self.condition is None else []
 
     def describe_conditional_sub_entities(self) -> list[tuple[str, Iterable[LaunchDescriptionEntity]]]:
-        """Return a pair of a text with the condition and the child entities, in a list.
+        """Return a list with one pair: a text with the condition, and the child entities.
 
         The list is empty if the action has no condition.
         """

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 class Performable(Protocol):
-    """The interface of substitutions that the context uses."""
+    """The interface through which the launch context uses substitutions."""
 
     place: Place | None
 

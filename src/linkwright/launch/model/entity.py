@@ -50,7 +50,7 @@ class LaunchDescriptionEntity(Placed):
         return False
 
     def explain_inside(self, error: LinkwrightError) -> LinkwrightError:
-        """Add notes to an error of a child entity that show the path of the launch to the child.
+        """Add notes about the path to a child entity to an error that the child caused.
 
         Returns:
             The same error.

@@ -1,4 +1,4 @@
-"""Event handlers: they visit entities when an event occurs."""
+"""Event handlers, which return the entities to visit when an event occurs."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ class BaseEventHandler:
         return text, list(_as_iterable(self.entities))
 
     def handle(self, event: Any, context: LaunchContext) -> Any:
-        """Set the event as a local of the context, and unregister a handler for a single event.
+        """Make the event a local of the context, and unregister the handler if `handle_once` is set.
 
         Subclasses extend this method to return the entities to visit.
         """
@@ -205,8 +205,8 @@ def _as_iterable(entities: Any) -> Iterable[Any]:
 class OnExecutionComplete(OnActionEventBase):
     """Reacts when an action has completed.
 
-    A process has completed when it has ended. If no target is given, it accepts all actions except actions that
-    it returned itself, because they would cause an endless loop.
+    A process has completed when it has ended. If no target is given, the handler accepts all actions except the actions
+    that it returned itself, because these would cause an endless loop.
     """
 
     def __init__(

@@ -1,4 +1,4 @@
-"""Plans of processes: actions create them, and the engine executes them.
+"""Plans of processes, which actions create and the engine executes.
 
 `linkwright.hosting.plans.HostedPlan` is the corresponding plan of one of Linkwright's own nodes.
 """

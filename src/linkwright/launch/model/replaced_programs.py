@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from linkwright.nodes.node_command import CommandParser, NodeCommand
 
 _INTERPRETERS = ("ruby",)
-"""Interpreters before the programs in launch files that are scripts."""
+"""Interpreters that may precede a program in a command, because the program is a script."""
 
 
 def replaced_programs() -> Mapping[str, EntryPoint]:

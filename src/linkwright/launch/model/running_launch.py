@@ -44,7 +44,7 @@ class NodeHosting(Protocol):
         """The launcher's own node for services and topics, created on first use."""
 
     def plan(self, plan: HostedPlan) -> None:
-        """Schedule the start of a node that is described by a plan.
+        """Schedule the start of the node that a plan describes.
 
         This method has no effect while the launch is ending.
         """

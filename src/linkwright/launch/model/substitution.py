@@ -88,7 +88,7 @@ def _as_substitution(value: Any) -> Substitution:
 def _public_name(kind: type) -> str:
     """Return the full name with which users import a class.
 
-    The names of Linkwright's own classes are those in ``launch.substitutions``.
+    Linkwright's own classes have the names of ``launch.substitutions``.
     """
     if not kind.__module__.startswith("linkwright."):
         return f"{kind.__module__}.{kind.__qualname__}"

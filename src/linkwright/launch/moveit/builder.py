@@ -84,7 +84,7 @@ class ParameterBuilder:
 class MoveItConfigsBuilder(ParameterBuilder):
     """Collects parameters from the files of a MoveIt configuration package.
 
-    Each method reads a file from the given path, or by default from the usual path in the package.
+    Most methods read a file from the given path, or by default from the usual path in the package.
 
     Args:
         robot_name: the name of the robot.
@@ -119,7 +119,7 @@ class MoveItConfigsBuilder(ParameterBuilder):
         return self
 
     def robot_description_semantic(self, file_path: _Path = None, mappings: _Mappings = None) -> MoveItConfigsBuilder:
-        """Read the SRDF."""
+        """Read the SRDF, and set the parameter for the semantic robot description."""
         path = self.__srdf if file_path is None else self._package_path / file_path
         self.__moveit_configs.robot_description_semantic = {
             f"{self.__parameter}_semantic": _expand_description(path, mappings)
@@ -177,7 +177,7 @@ class MoveItConfigsBuilder(ParameterBuilder):
         publish_robot_description: bool = False,
         publish_robot_description_semantic: bool = False,
     ) -> MoveItConfigsBuilder:
-        """Set which parts of the planning scene are published."""
+        """Select the parts of the planning scene that are published."""
         self.__moveit_configs.planning_scene_monitor = {
             "publish_planning_scene": publish_planning_scene,
             "publish_geometry_updates": publish_geometry_updates,
@@ -206,8 +206,8 @@ class MoveItConfigsBuilder(ParameterBuilder):
 
         Args:
             default_planning_pipeline: the name of the default pipeline; by default ``ompl``, or the first pipeline.
-            pipelines: the names of the pipelines; by default those for which the package has a file.
-            load_all: whether the default of `pipelines` includes those for which MoveIt's package
+            pipelines: the names of the pipelines; by default the pipelines for which the package has a file.
+            load_all: whether the default of `pipelines` includes the pipelines for which MoveIt's package
                 ``moveit_configs_utils`` has files, if this package is found.
 
         Raises:
@@ -289,7 +289,7 @@ class MoveItConfigsBuilder(ParameterBuilder):
         return {self.__parameter + suffix: load_yaml(self.__file(file_path, default_name))}
 
     def __models(self) -> tuple[Path, Path]:
-        """Return the paths of the URDF and the SRDF.
+        """Return the paths of the URDF and the SRDF, and store the xacro arguments of the URDF.
 
         The paths come from the file of MoveIt's Setup Assistant, or are derived from the name of the robot.
         """

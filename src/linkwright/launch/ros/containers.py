@@ -227,7 +227,7 @@ class ComposableNodeContainer(Node):
 def _is_third_party(finder: PackageFinder, package: str, plugin: str) -> bool:
     """Return whether a component belongs to third-party software that is not built here.
 
-    A name that is a misspelling of one of Linkwright's components is not third-party.
+    A misspelled name of one of Linkwright's components does not count as third-party.
     """
     from linkwright.nodes.options import COMPONENTS
 
@@ -248,10 +248,7 @@ def _parse_descriptions(entity: Entity, parser: Parser, *, optional: bool = Fals
 
 
 def _monitor_lifecycle_node(context: LaunchContext, description: ComposableLifecycleNode, full_name: str) -> None:
-    """Monitor the state of a loaded lifecycle node, and start it if ``autostart`` requests that.
-
-    To start it, the node is configured, and then activated.
-    """
+    """Monitor the state of a loaded lifecycle node, and configure and activate it if ``autostart`` is set."""
     description.record_full_name(full_name)
     LifecycleEventManager(description).setup_lifecycle_manager(context)
     if not is_autostarted(context, description.node_autostart):

@@ -1,4 +1,4 @@
-"""Executables of packages: Linkwright's, installed ones, and ones in sources."""
+"""The executables of packages, which are part of Linkwright, installed, or in the sources of a package."""
 
 from __future__ import annotations
 
@@ -152,7 +152,7 @@ def find_installed_executable(finder: PackageFinder, package: str, name: str) ->
 def find_executable(finder: PackageFinder, package: str, name: str) -> Executable:
     """Return a program of a package.
 
-    The program has a path unless it is one of Linkwright's own.
+    The program has a path unless it is one of Linkwright's own. A script is created for an entry point in sources.
 
     Raises:
         LinkwrightError: LAUNCH131, there is no such package or executable. The error is also a LookupError, because
@@ -295,7 +295,7 @@ def _missing_in_sources_error(package: str, name: str, share: Path) -> Linkwrigh
         )
         build_hint = phrase(
             "build it with 'colcon build --packages-select {package}' and source install/setup.bash;"
-            " that needs a C++ compiler and the ROS 2 libraries it uses",
+            " the build needs a C++ compiler and the ROS 2 libraries that the program uses",
             package=package,
         )
         return mark_unavailable(_lookup_error(message, (), build_hint))
@@ -313,7 +313,10 @@ def _missing_in_sources_error(package: str, name: str, share: Path) -> Linkwrigh
 
 
 def _unknown_program_error(package: str, name: str, share: Path) -> LinkwrightError:
-    """Return the error for a program that the package may build, but not visibly in its sources."""
+    """Return the error for a program that the sources of a package do not name.
+
+    The package may build the program nevertheless.
+    """
     message = phrase("executable '{name}' of package '{package}' is not available", name=name, package=package)
     note = Note(phrase("the files in {share} do not show which programs the package builds", share=display_path(share)))
     build_hint = phrase(

@@ -1,4 +1,4 @@
-"""Removal of the nodes that a launch skips from nav2's lifecycle managers.
+"""Removal of skipped nodes from the node lists of nav2's lifecycle managers.
 
 A lifecycle manager would wait forever for a skipped node.
 """
@@ -20,9 +20,9 @@ def record_skipped_node(context: LaunchContext, name: str) -> None:
 
 
 def without_skipped_nodes(context: LaunchContext, package: str, parameters: dict[str, Any]) -> dict[str, Any]:
-    """Return the parameters of a node.
+    """Return the parameters of a node, without skipped nodes if the node is a lifecycle manager.
 
-    From the parameters of a lifecycle manager, skipped nodes are removed.
+    A warning is logged for each removed node.
     """
     if package != _MANAGER_PACKAGE or not isinstance(parameters.get(_NODES_PARAMETER), Iterable):
         return parameters
@@ -45,7 +45,7 @@ def _without_skipped(context: LaunchContext, names: Iterable[str]) -> list[str]:
     remaining_names = []
     for name in names:
         if name.rpartition("/")[2] in context.session.left_out:
-            context.session.log.warning_line("launch", f"'{name}' is left out, and no lifecycle manager waits for it")
+            context.session.log.warning_line("launch", f"'{name}' is skipped, so no lifecycle manager waits for it")
         else:
             remaining_names.append(name)
     return remaining_names

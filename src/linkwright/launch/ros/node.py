@@ -49,7 +49,7 @@ if TYPE_CHECKING:
     from linkwright.rviz import RvizConfig
 
 _CONTAINER_PACKAGE = "rclcpp_components"
-"""The package whose executables also run other nodes, to which parameter files may apply."""
+"""The package of the component containers, whose parameter files may apply to the nodes in them."""
 
 _PROCESS_VARIABLES = re.compile(r"(ROS|RCUTILS|RMW|CYCLONEDDS|ZENOH|LINKWRIGHT)_")
 """Matches environment variables of a process that change how its nodes behave.
@@ -136,7 +136,7 @@ class Node(ExecuteProcess):
     ) -> tuple[type[Action], dict[str, Any]]:
         """Return the class and keyword arguments for the tag.
 
-        They are the arguments of a process and of a node, such as ``pkg``, ``exec``, ``param`` and ``remap``.
+        The tag has the attributes and children of a process, and also ``pkg``, ``param``, ``remap`` and others.
         """
         _, kwargs = super().parse(entity, parser, ignore=["cmd", *(ignore or ())])
         return cls, parse_node(entity, parser, kwargs, cls)
@@ -178,7 +178,7 @@ class Node(ExecuteProcess):
 
     @property
     def expanded_remapping_rules(self) -> list[tuple[str, str]] | None:
-        """The evaluated remapping rules, beginning with those of the scope, or None."""
+        """The evaluated remapping rules of the scope, followed by the node's own rules, or None."""
         return self.__expanded_remappings
 
     def is_node_name_fully_specified(self) -> bool:
@@ -307,7 +307,7 @@ class Node(ExecuteProcess):
 
     @property
     def __expanded_parameter_arguments(self) -> list[tuple[str, bool]]:
-        """The parameter arguments of the command line, each with whether it is the path of a file.
+        """Pairs of a parameter argument of the command line and whether it is the path of a file.
 
         Files with the values of dictionaries are written on first access. As in launch_ros, parameters of the scope
         are included only if they are files.

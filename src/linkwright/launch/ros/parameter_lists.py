@@ -50,7 +50,7 @@ def normalize_parameters(parameters: Any) -> tuple[Any, ...]:
     place = Place.of_caller()
     if isinstance(parameters, (str, Mapping)) or not isinstance(parameters, Sequence):
         ros_error = TypeError(f"Expecting list of parameters, got {parameters}")
-        hint = phrase("put it into a list: parameters=[...]")
+        hint = phrase("put the parameters into a list: parameters=[...]")
         raise error_at(place, "LAUNCH132", phrase("'parameters' of a node must be a list"), hint, ros_error=ros_error)
     return tuple(_normalize_item(item, place) for item in parameters)
 

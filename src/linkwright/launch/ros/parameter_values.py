@@ -60,7 +60,7 @@ class ParameterValue(Placed):
 
     @property
     def value(self) -> Any:
-        """The value: normalized before `evaluate`, with its type after it."""
+        """The normalized value, or the evaluated value after a call of `evaluate`."""
         return self._value if self._evaluated is None else self._evaluated
 
     @property
@@ -69,7 +69,7 @@ class ParameterValue(Placed):
         return self._value_type
 
     def evaluate(self, context: LaunchContext, name: str | None = None) -> Any:
-        """Return the evaluated value in its type.
+        """Evaluate the substitutions, and return the value in the requested type.
 
         Args:
             context: the launch context for the substitutions.
@@ -124,7 +124,7 @@ class Parameter:
 
     @property
     def name(self) -> list[Substitution] | str:
-        """The name: substitutions before `evaluate`, text after it."""
+        """The name as substitutions, or as text after a call of `evaluate`."""
         return self._name if self._rule is None else self._rule[0]
 
     @property

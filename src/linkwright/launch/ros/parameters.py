@@ -55,7 +55,7 @@ class NodeParameters:
     sources: list[FileSource | dict[str, Any] | tuple[str, Any]] = field(default_factory=list)
 
     def without_missing_files(self, context: LaunchContext, place: Place | None) -> NodeParameters:
-        """Return the parameters without the files that do not exist, and warn about each of these.
+        """Return the parameters without missing files, and warn about each missing file.
 
         launch_ros also ignores files that do not exist.
 
@@ -96,7 +96,7 @@ class NodeParameters:
             message = phrase(
                 "parameter file '{path}' has no section for node '{node}'", path=display_path(source.path), node=node
             )
-            hint = did_you_mean(node, names) or phrase("it has sections for {names}", names=joined(names))
+            hint = did_you_mean(node, names) or phrase("the file has sections for {names}", names=joined(names))
             _warn(context, "LAUNCH149", message, hint, place)
 
     def values(self, context: LaunchContext, node: str) -> dict[str, Any]:
@@ -174,7 +174,9 @@ def scope_parameters(items: Iterable[Any], context: LaunchContext) -> NodeParame
 
 
 def own_parameters(normalized: Sequence[Any], context: LaunchContext) -> NodeParameters:
-    """Evaluate the normalized parameters of a node. See `normalize_parameters`.
+    """Evaluate the normalized parameters of a node, and return them.
+
+    See `normalize_parameters`.
 
     Raises:
         LinkwrightError: LAUNCH132 or LAUNCH133, a value or a file has errors.

@@ -17,7 +17,7 @@ Entities = list[Entity]
 
 
 def parse_node(entity: Entity, parser: Parser, kwargs: dict[str, Any], cls: Any) -> dict[str, Any]:
-    """Add a node's keyword arguments to a process's, and return all of them.
+    """Add a node's keyword arguments to the keyword arguments of its process, and return all.
 
     Args:
         entity: the tag.
@@ -79,7 +79,7 @@ def parse_parameters(tags: list[Entity], parser: Parser) -> list[Any]:
                 raise _tag_error(tag, phrase("the attribute 'allow_substs' needs the attribute 'from'"))
             parameters.append(_parse_nested([tag], parser))
         else:
-            raise _tag_error(tag, phrase("it needs the attribute 'name' or 'from'"), ValueError)
+            raise _tag_error(tag, phrase("the attribute 'name' or 'from' is missing"), ValueError)
     return parameters
 
 
@@ -107,12 +107,12 @@ def _parse_nested(tags: list[Entity], parser: Parser) -> dict[Any, Any]:
         elif children:
             values[name] = _parse_nested(children, parser)
         else:
-            raise _tag_error(tag, phrase("it needs the attribute 'value' or nested parameters"))
+            raise _tag_error(tag, phrase("the attribute 'value' or nested parameters are missing"))
     return values
 
 
 def _type_error(tag: Entity, value: Any, identifier: str | None, error: Exception) -> Exception:
-    """Return the error for a ``param`` tag with a value that is not of its type.
+    """Return the error for a ``param`` tag whose value does not have the declared type.
 
     A LinkwrightError with another code than LAUNCH132 is returned unchanged.
     """

@@ -78,7 +78,7 @@ class RewrittenYaml(_YamlFileSubstitution):
 
     Args:
         source_file: the file to copy.
-        param_rewrites: maps the name of parameters, or the path of one parameter with dots, to a new value. A path
+        param_rewrites: maps the name of parameters, or the dotted path of one parameter, to a new value. A path
             that contains ``ros__parameters`` is added if the file has no such parameter.
         root_key: a key under which the entire content is nested; None to keep the content at the top.
         key_rewrites: maps keys to new keys.

@@ -1,4 +1,4 @@
-"""Actions on all later nodes in their scope: namespaces, parameters and remappings.
+"""Actions that set the namespaces, parameters and remappings of all later nodes in a scope.
 
 As in launch_ros, the settings are stored in launch configurations, so that they end with a group.
 """
@@ -37,7 +37,7 @@ ParseResult = tuple[type[Action], dict[str, Any]]
 @expose_action("push_ros_namespace")
 @expose_action("push-ros-namespace")
 class PushRosNamespace(Action):
-    """Adds a prefix to the namespaces of all later nodes."""
+    """Adds a prefix to the namespaces of later nodes in the same scope."""
 
     def __init__(self, namespace: SomeSubstitutionsType, **kwargs: Any) -> None:
         super().__init__(**kwargs)

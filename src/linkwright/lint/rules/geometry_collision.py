@@ -173,7 +173,7 @@ class CollisionAwayFromVisual(Rule):
 
 
 def _origin_hint(link: Link, visual_box: Bounds) -> Phrase:
-    """Return a hint on how to fix a collision shape that is far from its visual.
+    """Return a hint for fixing a collision shape that is far from its visual.
 
     If both have the same ``<origin>``, the hint is about a mesh that is far from its own origin.
     """

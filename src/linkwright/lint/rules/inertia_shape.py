@@ -339,7 +339,7 @@ class InertiaTooLarge(Rule):
         largest = getattr(inertial, name)
         uniform_moment = _largest_uniform_moment(bounds, inertial.mass)
         limit_phrase = phrase(
-            "a mass of {mass:g} kg within these shapes has a moment of at most {limit:.2g} kg m2",
+            "a mass of {mass:g} kg within these shapes has a moment of inertia of at most {limit:.2g} kg m2",
             mass=inertial.mass,
             limit=limit,
         )

@@ -275,7 +275,7 @@ def _intended_package(name: str, package: PackageContext, subject: Subject) -> s
 
 
 def _is_typo(name: str, similar_name: str) -> bool:
-    """Return whether two names of at least five letters differ by at most one or two letters."""
+    """Return whether two names of at least five letters are so similar that one is probably misspelt."""
     if abs(len(name) - len(similar_name)) > 2 or min(len(name), len(similar_name)) < 5:
         return False
     from difflib import SequenceMatcher

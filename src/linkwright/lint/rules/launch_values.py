@@ -64,7 +64,7 @@ class CommandWithoutBlank(LaunchRule):
     severity = Severity.ERROR
 
     def check_launch(self, file: LaunchFile) -> Iterator[Diagnostic]:
-        """Yield a finding for each ``Command`` of a launch file that lacks a blank."""
+        """Yield a finding for each ``Command`` without a space between the program and its argument."""
         python = file.python
         if python is None:
             return
@@ -344,7 +344,7 @@ def _first_invalid_yaml_description(
 
 
 def _yaml_problem(text: str) -> str | None:
-    """Return why launch cannot parse a text as a YAML string, or None if it can."""
+    """Return the reason why launch cannot parse a text as a YAML string, or None."""
     import yaml
 
     try:
@@ -355,7 +355,7 @@ def _yaml_problem(text: str) -> str | None:
 
 
 def _is_program(node: ast.expr, python: PythonFile) -> bool:
-    """Return whether a part of a command is the name of a program without a trailing blank."""
+    """Return whether a part of a command is the name of a program without a trailing space."""
     text = python.text(node)
     if text is not None:
         return bool(re.search(r"(^|/)(xacro|cat)$", text))
@@ -366,7 +366,7 @@ def _begins_with_blank(node: ast.expr, python: PythonFile) -> bool:
     text = python.text(node)
     if text is not None:
         return text[:1].isspace()
-    # Only a path or a launch configuration certainly has no leading blank.
+    # Only a path or a launch configuration certainly has no leading space.
     node = python.resolved(node)
     if isinstance(node, ast.Call):
         name = called_name(node).rpartition(".")[2]
@@ -377,9 +377,9 @@ def _begins_with_blank(node: ast.expr, python: PythonFile) -> bool:
 
 
 def _blank_fix(program: ast.expr, python: PythonFile) -> Fix | None:
-    """Return the fix that adds a blank after a program's name, or None if not possible.
+    """Return the fix that adds a space after a program's name, or None if this is not possible.
 
-    The blank is added before the closing quote of the name, or as a separate part of the command.
+    The space is added before the closing quote of the name, or as a separate part of the command.
     """
     start, end = python.range(program)
     source: SourceText = python.source

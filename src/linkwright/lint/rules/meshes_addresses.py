@@ -336,7 +336,7 @@ def _in_known_package(subject: Subject, path: Path | None) -> str | None:
 def file_hint(path: Path, suffixes: Sequence[str]) -> Phrase:
     """Return a hint on a missing file that names existing files with one of the suffixes.
 
-    The texts in `suffixes` are in lower case.
+    The suffixes are in lower case.
     """
     try:
         names = sorted(entry.name for entry in path.parent.iterdir() if entry.suffix.lower() in suffixes)

@@ -1,4 +1,4 @@
-"""Rules about how links and joints are named: characters, case, blanks and repetitions."""
+"""Rules about the names of links and joints: characters, case, spaces and repetitions."""
 
 from __future__ import annotations
 

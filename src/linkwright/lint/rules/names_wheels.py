@@ -73,7 +73,7 @@ def is_wheel(joint: Joint) -> bool:
 
 
 def words(name: str) -> list[str]:
-    """Return the words of a name in lower case, such as three for ``leftWheel_joint``."""
+    """Return the words of a name in lower case: left, wheel and joint for ``leftWheel_joint``."""
     return [word.lower() for word in re.findall(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])|\d+", name)]
 
 

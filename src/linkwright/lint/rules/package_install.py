@@ -1,7 +1,7 @@
 """Rules about files that ``setup.py`` or ``CMakeLists.txt`` does not install or cannot find.
 
-The rules about missing files do not apply if it is not known which files are installed, because of a value that only
-CMake knows or a command of another package.
+The rules about missing files do not apply if the set of installed files is unknown. It is unknown if it depends on a
+value that only CMake can compute, or on a command of another package.
 """
 
 from __future__ import annotations
@@ -297,7 +297,7 @@ class InstalledFileMissing(PackageRule):
 def _exists_or_is_generated(package: PackageContext, path: str) -> bool:
     """Return whether a path is among the sources or is created before the installation.
 
-    Files that git ignores, and files that CMake creates, count as created.
+    Files that git ignores and files that CMake creates are assumed to be created.
     """
     absolute_path = package.folder / path
     is_ignored = is_ignored_by_git(absolute_path) or is_ignored_by_git(absolute_path / "_")
@@ -358,7 +358,7 @@ def checkout_hint(package: PackageContext, path: str) -> Phrase | None:
     submodule = submodule_of(package.folder / path)
     if submodule is None:
         return None
-    return phrase("'{folder}' is a submodule of Git: run git submodule update --init", folder=submodule)
+    return phrase("'{folder}' is a Git submodule: run git submodule update --init", folder=submodule)
 
 
 def nearest_file_hint(package: PackageContext, path: str) -> Phrase | None:

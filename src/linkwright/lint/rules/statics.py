@@ -45,7 +45,7 @@ class Contact(NamedTuple):
 def contacts(subject: Subject) -> list[Contact] | None:
     """Return a robot's contacts with the ground, or None if they are not known.
 
-    They are not known without a robot, or if a wheel or caster cannot be measured.
+    The contacts are not known if there is no robot, or if a wheel or caster cannot be measured.
     """
     robot, frames = subject.robot, subject.frames
     if robot is None:
@@ -123,7 +123,7 @@ class WheelsNotLevel(Rule):
 def _lifted_wheels(subject: Subject) -> set[str]:
     """Return the names of the wheels and casters that a joint above them can lift.
 
-    Steering joints, which rotate about z, do not count.
+    Steering joints, which rotate about z, are ignored.
     """
     robot, frames = subject.robot, subject.frames
     names: set[str] = set()
@@ -197,7 +197,7 @@ class CenterBeyondWheels(Rule):
 
 
 def _depth(shape: object, upward: float) -> float | None:
-    """Return how far a wheel's shape extends below its centre in m, or None for other shapes.
+    """Return the extent of a wheel's shape below its centre in m, or None for other shapes.
 
     `upward` is the upward component of the shape's z axis.
     """

@@ -1,4 +1,4 @@
-"""Rules about elements that URDF readers ignore: misspelt, misplaced or unknown ones."""
+"""Rules about elements that URDF readers ignore because they are misspelt, misplaced or unknown."""
 
 from __future__ import annotations
 
@@ -129,7 +129,7 @@ def _is_zero(origin: Element) -> bool:
 def _nearest_parents(parent_tags: Sequence[str], place: Place) -> Sequence[str]:
     """Return the allowed parents of a misplaced element that are closest to its current parent.
 
-    The closest ones are children of the current parent, then the parent of the current parent, then all allowed
+    The closest parents are children of the current parent, then the parent of the current parent, then all allowed
     parents.
     """
     outer_tag = place.parent.tag if place.parent is not None else ""

@@ -42,7 +42,7 @@ class MisspeltExtension(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every element and attribute in the extensions whose name misspells a known one."""
+        """Report every element and attribute in the extensions whose name misspells a known name."""
         for extension in subject.elements():
             if extension.tag not in CHILDREN:
                 continue

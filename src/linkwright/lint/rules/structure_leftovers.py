@@ -86,7 +86,7 @@ class StrayText(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every text that is not blank.
+        """Report every text that contains more than white space.
 
         A text is left out if the reader reports a missing value at the same element.
         """
@@ -146,7 +146,7 @@ class EmptyName(Rule):
     severity = Severity.ERROR
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every name that is empty or blank."""
+        """Report every name that is empty or consists only of white space."""
         named_elements = [element for element in subject.elements() if element.tag in ("link", "joint")]
         for element in [subject.root, *named_elements]:
             name = element.attributes.get("name")

@@ -36,8 +36,8 @@ def _without_siblings(name: str, candidates: Iterable[str]) -> list[str]:
 def _intended_kind(gazebo: Element, name: str) -> str:
     """Return the kind of object that a `<gazebo>` probably refers to.
 
-    The kind is ``link`` or ``joint``, or empty if it is unknown. The content of the `<gazebo>` decides, or else the
-    name.
+    The kind is ``link`` or ``joint``, or empty if it is unknown. It is derived from the content of the `<gazebo>` or,
+    if that is not possible, from the name.
     """
     child_tags = {child.tag for child in gazebo.elements()}
     if child_tags & JOINT_ELEMENTS:
@@ -134,7 +134,7 @@ class TransmissionJointUnknown(Rule):
     name = "transmission-joint-unknown"
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every transmission of a missing joint, including transmissions in ``<ros2_control>``."""
+        """Report every transmission of a missing joint, also in ``<ros2_control>``."""
         joint_names = _names(subject, "joint")
         transmissions = list(subject.elements("transmission"))
         transmissions += [

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
 from linkwright.diagnostics import Diagnostic, Note, Severity, phrase
 from linkwright.lint.fix import remove_element
@@ -98,9 +98,9 @@ class DisconnectedPart(Rule):
         joints = [joint for joint in subject.joints if joint.parent in links and joint.child in links]
         parents = {joint.child: joint.parent for joint in joints}
         roots = [name for name in links if name not in parents]
-        if len(roots) < 2 or len(links) > 100_000:
+        if len(roots) < 2:
             return
-        sizes = Counter(root for name in links if (root := _root_of(name, parents)) is not None)
+        sizes = Counter(root for root in _roots_of(links, parents).values() if root is not None)
         main_root = max(roots, key=lambda root: (sizes[root], -roots.index(root)))
         reported_root = roots[1] if roots[1] != main_root else roots[0]  # the reader's finding is at the second root
         for root in roots:
@@ -213,12 +213,15 @@ class NewerVersion(Rule):
             )
 
 
-def _root_of(name: str, parents: dict[str, str]) -> str | None:
-    """Return the topmost link above a link, or None if the joints form a cycle."""
-    steps = 0
-    while name in parents:
-        name = parents[name]
-        steps += 1
-        if steps > len(parents):
-            return None
-    return name
+def _roots_of(names: Iterable[str], parents: Mapping[str, str]) -> dict[str, str | None]:
+    """Return the topmost link above each link, or None if the joints form a cycle."""
+    roots: dict[str, str | None] = {}
+    for name in names:
+        path, above = [], name
+        while above in parents and above not in roots:
+            roots[above] = None  # also at the end, if the walk returns to it
+            path.append(above)
+            above = parents[above]
+        root = roots[above] if above in parents else above
+        roots.update((below, root) for below in (name, *path))
+    return roots

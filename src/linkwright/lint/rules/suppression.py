@@ -1,6 +1,6 @@
 """Rules about suppression comments.
 
-The engine reports their findings.
+The engine reports the findings of these rules.
 """
 
 from __future__ import annotations

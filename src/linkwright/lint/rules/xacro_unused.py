@@ -412,7 +412,7 @@ def _is_switched_off(path: Path, facts: XacroFacts) -> bool:
 def _contributes(path: Path, facts: XacroFacts, paths: dict[int, Path]) -> bool:
     """Return whether a file or its includes add elements to the robot, or define used names.
 
-    An empty file counts as contributing, because it is probably unfinished.
+    An empty file is treated as contributing, because it is probably unfinished.
     """
     nested_files: dict[Path, FileFacts] = {}
     pending = [path]

@@ -142,7 +142,7 @@ async def _with_edit(server: LinkwrightServer, action: types.CodeAction) -> type
 
 
 def add_requests(server: LinkwrightServer) -> None:
-    """Add the requests of this module to a server."""
+    """Register the request handlers of this module."""
 
     @server.feature(types.TEXT_DOCUMENT_CODE_ACTION, types.CodeActionOptions([*_KINDS], resolve_provider=True))
     async def code_action(server: LinkwrightServer, params: types.CodeActionParams) -> list[types.CodeAction] | None:

@@ -59,7 +59,7 @@ def color_edits(positions: TextPositions, range_: types.Range, color: types.Colo
 
 
 def add_requests(server: LinkwrightServer) -> None:
-    """Add the requests of this module to a server."""
+    """Register the request handlers of this module."""
 
     def highlights(path: Path, positions: TextPositions, range_: types.Range | None = None) -> types.SemanticTokens:
         found = highlights_in(positions.text, path)

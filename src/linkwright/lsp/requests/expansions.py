@@ -122,7 +122,7 @@ async def expansion_content(server: LinkwrightServer, uri: str) -> str | None:
 
 
 def add_requests(server: LinkwrightServer) -> None:
-    """Add the requests of this module to a server."""
+    """Register the request handlers of this module."""
 
     @server.feature(types.TEXT_DOCUMENT_IMPLEMENTATION)
     async def implementation(

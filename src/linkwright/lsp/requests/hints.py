@@ -98,7 +98,7 @@ async def _with_use_count(server: LinkwrightServer, lens: types.CodeLens) -> typ
 
 
 def add_requests(server: LinkwrightServer) -> None:
-    """Add the requests of this module to a server."""
+    """Register the request handlers of this module."""
 
     @server.feature(types.TEXT_DOCUMENT_INLAY_HINT)
     async def inlay_hint(server: LinkwrightServer, params: types.InlayHintParams) -> list[types.InlayHint] | None:

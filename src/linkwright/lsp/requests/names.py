@@ -196,7 +196,7 @@ def _markdown(text: str | Phrase) -> types.MarkupContent:
 
 
 def add_requests(server: LinkwrightServer) -> None:
-    """Add the requests of this module to a server."""
+    """Register the request handlers of this module."""
 
     @server.feature(types.TEXT_DOCUMENT_COMPLETION, types.CompletionOptions(["<", " ", '"', "'", "/", "{", "(", ":"]))
     async def completion_request(

@@ -166,7 +166,7 @@ def _document_links(
 
 
 def add_requests(server: LinkwrightServer) -> None:
-    """Add the requests of this module to a server."""
+    """Register the request handlers of this module."""
 
     @server.feature(types.TEXT_DOCUMENT_DOCUMENT_LINK)
     async def document_links(

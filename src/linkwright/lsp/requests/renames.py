@@ -49,7 +49,7 @@ def file_edits(server: LinkwrightServer, files: Iterable[types.FileRename]) -> t
 
 
 def add_requests(server: LinkwrightServer) -> None:
-    """Add the requests of this module to a server."""
+    """Register the request handlers of this module."""
 
     def texts_and_name(
         server: LinkwrightServer, document: types.TextDocumentIdentifier, position: types.Position

@@ -92,7 +92,7 @@ def _failed(message: str) -> JsonRpcException:
 
 
 def add_requests(server: LinkwrightServer) -> None:
-    """Add the requests of this module to a server."""
+    """Register the request handlers of this module."""
     server.robot_views.editor = PageEditor(server)
 
     @server.command(SHOW_ROBOT)

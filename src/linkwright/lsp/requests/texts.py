@@ -144,7 +144,7 @@ def linked_tags(positions: TextPositions, position: types.Position) -> types.Lin
 
 
 def add_requests(server: LinkwrightServer) -> None:
-    """Add the requests of this module to a server."""
+    """Register the request handlers of this module."""
 
     @server.feature(types.TEXT_DOCUMENT_FORMATTING)
     def format_document(

@@ -10,7 +10,7 @@ from linkwright.lsp.server import LinkwrightServer
 
 
 def add_requests(server: LinkwrightServer) -> None:
-    """Add the requests of this module to a server."""
+    """Register the request handlers of this module."""
     schemes = types.TextDocumentContentOptions([expansions.SCHEME, rule_pages.SCHEME])
 
     @server.feature(types.WORKSPACE_TEXT_DOCUMENT_CONTENT, schemes)

@@ -23,7 +23,7 @@ MAX_LOOP_DEPTH = 5
 
 
 class Place(NamedTuple):
-    """The known part of a position: its remainder `remainder` after division by `modulus` (1, 2, 4 or 8)."""
+    """The known part of a position: its `remainder` after division by `modulus` (1, 2, 4 or 8)."""
 
     modulus: int
     remainder: int
@@ -37,7 +37,7 @@ class Place(NamedTuple):
         return (-self.remainder) % size if self.modulus >= size else None
 
     def common(self, other: Place) -> Place:
-        """Return the common knowledge about two positions, either of which may be the actual one."""
+        """Return what is known about a position that may be either of two positions."""
         modulus = min(self.modulus, other.modulus)
         while (self.remainder - other.remainder) % modulus:
             modulus //= 2

@@ -1,4 +1,4 @@
-"""Compiles the functions that deserialize structures from CDR.
+"""Compile the functions that deserialize structures from CDR.
 
 Such a function unpacks each run of fields of fixed size, also across nested structures, with one `struct` call directly
 into the slots of the objects. The checks on assignment are skipped. The function does not trust lengths in the data: no
@@ -62,8 +62,6 @@ def _compile_part(structure: Structure, class_of: ClassOf, order: Order) -> Call
     """Return the function that reads a nested structure at an offset.
 
     The function is compiled on first use. It returns the object and the offset after it.
-
-    The function returns the object and the offset after it.
     """
     reader = _part_readers.get((structure.type_name, order))
     if reader is None:
@@ -77,7 +75,7 @@ def _compile_part(structure: Structure, class_of: ClassOf, order: Order) -> Call
 
 
 class _ReaderCode:
-    """Generates the code of a reader.
+    """A generator of the code of a reader.
 
     In the code, `p` is the position in the data, including the header, and `e` is the end of the data.
     """

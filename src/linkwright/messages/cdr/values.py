@@ -127,7 +127,11 @@ def read_texts(data: bytes, at: int, count: int) -> tuple[list[str], int]:
 
 
 def read_numbers(code: str, data: bytes, start: int, end: int) -> array[Any]:
-    """Return the numbers in a range of a message, or raise if the message is too short."""
+    """Return the numbers in a byte range of a message.
+
+    Raises:
+        DataFaultError: the message is too short.
+    """
     if end > len(data):
         truncated()
     if end - start <= _MAX_DIRECT_COPY:
@@ -138,7 +142,11 @@ def read_numbers(code: str, data: bytes, start: int, end: int) -> array[Any]:
 
 
 def read_bools(data: bytes, start: int, end: int) -> list[bool]:
-    """Return the bools in a range of a message, or raise if the message is too short."""
+    """Return the bools in a byte range of a message.
+
+    Raises:
+        DataFaultError: the message is too short, or a value is neither 0 nor 1.
+    """
     values = data[start:end]
     if len(values) < end - start:
         truncated()
@@ -148,7 +156,11 @@ def read_bools(data: bytes, start: int, end: int) -> list[bool]:
 
 
 def read_bytes(data: bytes, start: int, end: int) -> list[bytes]:
-    """Return each byte in a range of a message, or raise if the message is too short."""
+    """Return the bytes in a range of a message, each as an object of length 1.
+
+    Raises:
+        DataFaultError: the message is too short.
+    """
     if end > len(data):
         truncated()
     return [data[at : at + 1] for at in range(start, end)]

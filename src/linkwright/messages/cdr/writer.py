@@ -1,4 +1,4 @@
-"""Compiles the functions that serialize structures to CDR.
+"""Compile the functions that serialize structures to CDR.
 
 Such a function packs each run of fields of fixed size, also across nested structures, with one `struct` call. It takes
 encoded strings from a cache, uses arrays without copying them, and joins all pieces at the end.
@@ -80,7 +80,7 @@ def _compile_part(structure: Structure) -> Callable[..., int]:
 
 
 class _WriterCode:
-    """Generates the code of a writer.
+    """A generator of the code of a writer.
 
     In the code, `p` is the position after the header, and `o` is the list of pieces.
     """

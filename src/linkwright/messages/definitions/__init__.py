@@ -1,1 +1,1 @@
-"""Finds and parses the definitions of interfaces, and computes their hashes."""
+"""Find and parse the definitions of interfaces, and compute their hashes."""

@@ -1,4 +1,4 @@
-"""Reads the message definitions that recordings contain.
+"""Read the message definitions that recordings contain.
 
 The definition of a message comes first. The definitions of its nested messages follow, each after a line of ``=`` and a
 line with the name (``MSG: geometry_msgs/Point``, or ``IDL:`` for IDL). This is the format of MCAP's ``ros2msg`` and
@@ -17,7 +17,7 @@ _SEPARATOR_LINES = re.compile(r"^={10,}\s*\n(MSG|IDL): *(\S+) *\n?", re.MULTILIN
 
 
 def add_definitions(type_name: str, text: str, origin: str, *, idl: bool = False) -> None:
-    """Register the definitions of a message and its nested messages that data contain.
+    """Register the definitions of a message and its nested messages from a recording.
 
     Interfaces of Linkwright and of the workspace take precedence. If a name is registered twice, the
     first definition is kept. A definition is parsed, and its mistakes are reported, when the message is requested.
@@ -25,7 +25,7 @@ def add_definitions(type_name: str, text: str, origin: str, *, idl: bool = False
     Args:
         type_name: the type, such as ``my_msgs/msg/Count``; the call has no effect for an invalid name.
         text: the definition of the message, followed by those of its nested messages.
-        origin: where the text comes from, such as a file, for messages about mistakes.
+        origin: the origin of the text, such as a file, for error messages.
         idl: whether the first definition is IDL.
     """
     first_definition, *nested_definitions = _SEPARATOR_LINES.split(text)

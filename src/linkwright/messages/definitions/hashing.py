@@ -1,4 +1,4 @@
-"""Computes the type hashes (RIHS01) that ROS 2 Iron and newer announce with endpoints.
+"""Compute the type hashes (RIHS01) that ROS 2 Iron and newer announce with endpoints.
 
 Such a hash is the SHA-256 of a type description, as in type_description_interfaces (REP 2011, REP 2016). It contains
 the names and types of the fields of a structure and of all nested structures, without defaults and constants. rosidl

@@ -1,4 +1,4 @@
-"""Parses ``.idl`` files, limited to the part of the language that ROS interfaces use.
+"""Parse ``.idl`` files, limited to the part of the language that ROS interfaces use.
 
 The supported constructs are those that rosidl generates from ``.msg``, ``.srv`` and ``.action`` files: modules,
 structures of primitives, strings, sequences and arrays, typedefs of these, constants, and ``@default``. Other
@@ -87,7 +87,7 @@ def _assemble(reader: _Reader, source: SourceText, type_name: str) -> Definition
 
 
 class _Reader:
-    """Parses the tokens of one file into structures and constants."""
+    """A parser that converts the tokens of one file to structures and constants."""
 
     def __init__(self, source: SourceText, known: KnownMessages) -> None:
         self._source = source

@@ -304,7 +304,7 @@ Definition = Structure | Service | Action
 
 
 def interface_of(type_name: str, structures: Sequence[Structure]) -> Definition:
-    """Return the message, service or action that consists of some structures.
+    """Build a message, service or action from its structures.
 
     The structures must be in the order of the file.
     """

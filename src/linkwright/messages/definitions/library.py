@@ -1,6 +1,6 @@
-"""Finds the definition of an interface by its name.
+"""Find the definition of an interface by its name.
 
-The search order is: interfaces that come with Linkwright, interfaces of the workspace, and definitions in data.
+The search order is: interfaces that come with Linkwright, interfaces of the workspace, and definitions in recordings.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ class Library:
 
     The methods are thread-safe. Interfaces that come with Linkwright take precedence over interfaces of the workspace
     with the same name. Interfaces of the workspace are read, without a build, from the interface files of the packages
-    that the current finder finds. For any other name, a definition that was contained in data is used.
+    that the current finder finds. For any other name, a definition that was registered with `add_text` is used.
     """
 
     def __init__(self) -> None:
@@ -94,7 +94,7 @@ class Library:
         return definition
 
     def source(self, name: str) -> SourceText:
-        """Return the interface file of a definition, with its name.
+        """Return the text of the interface file that contains a definition.
 
         The comments in files that come with Linkwright differ from ROS's.
 
@@ -106,7 +106,7 @@ class Library:
         return self._sources[f"{package}/{kind}/{part.partition('_')[0]}"]
 
     def add_text(self, type_name: str, source: SourceText) -> None:
-        """Register a message definition that data contain.
+        """Register a message definition that a recording contains.
 
         Later texts for the same type are ignored.
 
@@ -294,9 +294,9 @@ class Library:
 
 
 class _TrustedMessages:
-    """Accepts every message name in files that come with Linkwright, which a test has checked.
+    """A `KnownMessages` that accepts every message name.
 
-    It has the interface of `KnownMessages`.
+    It is used for the files that come with Linkwright; a test has checked the names in them.
     """
 
     def has_message(self, type_name: str) -> bool:

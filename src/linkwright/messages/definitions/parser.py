@@ -1,4 +1,4 @@
-"""Parses interface files, with their constants and default values."""
+"""Parse interface files, with their constants and default values."""
 
 from __future__ import annotations
 

@@ -17,7 +17,7 @@ FREE: Final = 0
 MAX_PASSABLE: Final = 252
 """The maximum cost of a cell in which the centre of the robot may be."""
 INSCRIBED: Final = 253
-"""The obstacle is nearer than the inscribed radius of the footprint, so a robot centred here touches it."""
+"""An obstacle is nearer than the inscribed radius of the footprint, so a robot centred here touches it."""
 LETHAL: Final = 254
 """The cell contains an obstacle."""
 UNKNOWN: Final = 255

@@ -83,7 +83,7 @@ class Window:
 
 @dataclass(frozen=True, slots=True)
 class UpdateContext:
-    """The time of an update and the robot's pose at that time.
+    """The time of an update, and the robot's position and footprint at that time.
 
     Attributes:
         x, y: the position of the robot, in metres, in the frame of the costmap.

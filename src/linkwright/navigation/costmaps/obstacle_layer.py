@@ -24,7 +24,9 @@ from linkwright.navigation.grids.grid import Grid
 from linkwright.navigation.grids.rays import cells_on_lines
 
 OVERWRITE, MAXIMUM, MAXIMUM_OF_KNOWN = 0, 1, 2
-"""How a layer combines its costs with the costs below: replace, take the maximum, or change only known cells."""
+"""The ways to combine a layer's costs with the costs below: replace them, take the maximum, or take the maximum
+of known cells only.
+"""
 
 Cells = NDArray[np.int64]
 
@@ -94,7 +96,10 @@ class ObstacleLayer(PersistentLayer):
         return window
 
     def write(self, grid: Grid, window: Window, moment: UpdateContext) -> None:
-        """Combine the layer's cells with the costs of the layers below."""
+        """Combine the layer's cells with the costs of the layers below.
+
+        If footprint clearing is enabled, free the cells under the robot first.
+        """
         if self._footprint_clearing:
             free_footprint(self.layer_grid.cells, moment, self.layer_grid, window)
         own_costs, lower_costs = self.layer_grid.cells[window.cells], grid.cells[window.cells]

@@ -79,7 +79,10 @@ class StaticLayer(Layer):
         self._needs_rewrite = True
 
     def set_map(self, occupancy: Grid) -> None:
-        """Set a new map, with cells of type int8 in per cent, or -1 for unknown."""
+        """Set a new map.
+
+        The cells of `occupancy` are of type int8: occupancies in per cent, or -1 for unknown.
+        """
         costs = self.interpretation.table()[occupancy.cells.astype(np.uint8)]
         self.map = Grid(cells=costs, resolution=occupancy.resolution, x=occupancy.x, y=occupancy.y, yaw=occupancy.yaw)
         self._needs_rewrite = True
@@ -126,7 +129,10 @@ class StaticLayer(Layer):
         return Window.of(grid)
 
     def write(self, grid: Grid, window: Window, moment: UpdateContext) -> None:
-        """Write the map's costs into the window."""
+        """Write the map's costs into the window.
+
+        If footprint clearing is enabled, free the cells under the robot afterwards.
+        """
         if self.map is None or self._map_pose is None:
             return
         window_cells = grid.cells[window.cells]

@@ -26,7 +26,7 @@ _BIT_COUNTS: Final = np.array([number.bit_count() for number in range(1 << MAX_L
 """The number of set bits of each 16-bit number."""
 
 Levels = NDArray[np.uint16]
-"""A bit for each level."""
+"""A 16-bit number for each cell, with one bit for each level."""
 
 
 @dataclass(frozen=True, kw_only=True)

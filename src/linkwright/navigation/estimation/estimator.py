@@ -26,7 +26,7 @@ class Timing:
 
 
 class Estimator:
-    """A queue of measurements that are passed to a filter in the order of their stamps.
+    """A filter that processes queued measurements in the order of their stamps.
 
     Args:
         kalman: the filter.

@@ -51,7 +51,7 @@ class Zone(NamedTuple):
 def zone_from_degrees(latitude: float, longitude: float) -> Zone:
     """Return the UTM zone of a position in degrees.
 
-    The zones of Norway and Svalbard are wider than the others.
+    Some zones of Norway and Svalbard are wider or narrower than the others.
     """
     longitude = (longitude + 180.0) % 360.0 - 180.0
     number = floor((longitude + 180.0) / 6.0) + 1

@@ -85,7 +85,10 @@ class Control:
     deceleration_gains: tuple[float, ...]
 
     def acceleration(self, index: int, velocity: float, commanded: float) -> float:
-        """Return the acceleration of one of the six velocities towards its commanded value."""
+        """Return the acceleration that brings one of the six velocities to its commanded value.
+
+        The acceleration is within the limits, in m/s2 or rad/s2.
+        """
         error = commanded - velocity
         target = commanded if abs(error) <= abs(commanded) + 0.01 else 0.0
         if abs(target) < abs(velocity):
@@ -306,7 +309,7 @@ def _square_root(covariance: Matrix) -> Matrix:
 
 
 def _used_indices(measurement: Measurement) -> list[int]:
-    """Return the indices of a measurement's used values, if they and their variances are finite."""
+    """Return the indices of the used values that are finite and have a finite variance."""
     values, covariance = measurement.values, measurement.covariance
     return [
         index

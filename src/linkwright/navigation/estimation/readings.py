@@ -167,7 +167,7 @@ def read_twist(
         angular: the angular velocity in the sensor's frame, in rad/s.
         covariance: the covariance of the twist, shape (6, 6).
         mounting: the pose of the sensor in the body.
-        rates: the estimated angular velocity of the body, which moves a sensor mounted away from the body's origin.
+        rates: the estimated angular velocity of the body, in rad/s; it corrects for the offset of the sensor.
         used: whether the sensor provides each of the 15 values; only the velocities count.
         two_d: whether the body moves on a plane.
     """

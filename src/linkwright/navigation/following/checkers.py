@@ -105,7 +105,10 @@ class PoseProgressParameters(ProgressParameters):
 
 
 class ProgressChecker:
-    """A checker that a robot moves or turns by a minimum amount within a time limit."""
+    """A checker of whether a robot moves by a minimum distance within a time limit.
+
+    With `PoseProgressParameters`, a minimum rotation also counts as progress.
+    """
 
     def __init__(self, parameters: ProgressParameters | None = None) -> None:
         self._parameters = parameters or ProgressParameters()

@@ -1,6 +1,6 @@
 """A path follower that samples velocities, simulates their motions and commands the best.
 
-This follower replaces both of nav2's sampling controllers, DWB and MPPI. Limits and times use the parameter names of
+This follower replaces both of nav2's sampling controllers, DWB and MPPI. Limits and times come from the parameters of
 either; the scoring of the sampled motions is Linkwright's own.
 
 Source: Fox, Burgard, Thrun, "The Dynamic Window Approach to Collision Avoidance" (1997).

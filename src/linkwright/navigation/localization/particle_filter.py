@@ -112,7 +112,8 @@ class ParticleFilter:
         KLD sampling determines the number of particles.
 
         Args:
-            random_particles: returns a number of random particles; they are added while scans match worse than before.
+            random_particles: returns a number of random particles, which replace drawn particles while scans match
+                worse than before.
         """
         settings, random = self.settings, self.random
         random_share = max(0.0, 1.0 - self._fast / self._slow_average) if self._slow_average > 0.0 else 0.0

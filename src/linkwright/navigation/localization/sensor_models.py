@@ -43,7 +43,10 @@ class BeamSkipping:
 
 @dataclass(frozen=True, slots=True)
 class LaserSettings:
-    """Parameters of the sensor models, with nav2's names."""
+    """Parameters of the sensor models, with nav2's names.
+
+    Lengths are in metres, and ``lambda_short`` is in 1/m.
+    """
 
     z_hit: float = 0.5
     z_short: float = 0.05

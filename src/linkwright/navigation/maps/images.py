@@ -100,7 +100,7 @@ def _parse_pgm(path: Path, data: bytes, header: re.Match[bytes]) -> MapImage:
         raise _unreadable(
             path,
             phrase(
-                "its header declares {size}, which is not a valid size and maximum value",
+                "the size or the maximum value in its header is not valid: {size}",
                 size=f"{columns} x {rows}, {max_value}",
             ),
         )

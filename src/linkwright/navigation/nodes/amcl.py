@@ -1,6 +1,6 @@
 """nav2's amcl, which localizes the robot on a map from laser scans and odometry.
 
-The node has nav2's parameters, topics, services and texts. Deliberate differences: the random seed is fixed, so the
+The node has nav2's parameters, topics, services and log lines. Deliberate differences: the random seed is fixed, so the
 same data give the same result; a persistent mismatch of scans and map is logged; clusters of particles are continuous
 across +-pi in yaw; ``save_pose_rate`` and ``freespace_downsampling`` have no effect.
 """

@@ -141,7 +141,7 @@ class BehaviorNode(ManagedNode):
             server.abort("UNKNOWN", "the server was deactivated")
 
     def cleanup(self) -> None:
-        """Remove the topics."""
+        """Stop the running behaviour, and remove the action servers and the output topic."""
         self.end_cycles()
         self._servers.clear()
         self._costmap = self._footprint = None

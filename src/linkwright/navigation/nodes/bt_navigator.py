@@ -273,7 +273,7 @@ class NavigatorNode(StepNode):
         """Clear a costmap, or log a warning if its service is not available."""
         client = self._clear_clients[scope]
         if not client.service_is_ready():
-            self.get_logger().warning(f"the {scope} costmap is not cleared: there is no {client.service_name}")
+            self.get_logger().warning(f"the {scope} costmap is not cleared: no node offers {client.service_name}")
             return
         future = client.call_async(get_service("nav2_msgs/srv/ClearEntireCostmap").Request())
         yield from self.until(future.done, client.service_name)
@@ -281,18 +281,18 @@ class NavigatorNode(StepNode):
     def _spin(self) -> Step:
         goal = get_action("nav2_msgs/action/Spin").Goal(target_yaw=_SPIN_ANGLE)
         goal.time_allowance = Duration(seconds=_ALLOWANCE).to_msg()
-        yield from self.run_remote_goal(self._clients["spin"], goal, "it could not spin")
+        yield from self.run_remote_goal(self._clients["spin"], goal, "the robot could not spin")
 
     def _wait(self) -> Step:
         goal = get_action("nav2_msgs/action/Wait").Goal()
         goal.time = Duration(seconds=_WAIT_SECONDS).to_msg()
-        yield from self.run_remote_goal(self._clients["wait"], goal, "it could not wait")
+        yield from self.run_remote_goal(self._clients["wait"], goal, "the robot could not wait")
 
     def _back_up(self) -> Step:
         goal = get_action("nav2_msgs/action/BackUp").Goal(speed=_BACK_UP_SPEED)
         goal.target.x = _BACK_UP_DISTANCE
         goal.time_allowance = Duration(seconds=_ALLOWANCE).to_msg()
-        yield from self.run_remote_goal(self._clients["backup"], goal, "it could not back up")
+        yield from self.run_remote_goal(self._clients["backup"], goal, "the robot could not back up")
 
     # --- topics -------------------------------------------------------------------------------------------------------
 

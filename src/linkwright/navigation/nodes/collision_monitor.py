@@ -103,7 +103,7 @@ class MonitorNode(ManagedNode):
             commander.watch(self.register(subscription))
 
     def activate(self) -> None:
-        """Start forwarding velocities."""
+        """Start forwarding velocities, and publish the polygons of the zones."""
         for zone in self._zones:
             zone.publish()
 
@@ -114,7 +114,7 @@ class MonitorNode(ManagedNode):
         self._last_verdict = Verdict(STILL)
 
     def cleanup(self) -> None:
-        """Remove the topics."""
+        """Drop the zones and sensors, and close the output topic."""
         self._zones, self._sources, self._state = [], [], None
         if self._output is not None:
             self._output.close()

@@ -185,9 +185,9 @@ class ControllerNode(ManagedNode):
         self._publish(STILL)
         waited_seconds = (self.now_ns() - self._last_valid_ns) / 1e9
         if waited_seconds > max(self._value("costmap_update_timeout"), _MIN_WAIT):
-            self._fail(GoalError(problem.code, f"{problem}: given up"))
+            self._fail(GoalError(problem.code, f"{problem}; the goal is aborted"))
         else:
-            message = f"{problem}: the robot waits"
+            message = f"{problem}; the robot waits"
             self.get_logger().warning(message, throttle_duration_sec=_WARNING_PERIOD)
 
     def _drive(self, goals: GoalServer) -> None:

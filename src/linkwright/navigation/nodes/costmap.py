@@ -233,7 +233,7 @@ class CostmapNode(ManagedNode):
         self._surroundings = self._layered = self._publisher = None
 
     def update(self) -> bool:
-        """Process queued sensor data, and update the costmap.
+        """Process queued sensor data, update the costmap, and publish the footprint.
 
         Returns False, without an update, if the robot's pose is unknown.
         """
@@ -441,9 +441,9 @@ def _adapt_tf_remapping(server: Node, rule: tuple[str, str]) -> tuple[str, str]:
 
 
 def _axis_aligned_grid(grid: Grid) -> Grid:
-    """Return the smallest axis-aligned grid that contains another grid.
+    """Return an axis-aligned grid that contains another grid.
 
-    Only the size and origin of the result are meaningful.
+    Only the size, origin and resolution of the result are meaningful.
     """
     if not grid.yaw:
         return grid

@@ -45,8 +45,8 @@ class Surroundings:
         transforms: the transforms between frames.
         frame: the frame of the costmap.
         on_map: called with each full map of the static layer and the map's frame.
-        topics: the topics of the layers, which are destroyed with the costmap.
-        sensors: the topics whose messages are processed when the costmap is updated.
+        topics: the subscriptions of the layers, which are destroyed with the costmap.
+        sensors: the subscriptions whose messages are processed when the costmap is updated.
         layers: the layers by name, from the bottom to the top.
     """
 
@@ -64,7 +64,7 @@ class Surroundings:
 
 
 def make_layers(shared: Surroundings, names: list[str]) -> None:
-    """Create the layers named by the parameter ``plugins``.
+    """Create the layers named by the parameter ``plugins``, and add them to `shared`.
 
     Layers of unsupported types are skipped with a warning.
 

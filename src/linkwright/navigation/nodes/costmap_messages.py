@@ -18,8 +18,6 @@ from linkwright.navigation.costmaps.layered import LayeredCostmap
 from linkwright.navigation.grids.grid import Grid
 from linkwright.navigation.grids.occupancy import occupancy_message
 
-"""For late subscribers: reliable, transient local, one message."""
-
 
 def _percentages() -> Costs:
     costs = np.arange(256)

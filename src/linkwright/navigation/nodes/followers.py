@@ -51,12 +51,12 @@ def make_follower(node: Node, plugin: str) -> Follower:
     follower = _make_basic_follower(node, plugin, kind)
     unused_parameters = declare_unused(node, plugin)
     if kind in (DWB, MPPI):
-        note = f"; without effect here: {', '.join(unused_parameters)}" if unused_parameters else ""
+        note = f"; these parameters have no effect: {', '.join(unused_parameters)}" if unused_parameters else ""
         logger.info(f"{plugin}: Linkwright's velocity-sampling follower replaces {kind}{note}")
     elif kind != PURE_PURSUIT:
         logger.warning(f"{plugin}: {kind} is not supported; regulated pure pursuit replaces it")
     elif unused_parameters:
-        logger.info(f"{plugin}: without effect here: {', '.join(unused_parameters)}")
+        logger.info(f"{plugin}: these parameters have no effect: {', '.join(unused_parameters)}")
     return follower
 
 
@@ -66,7 +66,7 @@ def _make_rotation_shim(node: Node, plugin: str) -> Follower:
     follower = RotationShim(_make_basic_follower(node, plugin, primary), parameters)
     unused_parameters = declare_unused(node, plugin)
     if unused_parameters:
-        node.get_logger().info(f"{plugin}: without effect here: {', '.join(unused_parameters)}")
+        node.get_logger().info(f"{plugin}: these parameters have no effect: {', '.join(unused_parameters)}")
     return follower
 
 

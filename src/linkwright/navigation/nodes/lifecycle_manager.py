@@ -55,7 +55,7 @@ _HEALTH = {
     _State.FINALIZED: Health(Level.WARN, "Managed nodes have been shut down"),
     _State.UNKNOWN: Health(Level.ERROR, "An error has occurred during a node state transition"),
 }
-"""The diagnostics of the states, with Jazzy's texts. Humble reports only active and inactive."""
+"""The diagnostics of the states, with Jazzy's messages. Humble reports only active and inactive."""
 
 
 class _ManagedNodeClient:
@@ -133,7 +133,7 @@ class _ManagedNodeClient:
             if not client.service_is_ready():
                 client.remove_pending_request(future)
                 return None
-            self._node.get_logger().warning(f"{client.service_name} has not answered for {log_period:g} s more")
+            self._node.get_logger().warning(f"{client.service_name} has not answered for another {log_period:g} s")
         return future.result()
 
 
@@ -335,7 +335,7 @@ class LifecycleManager(SingleNode):
         self._begin(self._run_exclusively(lambda: self._bring_down(managed)))
 
     async def _bring_down(self, dead: _ManagedNodeClient) -> bool:
-        """Reset the other nodes after one died, and start to wait until it is available again."""
+        """Reset the other nodes after one died, and start reconnecting if that is enabled."""
         if dead.bond is None:
             return True  # The node was taken down with another node, or by a command.
         if self._state not in (_State.ACTIVE, _State.UNKNOWN):

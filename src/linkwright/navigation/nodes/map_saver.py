@@ -52,7 +52,7 @@ class _MapSaving:
         self._is_latched: bool = declare("map_subscribe_transient_local", True).value
 
     def mode(self, text: str) -> MapMode:
-        """Return the mode with a name.
+        """Return the map mode with the given name.
 
         If there is no such mode, log a warning and return ``trinary``.
         """

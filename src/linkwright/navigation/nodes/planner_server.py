@@ -2,7 +2,7 @@
 
 The actions are ``compute_path_to_pose`` and ``compute_path_through_poses``.
 
-The node has nav2's parameters, topics, texts and results, for Humble and Jazzy. All types of planners are accepted, but
+The node has nav2's parameters, topics, logs and results, for Humble and Jazzy. All types of planners are accepted, but
 they share one method (`linkwright.navigation.planning.planner`); a warning is logged for types that have another method
 in nav2. A deliberate difference: a goal in an obstacle is rejected, however large the tolerance is.
 """
@@ -172,7 +172,7 @@ class PlannerNode(ManagedNode):
             )
 
     def _stop(self, *names: str) -> None:
-        """Stop planning for the named actions, or for all actions without a name."""
+        """Stop planning for the named actions, or for all actions if no name is given."""
         for name in names or tuple(self._work):
             work = self._work.pop(name, None)
             if work is not None:

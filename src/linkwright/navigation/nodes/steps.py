@@ -15,7 +15,7 @@ from linkwright.navigation.nodes.goals import GoalError, GoalServer
 from linkwright.navigation.nodes.managed import ManagedNode
 
 Step = Generator[None, None, Any]
-"""A generator of work in steps, one each cycle."""
+"""A generator that does one step of work in each cycle."""
 
 _PERIOD = 0.05
 _SERVER_TIMEOUT = 5.0
@@ -49,7 +49,10 @@ class StepNode(ManagedNode):
         self.begin_cycles(_PERIOD, self._cycle)
 
     def publish_feedback(self, server: GoalServer) -> None:
-        """Publish the feedback for the active goal, once per cycle."""
+        """Publish feedback for the active goal.
+
+        This is called once per cycle. By default, do nothing.
+        """
 
     def result(self) -> dict[str, Any]:
         """Return the fields of the result message, by name."""
@@ -69,7 +72,7 @@ class StepNode(ManagedNode):
     def run_remote_goal(self, client: ActionClient, goal: Any, summary: str) -> Step:
         """Send a goal to another server, wait for the result, and return it.
 
-        The goal is canceled when this generator is closed.
+        The goal is canceled when this generator is closed. `summary` begins the message of the error.
 
         Raises:
             StepError: the server is not available, or it did not reach the goal.
@@ -125,7 +128,10 @@ class StepNode(ManagedNode):
             self.publish_feedback(server)
 
     def _stop(self) -> None:
-        """Stop the cycles, close the generator, and so cancel goals at other servers."""
+        """Stop the cycles, and close the generator.
+
+        Closing the generator cancels its goals at other servers.
+        """
         work, self._work = self._work, None
         if work is not None:
             work.close()

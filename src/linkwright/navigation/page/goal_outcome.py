@@ -16,7 +16,7 @@ STATUS_TOPIC = "/navigate_to_pose/_action/status"
 _ACTIVE, _ABORTED = (1, 2, 3), 6
 """The status numbers of active and aborted goals in action_msgs/msg/GoalStatus."""
 _STATUS_DEPTH = 10
-"""The queue depth, so that the active state of a goal that fails immediately is not lost."""
+"""The queue depth. A queue of one would lose the active state of a goal that fails immediately."""
 _ERROR_LEVEL = 40
 """The level of errors in rcl_interfaces/msg/Log."""
 _LOG_DELAY = 0.3

@@ -356,7 +356,7 @@ def _outcome(pose: Floats, information: Floats, best_match: Match | None, links:
 def _odometric_information(moved: Floats) -> Floats:
     """Return the information matrix, of shape (3, 3), of an odometry motion of shape (3,).
 
-    The standard deviation is about 10 % of the motion.
+    The standard deviations are 3 cm and 0.02 rad at rest, and grow by about 10 % of the motion.
     """
     rotation = abs(float(wrapped(moved)[2]))
     position_deviation = 0.03 + 0.1 * float(np.hypot(moved[0], moved[1])) + 0.03 * rotation

@@ -34,7 +34,7 @@ _MAX_FILE_BYTES = 1 << 30
 
 
 def path_of(name: str) -> Path:
-    """Return the path of a graph's file, with the extension."""
+    """Return the path of a graph's file, with the extension added if it is missing."""
     return Path(name if name.endswith(EXTENSION) else name + EXTENSION)
 
 

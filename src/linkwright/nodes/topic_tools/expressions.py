@@ -1,8 +1,8 @@
 """transform and relay_field of topic_tools: compute messages with Python expressions.
 
 As in topic_tools, the expressions are not restricted, because the author of a command line or a launch file can run
-programs anyway. Expressions can use the modules that ``--import`` names. If it names a message package, the expressions
-can use the package's types, such as ``std_msgs.msg.String``.
+programs anyway. Expressions can use the modules that ``--import`` names. If one of the names is that of a message
+package, the expressions can use the package's types, such as ``std_msgs.msg.String``.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ class _ExpressionTool(SingleNode, ABC):
     """The base class of nodes that compute an output message from each input message.
 
     Raises:
-        LinkwrightError: if an argument (NODE432) or the expression (NODE434) is invalid.
+        LinkwrightError: an argument (NODE432) or the expression (NODE434) is invalid.
     """
 
     _output_class: Any
@@ -233,11 +233,11 @@ def _compile_value(value: Any) -> Callable[[Any], Any]:
         fields = {name: _compile_value(compute) for name, compute in value.items()}
         return lambda message: {name: compute(message) for name, compute in fields.items()}
     if not isinstance(value, str):
-        return lambda message: value  # noqa: ARG005  # it is the same for all
+        return lambda message: value  # noqa: ARG005  # the value is the same for all messages
     try:
         expression = _compile_expression(value, {})
     except LinkwrightError:
-        return lambda message: value  # noqa: ARG005  # it is the same for all
+        return lambda message: value  # noqa: ARG005  # the value is the same for all messages
 
     def worked_out(message: Any) -> Any:
         try:

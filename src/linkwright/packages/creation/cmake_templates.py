@@ -195,8 +195,8 @@ def visibility_control(request: PackageRequest) -> str:
 #ifndef {guard}
 #define {guard}
 
-// {name}_PUBLIC marks what users of the library may call, {name}_LOCAL what they may not.
-// Windows wants to know whether the library itself is being built; elsewhere that makes no difference.
+// {name}_PUBLIC marks symbols for users of the library, {name}_LOCAL marks internal symbols.
+// On Windows, {name}_PUBLIC differs between the build of the library and its users.
 
 #if defined _WIN32 || defined __CYGWIN__
   #ifdef {name}_BUILDING_LIBRARY

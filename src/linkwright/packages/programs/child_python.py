@@ -1,7 +1,8 @@
 """Start of processes whose Python programs can import ``rclpy`` and related modules.
 
-The processes import the installed modules or, if there are none, the stand-ins. This room cannot import the room of the
-stand-ins, so the stand-ins register here how to start such a process; see `linkwright.standins.activate`.
+The processes import the installed modules or, if there are none, the stand-ins. This package cannot import the package
+of the stand-ins, so the stand-ins register functions for the start of such a process here; see
+`linkwright.standins.activate`.
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ def register_launcher(environment: Environment, python_command: Command) -> None
 
 
 def process_environment(base: Mapping[str, str]) -> dict[str, str]:
-    """Return the environment of a process that starts from another environment."""
+    """Return the environment of a process, derived from a base environment."""
     return dict(base if _environment is None else _environment(base))
 
 

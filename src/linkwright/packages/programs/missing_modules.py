@@ -104,7 +104,7 @@ def other_module_hint(error: ImportError) -> Phrase | None:
 
 
 def provider_hint(module: str) -> Phrase:
-    """Return a hint on how to install a module that cannot be imported."""
+    """Return a hint for installing a module that cannot be imported."""
     return known_provider_hint(module) or phrase(
         "install the Python package that provides '{module}', or add its ROS package to the workspace",
         module=module,
@@ -112,7 +112,7 @@ def provider_hint(module: str) -> Phrase:
 
 
 def known_provider_hint(module: str) -> Phrase | None:
-    """Return the hint of `provider_hint` for a known module, or None for an unknown one."""
+    """Return the hint of `provider_hint` for a known module, or None for an unknown module."""
     top_module = module.partition(".")[0]
     project = _ROS_PACKAGES.get(top_module)
     if project is not None:

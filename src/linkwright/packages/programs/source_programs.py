@@ -1,6 +1,6 @@
 """The programs that an unbuilt package would install.
 
-They are read from ``setup.py``, ``setup.cfg`` and ``pyproject.toml`` (entry points and scripts) and from
+The programs are read from ``setup.py``, ``setup.cfg`` and ``pyproject.toml`` (entry points and scripts) and from
 ``install(PROGRAMS ...)`` in ``CMakeLists.txt``. Nothing is executed, with one exception: a ``setup.py`` that computes
 its entry points is run in a separate process, with a ``setup()`` that only reports them.
 """
@@ -107,7 +107,7 @@ def module_file(root: Path, module: str) -> Path | None:
 
 
 def _modules(folder: Path) -> Iterator[Path]:
-    """Yield the importable modules and packages in a folder, except those used to build or test."""
+    """Yield the importable modules and packages in a folder, except build and test modules."""
     for path in (*folder.glob("*.py"), *(path.parent for path in folder.glob("*/__init__.py"))):
         if path.stem not in NON_PROGRAM_MODULES:
             yield path

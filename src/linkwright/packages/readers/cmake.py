@@ -120,7 +120,7 @@ class CopyRule:
     def may_be_missing(self, item: str) -> bool:
         """Return whether the build continues if an item is missing.
 
-        CMake applies the patterns first: a missing item does not count as a folder, so ``FILES_MATCHING`` skips it.
+        CMake applies the patterns first: a missing item is not treated as a folder, so ``FILES_MATCHING`` skips it.
         """
         return self.is_optional or not self._selects([f"/{item.rstrip('/')}"])
 

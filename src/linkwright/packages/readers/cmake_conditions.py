@@ -52,7 +52,7 @@ class Condition:
     Args:
         words: the words of the condition.
         variables: the known variables; ``MATCHES`` sets ``CMAKE_MATCH_...`` in them.
-        path_exists: called with an operator and a path; returns whether the path exists or, for ``IS_DIRECTORY``, is a
+        is_there: called with an operator and a path; returns whether the path exists or, for ``IS_DIRECTORY``, is a
             folder; returns None if that is not known.
     """
 

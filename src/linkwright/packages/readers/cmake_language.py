@@ -168,7 +168,7 @@ class CMakeProgram:
 
     @contextmanager
     def _leavable_block(self, *commands: str) -> Iterator[None]:
-        """Return a context for a block that the given commands, such as ``break``, leave."""
+        """Return a context manager for a block that the given commands, such as ``break``, leave."""
         outer_depths = self._around
         self._around = {**outer_depths, **dict.fromkeys(commands, self._unknown_conditions)}
         try:

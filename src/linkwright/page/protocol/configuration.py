@@ -353,7 +353,9 @@ class RevertConfiguration(PageMessage):
 
 
 class SaveConfiguration(PageMessage):
-    """A request to save to a file on the server. It becomes the configuration's file.
+    """A request to save the configuration to a file on the server.
+
+    The file becomes the configuration's file.
 
     Attributes:
         path: a path that ends in ``.rviz``; None for the current file.

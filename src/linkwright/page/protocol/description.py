@@ -64,7 +64,7 @@ class SourceRange(Record):
 
 
 class Written(Record):
-    """The positions of an element in the expanded text and in its file, and the calls behind it.
+    """The positions of an element in the expanded text and in its file, and the calls that led to it.
 
     `origin` is None if only the position in the expanded text is known. `calls` lists macro calls and includes,
     beginning with the innermost. If there are very many, the outermost are omitted.
@@ -213,7 +213,10 @@ class AskDescriptionText(PageMessage):
 
 
 class AskInertia(PageMessage):
-    """A request for the findings about masses and inertias. Their computation takes a while."""
+    """A request for the findings about masses and inertias.
+
+    The computation of the findings takes a while.
+    """
 
     display: str
 

@@ -72,7 +72,7 @@ class BadMessageError(ValueError):
 
 
 def plain(value: Any) -> Any:
-    """Return a string or number as a plain value for JSON, even if its class is derived.
+    """Return a string or number as a built-in type for JSON, even if its class is derived from one.
 
     An example is a NumPy float.
     """
@@ -196,7 +196,7 @@ def _import_module(text: str) -> bool:
 
 
 PROTOCOL_VERSION = 5
-"""Increased for every incompatible change. A page with another version reloads itself."""
+"""The version of the protocol, increased with every incompatible change. A page with another version reloads itself."""
 
 
 class Hello(ServerMessage):

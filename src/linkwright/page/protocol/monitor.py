@@ -140,7 +140,7 @@ class SeriesStates(ServerMessage):
 
 
 class AskFields(PageMessage):
-    """A request for the fields of a topic for the user to choose from. `topic` is None after the choice."""
+    """A request for the fields of a topic. `topic` is None after the user's choice."""
 
     topic: str | None
 
@@ -325,7 +325,7 @@ class TeleopTarget(Record):
 
 
 class TeleopState(ServerMessage):
-    """The message type of a teleop pad, its number of subscribers, and why it cannot publish."""
+    """The message type of a teleop pad, its number of subscribers, and the reason why it cannot publish."""
 
     topic: str
     kind: str

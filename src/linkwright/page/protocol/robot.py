@@ -156,7 +156,7 @@ class JointScene(Record):
 
 
 class RobotScene(ServerMessage):
-    """The robot of a RobotModel display. `revision` is the number of its descriptions so far.
+    """The robot of a RobotModel display. `revision` counts the display's descriptions so far.
 
     The list of links is empty if there is no robot.
     """

@@ -74,7 +74,7 @@ class ModelChoices(ServerMessage):
 
 
 class EntityChange(Record):
-    """A change of a model or light. Fields that are None do not change."""
+    """A change to a model or light. Fields that are None do not change."""
 
     name: str
     pose: list[float] | None
@@ -103,7 +103,7 @@ class AddEntity(PageMessage):
 
 
 class ChangeEntities(PageMessage):
-    """A request to change objects. It is undone in one step."""
+    """A request to change objects. One undo reverts all the changes."""
 
     changes: list[EntityChange]
 
@@ -138,7 +138,7 @@ class UngroupEntity(PageMessage):
 
 
 class UndoWorld(PageMessage):
-    """A request to undo the last change of the world."""
+    """A request to undo the last change to the world."""
 
 
 class RedoWorld(PageMessage):
@@ -179,7 +179,7 @@ class SimulationNotice(ServerMessage):
 
 
 class ModelAdded(ServerMessage):
-    """The confirmation that a model that the page requested was added to the world."""
+    """The confirmation that a requested model was added to the world."""
 
     name: str
 

@@ -36,7 +36,7 @@ class AskSourceFile(PageMessage):
 
 
 class LeaveSourceFile(PageMessage):
-    """A notice that the page no longer needs the changes of a file."""
+    """A notice that the page no longer needs the changes to a file."""
 
     path: str
 
@@ -69,9 +69,9 @@ class WriteSourceFile(PageMessage):
 
 
 class ShowUnsavedText(PageMessage):
-    """A request to show the descriptions of the page with the unsaved text of a file that the page edits.
+    """A request to show the page's descriptions with the unsaved text of an edited file.
 
-    `number` increases with each text of the page. `text` is None if the file counts as it is on the disk again.
+    `number` increases with each text of the page. `text` is None to use the file on the disk again.
     """
 
     number: int
@@ -94,7 +94,7 @@ class UnsavedTextShown(ServerMessage):
 
 
 class UnsavedTextEdited(ServerMessage):
-    """An edit of the robot in a file with an unsaved text, which the page applies to that text.
+    """An edit of the robot that the page applies to the unsaved text of a file.
 
     `base` is the number of the text that the edit was made for, or 0 for the text on the disk.
     """

@@ -1,4 +1,4 @@
-"""The connection of pages with a text editor: the element at its cursor, and the element that the user selects."""
+"""The connection of pages with a text editor: the element at its cursor, and selected elements."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ ElementKind = Literal["link", "joint"]
 
 
 class EditorAttached(ServerMessage):
-    """A notice that a text editor goes to the source of each element that the user selects."""
+    """A notice that a text editor jumps to the source of each selected element."""
 
 
 class ShowElement(ServerMessage):
-    """The link or joint at the cursor of the text editor, which the page selects."""
+    """The link or joint at the cursor of the text editor, to be selected in the page."""
 
     display: str
     kind: ElementKind

@@ -83,7 +83,7 @@ class GoLive(PageMessage):
 
 
 class SetPlayback(PageMessage):
-    """The speed of playback, and whether it repeats."""
+    """The speed of playback, and whether playback repeats."""
 
     speed: float
     loop: bool

@@ -80,7 +80,10 @@ class Talk(PageMessage):
 
 
 class SayCommand(PageMessage):
-    """A command that the user has typed. It is handled like a spoken command."""
+    """A command that the user has typed.
+
+    The command is handled like a spoken command.
+    """
 
     text: str
 

@@ -58,7 +58,7 @@ class LidarScene(Record):
 
 
 class CameraScene(Record):
-    """A camera of a world. It looks along x, with z up.
+    """A camera of a world. The camera looks along x, with z up.
 
     Common fields are as in `LidarScene`.
 

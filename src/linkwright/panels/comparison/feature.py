@@ -42,7 +42,7 @@ def add_old_robot(config: RvizConfig, name: str) -> None:
 
 
 class ComparisonFeature(PageFeature):
-    """Compares the robots of two displays when one of them changes.
+    """The feature that compares the robots of two displays when one of them changes.
 
     It has no effect before a pair is attached.
     """

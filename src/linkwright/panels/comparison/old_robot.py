@@ -29,7 +29,7 @@ TOPIC = "/old/robot_description"
 
 
 class OldRobot:
-    """Publishes a description, and its transforms with the joint positions of another robot.
+    """A publisher of a description and its transforms, with another robot's joint positions.
 
     Joints that both robots have follow the joints of the other robot. Joints that only the old robot has are at zero,
     or in the middle of their limits if the limits exclude zero.
@@ -106,7 +106,7 @@ def followed_joints(old: Robot, new: Robot, same_names: Mapping[str, str]) -> di
 def _initial_positions(robot: Robot, leaders: Mapping[str, str]) -> dict[str, float]:
     """Return the initial positions of the movable joints by name, in rad or m.
 
-    Joints that mimic another movable joint are omitted.
+    Joints that mimic another movable joint are omitted, unless they follow a joint of the new robot.
     """
     zeros = {joint.name: joint.zero for joint in make_layout(robot, JointSettings()).ranges.values()}
     movable_joints = [joint for joint in robot.joints.values() if joint.type in MOVING_TYPES]
@@ -119,7 +119,7 @@ def _initial_positions(robot: Robot, leaders: Mapping[str, str]) -> dict[str, fl
 
 
 def _attach_root(old: Robot, new: Robot, same_names: Mapping[str, str]) -> tuple[str, NDArray[np.float64]]:
-    """Return the frame of the new robot for the old root, and the pose of the old root in it.
+    """Return a frame of the new robot, and the pose of the old robot's root in this frame.
 
     The common link that is nearest to the old root has the same pose in both robots. The joints between this link and
     the root are assumed to be at zero.

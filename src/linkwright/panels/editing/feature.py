@@ -28,7 +28,10 @@ _AXIS_NAMES = "xyz"
 
 
 class EditingFeature(PageFeature):
-    """Sends the editable parts to pages, previews edits, and writes edits to the files."""
+    """The feature that previews edits of the robot, and writes edits to the files.
+
+    The feature also sends the editable parts to pages.
+    """
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
@@ -166,7 +169,7 @@ class EditingFeature(PageFeature):
 def _plan_request(
     description: Description, message: editing.PreviewEdit, unsaved: Mapping[str | os.PathLike[str], str]
 ) -> EditPlan:
-    """Return the plan of an edit, computed from the current content of the files, or their unsaved texts."""
+    """Return the plan of an edit of the files' current content or unsaved texts."""
     return plan_edit(read_again(description, unsaved), request_of(message), Workspace(Path(description.name)).refusal)
 
 
@@ -186,7 +189,10 @@ def _refusal_reason(robot: Robot | None, description: Description | None) -> Phr
 
 
 def _edit_unsaved(plan: EditPlan, unsaved: Mapping[str, UnsavedText]) -> None:
-    """Send an edit to the editor that has unsaved texts of its files. A file without one is edited there, too."""
+    """Send an edit to the editor that has unsaved texts of the edited files.
+
+    Files without an unsaved text are also edited there.
+    """
     owner = next(unsaved[path].owner for path in plan.texts if path in unsaved)
     for path, text in plan.texts.items():
         own = unsaved.get(path)

@@ -64,7 +64,7 @@ def export_snapshot(snapshot: Snapshot, extension: str) -> bytes:
 
 
 class ExportFeature(PageFeature):
-    """Exports the robot of the configuration that a page shows."""
+    """The feature that exports the robot of a page's configuration."""
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)

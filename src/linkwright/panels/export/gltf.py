@@ -285,7 +285,7 @@ class _RobotWriter:
 
 
 class _NeighbourFiles:
-    """Gives trimesh access to the files next to a mesh, with the same restrictions as for pages."""
+    """The files next to a mesh, for trimesh, with the same restrictions as for pages."""
 
     def __init__(self, files: FileSet, url: str) -> None:
         self._files = files

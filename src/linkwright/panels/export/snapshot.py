@@ -107,7 +107,7 @@ def mesh_addresses(scenes: Iterable[RobotScene]) -> list[str]:
 
 
 class FileSet:
-    """Reads files by their address, with the same restrictions as for pages.
+    """A set of files read by address, with the same restrictions as for pages.
 
     Args:
         meshes: the folders that may be read.

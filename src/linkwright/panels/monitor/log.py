@@ -54,7 +54,10 @@ class _PageQueue:
 
 
 class LogFeature(PageFeature):
-    """Stores the latest records of ``/rosout`` while any page is open, and sends them to pages."""
+    """The feature that sends the latest records of ``/rosout`` to pages.
+
+    The records are stored while any page is open.
+    """
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
@@ -91,7 +94,7 @@ class LogFeature(PageFeature):
             self.close()
 
     def close(self) -> None:
-        """Unsubscribe."""
+        """Unsubscribe, and discard all records."""
         self._queues.clear()
         self._watching_pages.clear()
         self._past_lines.clear()

@@ -11,7 +11,10 @@ from linkwright.panels.page_feature import FeatureHost, PageFeature
 
 
 class NodeGraphFeature(PageFeature):
-    """Sends the nodes and topics to pages that watch them, initially and after every change."""
+    """The feature that sends the nodes and topics to the pages that watch them.
+
+    The nodes and topics are sent initially and after every change.
+    """
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)

@@ -123,7 +123,7 @@ _PUBLISH_PERIOD = 0.05
 
 
 class RemoteNode:
-    """Reads and sets the parameters of another node, and follows their changes.
+    """A client for the parameters of another node that follows their changes.
 
     Args:
         node: the node that creates the clients.
@@ -237,7 +237,7 @@ class _Request:
 
 
 class ParametersFeature(PageFeature):
-    """Sends the parameters of nodes to pages, and sets parameters."""
+    """The feature that sends the parameters of nodes to pages, and sets parameters."""
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)

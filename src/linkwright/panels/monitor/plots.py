@@ -37,7 +37,7 @@ _MAX_QUEUED = 4096
 
 
 class SampleQueue:
-    """A queue of samples that is thinned out when it gets too long."""
+    """A queue of samples that is thinned out when it is too long."""
 
     def __init__(self) -> None:
         self._received: list[float] = []
@@ -67,7 +67,7 @@ class SampleQueue:
 
 
 def thin_out(samples: NDArray[Any], max_count: int) -> NDArray[Any]:
-    """Return a limited number of samples that give nearly the same plot as all samples.
+    """Return a limited number of samples whose plot looks nearly the same as that of all samples.
 
     The samples are divided into consecutive groups of equal size. The minimum and the maximum of each group are
     selected, in their original order.
@@ -228,9 +228,9 @@ class _PagePlots:
 
 
 class PlotsFeature(PageFeature):
-    """Sends the values of plots to pages.
+    """The feature that sends the values of plots to pages.
 
-    It subscribes to a topic only while a page plots a series of the topic.
+    The feature subscribes to a topic only while a page plots a series of the topic.
     """
 
     def __init__(self, viewer: FeatureHost) -> None:
@@ -368,7 +368,7 @@ class PlotsFeature(PageFeature):
         return TopicFields(tap.topic, cls.TYPE_NAME, plot_fields(cls), None)
 
     def _class_without_publishers(self, tap: TopicTap) -> Any:
-        """Return the message class of a topic's subscriptions, or None if they have different ones."""
+        """Return the message class of a topic's subscriptions, or None if they differ in class."""
         from linkwright.messages import get_message
 
         types = self.context.node.graph.topics().get(tap.topic, [])

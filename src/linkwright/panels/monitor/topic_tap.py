@@ -21,7 +21,7 @@ from linkwright.rviz.context import ViewerContext
 
 
 class Paced:
-    """Limits the rate of calls of a function.
+    """Limits the rate of calls to a function.
 
     Args:
         work: the function to call.
@@ -57,7 +57,7 @@ _QUEUE_DEPTH = 500
 
 
 class TopicTap:
-    """Receives the messages of a topic until it is closed.
+    """A receiver of the messages of a topic.
 
     The topic need not exist yet. Like ``ros2 topic echo``, the subscription requests the strongest QoS that all
     publishers offer. If a later publisher does not offer this QoS, the topic is subscribed to again.

@@ -113,7 +113,7 @@ class _Request:
 
 
 class _Gauge:
-    """Measures the rate and bandwidth of a topic.
+    """A gauge of the rate and bandwidth of a topic.
 
     The last message is stored as bytes, which are decoded only when a page shows it.
     """
@@ -151,7 +151,10 @@ class _Gauge:
 
 
 class TopicsFeature(PageFeature):
-    """Lists all topics, and subscribes only to topics that a page measures or shows."""
+    """The feature that lists all topics, and measures or shows topics on request.
+
+    The feature subscribes only to topics that a page measures or shows.
+    """
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
@@ -187,7 +190,7 @@ class TopicsFeature(PageFeature):
         self._update_subscriptions()
 
     def message_received(self, topic: str) -> None:
-        """Record that a topic has a new message, and send it soon to the pages that show it."""
+        """Schedule sending a topic's new message to the pages that show the topic."""
         for request in self._requests.values():
             if topic in request.opened:
                 request.due.add(topic)

@@ -57,7 +57,7 @@ class _PageTexts:
 
 
 class SourceEditorFeature(PageFeature):
-    """Gives each page that edits source files a language server, and the files of the workspace.
+    """The feature that provides source editors with a language server and workspace files.
 
     Requests about files are handled one after the other. Written files are steps of the history of `EditingFeature`, so
     they are undone in the same order as the edits of the robot.
@@ -97,7 +97,7 @@ class SourceEditorFeature(PageFeature):
             task.cancel()
 
     def _start(self, work: Coroutine[Any, Any, None]) -> None:
-        """Run work beside the requests, which need not wait for an expansion."""
+        """Run work in a separate task, so that requests need not wait for an expansion."""
         task = asyncio.get_running_loop().create_task(work)
         self._shown.add(task)
         task.add_done_callback(self._shown.discard)
@@ -189,7 +189,7 @@ class SourceEditorFeature(PageFeature):
         page.send(messages.SourceFile(path, uri, open_file.version, content.page_text, content.why_not))
 
     async def _show_unsaved(self, page: Page, message: messages.ShowUnsavedText, on_disk: str) -> None:
-        """Show descriptions with an unsaved text, and send the page what became of it."""
+        """Show descriptions with an unsaved text, and send the page the outcome."""
         if message.text is None:
             outcome = await self._unsaved.remove(_PageTexts(page), message.path)
         else:
@@ -238,7 +238,7 @@ def _differs(message: PageMessage, open_file: _OpenFile, refusal: Diagnostic | N
 
 
 def _read(files: SourceFiles, path: str) -> tuple[tuple[int, ...], FileContent]:
-    """Return a stamp of a file, taken before its content, and the content."""
+    """Return a stamp of a file, computed before its content is read, and the content."""
     return _stamp(path), files.read(Path(path))
 
 

@@ -61,7 +61,7 @@ class SourceFiles:
         description_files: the files of the shown descriptions.
 
     Attributes:
-        description_files: the files of the shown descriptions.
+        known: the files of the shown descriptions.
     """
 
     def __init__(self, main: Path, description_files: frozenset[str] = frozenset()) -> None:

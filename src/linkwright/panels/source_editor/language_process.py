@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import re
 import subprocess
 import sys
 import threading
@@ -12,8 +11,7 @@ from contextlib import suppress
 from queue import SimpleQueue
 from typing import IO
 
-_LENGTH = re.compile(rb"Content-Length: *(\d+)", re.IGNORECASE)
-_MAX_HEADER_LINES = 10
+from linkwright.process.framing import framed, read_content
 
 
 class LanguageProcess:
@@ -31,7 +29,7 @@ class LanguageProcess:
     def __init__(self, language: str | None, receive: Callable[[str], object], ended: Callable[[], object]) -> None:
         options = () if language is None else ("--lang", language)
         self._process = subprocess.Popen(  # noqa: S603 - Linkwright's own program
-            [sys.executable, "-m", "linkwright", *options, "lsp", "--stdio"],
+            [sys.executable, "-m", "linkwright", *options, "lsp", "--stdio", "--python"],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
@@ -62,31 +60,16 @@ class LanguageProcess:
     def _write(self, requests: IO[bytes]) -> None:
         with suppress(OSError), requests:  # the reader notices this too
             while (message := self._waiting.get()) is not None:
-                content = message.encode()
-                requests.write(b"Content-Length: %d\r\n\r\n%b" % (len(content), content))
+                requests.write(framed(message.encode()))
                 requests.flush()
 
     def _read(self, answers: IO[bytes], receive: Callable[[str], object], ended: Callable[[], object]) -> None:
         with answers:
-            while (content := _message(answers)) is not None:
-                self._call(receive, content)
+            while (content := read_content(answers)) is not None:
+                self._call(receive, content.decode(errors="replace"))
         self._call(ended)
 
     def _call(self, callback: Callable[..., object], *arguments: object) -> None:
         """Call a function on the event loop, unless the server was closed."""
         with suppress(RuntimeError):  # the loop has ended
             self._loop.call_soon_threadsafe(lambda: self._is_closed or callback(*arguments))
-
-
-def _message(answers: IO[bytes]) -> str | None:
-    """Return the next message of a language server, or None if there is none."""
-    length = None
-    for _ in range(_MAX_HEADER_LINES):
-        line = answers.readline()
-        length_match = _LENGTH.match(line)
-        length = length_match or length
-        if line in (b"\r\n", b""):
-            break
-    if length is None:
-        return None
-    return answers.read(int(length[1])).decode(errors="replace")

@@ -1,6 +1,6 @@
 """The compression of images as JPEG for image_bridge.
 
-Source: the plugin ``compressed`` of image_transport (the topic, the format text, the quality).
+Source: the plugin ``compressed`` of image_transport (the topic, the format string, the quality).
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ _CHANNELS = {"rgb8": 3, "bgr8": 3, "mono8": 1}
 
 
 def compressed(image: Any) -> Any | None:
-    """Compress an image to a CompressedImage, or return None if JPEG has no such pixels.
+    """Compress an image to a CompressedImage, or return None if its encoding is not supported.
 
     Supported are non-empty images with the encodings rgb8, bgr8 and mono8.
 

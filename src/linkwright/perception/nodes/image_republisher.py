@@ -100,7 +100,7 @@ class ImageRepublisher(SingleNode):
             for transport in requested_transports:
                 self._encode_and_publish(transport, image)
         except ModuleNotFoundError:
-            self._log_error(f"images are packed and unpacked by Pillow; {install_hint('image')}")
+            self._log_error(f"the transports need Pillow; {install_hint('image')}")
         except BadImageError as error:
             self._log_error(str(error))
 
@@ -109,7 +109,7 @@ class ImageRepublisher(SingleNode):
         if encoded is not None:
             self._publishers[transport].publish(encoded)
         elif len(self._publishers) == 1:
-            self._log_error(f"{transport} has no images of {image.encoding}")
+            self._log_error(f"the transport {transport} does not support the encoding {image.encoding}")
 
     def _log_error(self, reason: str) -> None:
         self._node.get_logger().error(

@@ -1,6 +1,6 @@
 """The conversion of images to and from ``compressed`` and ``compressedDepth`` messages.
 
-Sources: compressed_image_transport (the format text), compressed_depth_image_transport (the header, and the
+Sources: compressed_image_transport (the format string), compressed_depth_image_transport (the header, and the
 quantization of depths in metres with ``depth_max`` 10 and ``depth_quantization`` 100).
 """
 

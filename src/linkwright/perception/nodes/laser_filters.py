@@ -177,9 +177,12 @@ def _make_filter(node: Node, prefix: str, settings: dict[str, Any]) -> ScanFilte
 
 
 def _convert(name: str, value: Any, kind: Any) -> Any:
-    """Return a parameter's value in the type of the filter's field, or raise.
+    """Convert a parameter's value to the type of the filter's field.
 
     An integer is accepted as a float, and 0 and 1 as booleans.
+
+    Raises:
+        LinkwrightError: NODE433, the value has another type.
     """
     if kind is float and isinstance(value, int | float) and not isinstance(value, bool):
         return float(value)

@@ -115,7 +115,7 @@ class PointCloudToLaserScan(_Converter):
     def _receive(self, message: Any) -> None:
         points = read_points(message)
         if points is None:
-            self._node.get_logger().error("a cloud has no fields x, y and z, or too little data", once=True)
+            self._node.get_logger().error("a point cloud lacks fields x, y and z, or has too little data", once=True)
             return
         transformed = self._to_target_frame(points, message.header)
         if transformed is None:

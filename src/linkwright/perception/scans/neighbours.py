@@ -65,7 +65,7 @@ class SpeckleFilter(ScanFilter):
     """``LaserScanSpeckleFilter``: removes isolated points that are nearer than ``max_range``.
 
     With ``filter_type`` 0, points are kept if the ranges of ``filter_window`` consecutive rays are similar. With 1,
-    points are kept if that many of the surrounding points are near.
+    points are kept if at least ``filter_window`` of the surrounding points are near.
     """
 
     filter_type: int = 0

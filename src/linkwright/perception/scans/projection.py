@@ -51,7 +51,7 @@ def scan_from_depths(
 
     Returns:
         The ranges from right to left, shape ``(columns,)``, and their rays. Each range is the nearest one in its
-        column. If the column has no valid range, it is infinite if a depth is infinite there, else NaN.
+        column. For a column without a valid range, it is infinite if one of the depths is infinite, else NaN.
 
     Raises:
         ValueError: some of the rows are outside the image.

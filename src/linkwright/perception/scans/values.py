@@ -61,7 +61,7 @@ class IntensityFilter(ScanFilter):
 
 @dataclass(slots=True)
 class InterpolationFilter(ScanFilter):
-    """``InterpolationFilter``: replaces invalid ranges by the mean of their neighbours.
+    """``InterpolationFilter``: replaces invalid ranges with the mean of their neighbours.
 
     The neighbours are the nearest valid ranges on both sides. If there is no valid range on a side, a range just below
     ``range_max`` is used.
@@ -95,7 +95,7 @@ class MaskFilter(ScanFilter):
 
 @dataclass(slots=True)
 class ArrayFilter(ScanFilter):
-    """``LaserArrayFilter``: replaces values by their median or mean over the last scans.
+    """``LaserArrayFilter``: replaces values with their median or mean over the last scans.
 
     The values are ranges and intensities.
     """

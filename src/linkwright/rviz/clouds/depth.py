@@ -67,7 +67,7 @@ class DepthCamera:
 
 
 class DepthCloudBuilder:
-    """Converts depth images to points.
+    """A converter of depth images to points.
 
     With occlusion compensation, points that a nearer object covers stay in the cloud for a while.
     """

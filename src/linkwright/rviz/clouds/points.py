@@ -163,7 +163,7 @@ def _column(data: NDArray[np.uint8], offset: int, kind: str, step: int, count: i
 
 
 def decimated(cloud: CloudPoints, max_bytes: int) -> CloudPoints:
-    """Return every k-th point, so that the arrays have at most about `max_bytes` bytes.
+    """Return every k-th point of a cloud, with k chosen for arrays of at most about `max_bytes` bytes.
 
     At least one point is returned.
     """
@@ -175,7 +175,7 @@ def decimated(cloud: CloudPoints, max_bytes: int) -> CloudPoints:
 
 
 class ScanProjector:
-    """Projects laser scans to points.
+    """A projector of laser scans to points.
 
     The ray directions are cached, because successive scans usually have the same shape.
     """

@@ -194,7 +194,7 @@ def store_unsaved(configs: Iterable[RvizConfig]) -> list[Diagnostic]:
 
 
 def find_unsaved(config: RvizConfig) -> list[Diagnostic]:
-    """Report a recovery file that an earlier run of the program stored for this file (RVIZ302)."""
+    """Return the finding (RVIZ302) about a recovery file of an earlier run, if there is one."""
     path = recovery_file(config)
     if config.path is None or _real_path(config.path) == _real_path(path) or not path.is_file():
         return []

@@ -13,7 +13,7 @@ from linkwright.rviz.config.schema import Path, PropertySpec, Schema, accept, fa
 from linkwright.rviz.config.yaml_tree import Memory, NewSection, Scalar, Section, make_section, remove_unchanged
 
 _MIN_INDEXED_PROPERTIES = 30
-"""The number of sibling properties from which they are found with an index by name."""
+"""The number of sibling properties from which a lookup by name uses an index."""
 
 
 def property_id(owner: str, path: Iterable[str]) -> str:
@@ -30,7 +30,7 @@ class PropertyStore:
     Args:
         owner: the display's ID, or ``global``.
         section: the file, or the display's section of it; values that are set are written to it immediately.
-        schema: returns the current specs, which change if the rows of the display appear and disappear.
+        schema: returns the current specs; they change when rows of the display appear or disappear.
         report: called with a finding about a value in the file that cannot be used; the default is used instead.
         base: the keys from the section to the mapping with the values, which is created only when a value is set.
         frames: returns the frame names that properties of kind ``frame`` offer.
@@ -68,17 +68,17 @@ class PropertyStore:
         return self._value(path, self._spec(path))
 
     def flag(self, *path: str) -> bool:
-        """Return the value of a ``bool``."""
+        """Return the value of a ``bool`` property."""
         return bool(self.get(*path))
 
     def number(self, *path: str) -> float:
-        """Return the value of an ``int`` or ``float``."""
+        """Return the value of an ``int`` or ``float`` property."""
         value = self.get(*path)
         assert isinstance(value, (int, float))
         return float(value)
 
     def text(self, *path: str) -> str:
-        """Return the value of a ``string``, ``enum``, ``frame``, ``color`` or ``topic``."""
+        """Return the value of a ``string``, ``enum``, ``frame``, ``color`` or ``topic`` property."""
         return str(self.get(*path))
 
     def check(self, path: Path, value: object) -> None:

@@ -109,7 +109,7 @@ _MANAGER = "Visualization Manager"
 _TOOLS = "Tools"
 
 MAX_TOOLS = 100
-"""The number of tools up to which pages may add one. It is limited because each tool may have a publisher."""
+"""The number of tools at which a page can add no more. A limit is needed because each tool may have a publisher."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -163,7 +163,7 @@ VIEW_SCHEMAS: dict[str, Schema] = {
 """The properties of each class, in the order in which RViz lists the classes."""
 
 SIMILAR_CLASSES = {"rviz_default_plugins/FrameAligned": FPS}
-"""The classes that replace similar classes: FrameAligned is an FPS that can be aligned and locked."""
+"""The supported class for each similar, unsupported class: FrameAligned is an FPS that can be aligned and locked."""
 
 
 def value_paths(schema: Schema) -> dict[str, Path]:

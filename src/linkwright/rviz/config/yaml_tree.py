@@ -49,7 +49,7 @@ class Memory:
 
 
 class Section:
-    """A mapping in the file.
+    """A mapping in an RViz configuration file.
 
     A path of keys identifies a scalar. If a value has children, RViz stores the value itself under ``Value`` in the
     mapping of the children. A path that ends at such a mapping refers to that value.

@@ -157,7 +157,7 @@ class DepthCloudDisplay(CloudDisplay):
         return int(self.properties.number(QUEUE_SIZE))
 
     def pixel_size(self) -> float:
-        """Return the width of a point in m per metre of its distance, or 0 if ``Auto Size`` is off."""
+        """Return the width of a point in m at a distance of 1 m, or 0 if ``Auto Size`` is off."""
         return (
             self._pixel_width * self.properties.number(AUTO_SIZE, SIZE_FACTOR)
             if self.properties.flag(AUTO_SIZE)
@@ -201,7 +201,7 @@ class DepthCloudDisplay(CloudDisplay):
         super().time_changed()
 
     def reset(self) -> None:
-        """Discard all points, including those stored for occlusion compensation."""
+        """Discard all points, including the points stored for occlusion compensation."""
         self._builder.reset()
         self._camera_pose = None
         self._pending = None

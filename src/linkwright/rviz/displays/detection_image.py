@@ -29,7 +29,7 @@ _MAX_IMAGES = 10
 """The largest number of images that wait for their detections."""
 
 _PATIENCE = 1.0
-"""Images are shown immediately after this many seconds without detections."""
+"""After this many seconds without detections, images are shown as soon as they arrive."""
 
 
 class DetectionImageDisplay(ImageDisplay):

@@ -134,7 +134,7 @@ class Detection3DArrayDisplay(_BoxDisplay):
         super().start()
 
     def stop(self) -> None:
-        """Unsubscribe."""
+        """Unsubscribe, and cancel the timer that hides the boxes."""
         self._cancel_end()
         super().stop()
 

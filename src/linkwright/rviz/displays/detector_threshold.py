@@ -20,7 +20,7 @@ StatusReport = Callable[[StatusLevel, str], None]
 
 
 class DetectorThreshold:
-    """Sets the minimum score as a parameter of a detector node.
+    """A client that sets the minimum score, a parameter of a detector node.
 
     Requests are sent one at a time. A new value replaces a value that was not sent yet.
 

@@ -206,7 +206,7 @@ class TfDisplay(ViewerDisplay):
             self.pages.publish(PropertyChanged(self.property_id(_ALL_ENABLED), False))
 
     def enabled_changed(self) -> None:
-        """Update the status of the frames, and notify the host that frames may fade or not."""
+        """Update the status of the frames, and notify the host, which fades frames only for enabled displays."""
         self.host.fading_changed()
         super().enabled_changed()
 

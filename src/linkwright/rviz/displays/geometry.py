@@ -56,7 +56,7 @@ class GridCellsDisplay(TopicDisplay):
 class PointStampedDisplay(RecentDisplay):
     """A display of the last points of a topic as spheres.
 
-    They keep their positions in the Fixed Frame.
+    The points keep their positions in the Fixed Frame.
     """
 
     CLASS = "rviz_default_plugins/PointStamped"
@@ -95,7 +95,7 @@ class PolygonDisplay(RecentDisplay):
 
 
 class RangeDisplay(RecentDisplay):
-    """A display of the last measurements of a range sensor as cones with its field of view."""
+    """A display of the last measurements of a range sensor as cones with the sensor's field of view."""
 
     CLASS = "rviz_default_plugins/Range"
     MESSAGE = "sensor_msgs/msg/Range"

@@ -18,7 +18,7 @@ from linkwright.rviz.displays.base.topic_display import RecentDisplay
 _LAYER_MODE = "GridMapLayer"
 _HEIGHT_MODES = (_LAYER_MODE, "Layer", "Flat")
 _COLOR_MODES = (_LAYER_MODE, "IntensityLayer", "ColorLayer", "FlatColor", "None")
-"""The first option is RViz's initial value. It has the meaning of the second, and RViz does not offer it."""
+"""The first option is RViz's initial value. It means the same as the second option, and RViz does not offer it."""
 
 _MAX_CELLS = 400_000
 """The largest number of cells that are drawn. Some rows and columns of larger maps are skipped."""

@@ -77,8 +77,8 @@ class ImageTopicDisplay(TopicDisplay):
         """Show an image.
 
         Args:
-            message: a message with the fields of a sensor_msgs/msg/Image, or a sensor_msgs/msg/CompressedImage for
-                browsers.
+            message: a message with the fields of a sensor_msgs/msg/Image, or a sensor_msgs/msg/CompressedImage that
+                browsers can decode.
             pose: see `process_message`.
         """
 
@@ -225,7 +225,7 @@ class ImageDisplay(ImageTopicDisplay):
         return self._panel is not None and (self._panel.width <= 0 or self._panel.height <= 0)
 
     def receive(self, message: Any) -> None:
-        """Handle the size of the largest panel, the limit for the pixels to send.
+        """Adapt the resolution of the images to the size of the largest panel.
 
         While no panel is visible, the display unsubscribes after its first image, so that a camera that publishes only
         to subscribers does not publish for a hidden panel.

@@ -21,7 +21,7 @@ from linkwright.rviz.markers.shapes import ADD, DELETE, DELETE_ALL, marker_id, m
 
 _NAMESPACES = "Namespaces"
 _MIN_LIFETIME_NS = 100_000
-"""A marker with a lifetime up to this never expires, as in RViz."""
+"""A marker whose lifetime in ns is at most this value never expires, as in RViz."""
 
 _EXPIRY_PERIOD = 0.1
 """Seconds between checks for expired markers while any marker has a lifetime."""

@@ -89,7 +89,7 @@ class OctomapDisplay(StoredMarkersDisplay):
         self.show_markers()
 
     def process_message(self, message: Any, pose: Pose | None) -> None:
-        """Draw a map."""
+        """Draw an octomap, or show in the status why it cannot be drawn."""
         data = np.asarray(message.data, dtype=np.int8).tobytes()
         try:
             cells = read_octree(data=data, binary=message.binary, kind=message.id, resolution=message.resolution)

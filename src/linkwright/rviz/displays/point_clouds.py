@@ -78,9 +78,9 @@ class CloudDisplay(TopicDisplay):
         self._computed_bounds: dict[str, tuple[float, float]] = {}
 
     def pixel_size(self) -> float:
-        """Return the width of a point in m per metre of distance.
+        """Return the width of a point in m at a distance of 1 m.
 
-        With 0, the size in the properties applies.
+        If it is 0, the size in the properties applies.
         """
         return 0.0
 
@@ -103,7 +103,7 @@ class CloudDisplay(TopicDisplay):
         )
 
     def show(self, points: Points, pose: Pose, stamp_ns: int) -> None:
-        """Show points at the pose of their frame, in addition to points within the Decay Time.
+        """Show points at the pose of their frame, and remove the points whose Decay Time has passed.
 
         Args:
             points: the points.
@@ -210,7 +210,7 @@ class CloudDisplay(TopicDisplay):
     def _remove_expired(self) -> None:
         """Remove points older than the Decay Time.
 
-        If it is 0, keep only the points of the newest message.
+        If the Decay Time is 0, keep only the points of the newest message.
         """
         if self._decay_timer is not None:
             self._decay_timer.cancel()
@@ -407,7 +407,7 @@ class ScalarDisplay(PointsDisplay):
     """The base class of displays of a scalar, as a coloured point at the sensor's origin."""
 
     FIELD: ClassVar[str]
-    """The field of the message with the number, and the channel of the point."""
+    """The message field that contains the scalar. The channel of the point has the same name."""
 
     def points_of(self, message: Any) -> Points:
         """Return a single point at the origin, with the measured value as a channel."""

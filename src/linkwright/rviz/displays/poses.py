@@ -213,7 +213,7 @@ _NORM_TOLERANCE = 10e-3
 
 
 class OdometryDisplay(RecentDisplay):
-    """A display of the path of a robot.
+    """A display of a robot's path as a series of marks.
 
     A mark is added whenever the robot has moved or turned by a tolerance.
     """

@@ -44,7 +44,7 @@ _WORLD_ROW = "World"
 _SCENE_KEY, _POSES_KEY = "scene", "poses"
 _MAX_FINDINGS = 5
 _MOVE_TOLERANCE = 1e-6
-"""The smallest change of a position in m, or of a quaternion, with which the frames of tf are placed again."""
+"""The smallest change of a position in m, or of a quaternion, after which the frames of tf are placed again."""
 
 
 class WorldDisplay(TopicDisplay):

@@ -23,7 +23,9 @@ _MAX_STORED_LIDARS = 64
 
 
 class LidarRays:
-    """Receives the measured rays of lidars, and subscribes only while the rays are drawn.
+    """A receiver of the measured rays of lidars.
+
+    The receiver subscribes only while the rays are drawn.
 
     Args:
         host: the display's host.

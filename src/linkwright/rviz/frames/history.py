@@ -114,7 +114,7 @@ class FrameHistory:
         return None if placed_frame is None or name in self._buffer.frame_names() else placed_frame
 
     def in_known_frame(self, frame: str, pose: ArrayLike) -> tuple[str, NDArray[np.float64]]:
-        """Return a frame that other programs can use and the pose in it, for a pose in any frame.
+        """Return a frame of tf and the pose in it, so that other programs can use the pose.
 
         If a display has placed the given frame, the pose is converted to a frame of tf. Otherwise frame and pose are
         returned unchanged.

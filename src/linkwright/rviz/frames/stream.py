@@ -191,7 +191,7 @@ class FrameAudience(Protocol):
 
 
 class FrameStream:
-    """Maintains the viewer's tf buffer, and sends the changes of frame poses to pages.
+    """Maintains the viewer's tf buffer, and sends changed frame poses to pages.
 
     A frame that is not in tf can be the Fixed Frame if a display places it (`FrameHistory.set_placed_frame`).
 

@@ -60,7 +60,7 @@ class ClientEvents:
 
 
 class InteractiveMarkerClient:
-    """Connects to an interactive marker server.
+    """A client of an interactive marker server.
 
     The client waits until the server is available, and connects again when the server returns.
 

@@ -299,7 +299,7 @@ def _extension(name: str) -> str:
 
 
 _MOST_GONE = 5000
-"""The number of stored removals. A page that missed more of them receives all markers again."""
+"""The maximum number of stored removals. A page that missed more removals receives all markers again."""
 
 
 class MarkerStore:

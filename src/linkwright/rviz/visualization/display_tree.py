@@ -95,7 +95,7 @@ class History:
         self._last_edit_time = self._clock()
 
     def add(self, edit: Edit[Any]) -> None:
-        """Add an edit that has just been made, and discard the edits that could be redone."""
+        """Add an edit that was just made, and discard the undone edits."""
         self._last_edit_time = self._clock()
         if self._saved_count is not None and self._saved_count > len(self._done_edits):
             self._saved_count = None  # the saved state can no longer be reached with redo

@@ -243,7 +243,7 @@ class VisualizationManager:
             )
 
     def set_fixed_frame(self, frame: str) -> None:
-        """Change the Fixed Frame, as a page does, so that the change can be undone."""
+        """Change the Fixed Frame as an edit that can be undone."""
         path = (_FIXED_FRAME,)
         self._edit_property(self.config.options.identity(path), path, lambda: self._set_option(_FIXED_FRAME, frame))
 
@@ -380,10 +380,10 @@ class VisualizationManager:
 
 
 LINGERING = 60.0
-"""Seconds after which the displays of a closed page are removed, because the page may only be reloading."""
+"""Seconds for which the displays of a closed page are kept, because the page may only be reloading."""
 
 MOST_LINGERING = 8
-"""The largest number of managers without pages, beyond which the oldest of them is closed."""
+"""The largest number of managers without pages. If there are more, the oldest of them is closed."""
 
 
 class Managers:

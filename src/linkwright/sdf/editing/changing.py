@@ -424,7 +424,10 @@ def _local(world: WorldText, entity: Entity, pose: Pose) -> Pose:
 
 
 def _move_state_edits(entry: Element, old: Transform, new: Transform, pose: Pose) -> list[Replacement]:
-    """Return the edits that move an entity and its parts in the saved state, given in the world."""
+    """Return the edits that move an entity and its parts in a saved state.
+
+    All poses in a saved state are in the frame of the world.
+    """
     by = compose(new, invert(old))
     edits: list[Replacement] = []
     for element in entry.walk():

@@ -148,7 +148,7 @@ def _check_group(entities: Sequence[Entity]) -> None:
         raise EditError(phrase("a group needs at least two models"))
     light = next((entity for entity in entities if entity.kind == "light"), None)
     if light is not None:
-        raise EditError(phrase("'{name}' is a light, which cannot be part of a model", name=light.name))
+        raise EditError(phrase("'{name}' is a light: only models can be grouped", name=light.name))
     mismatch = next((entity for entity in entities if entity.static != entities[0].static), None)
     if mismatch is not None:
         static_entity, moving_entity = (mismatch, entities[0]) if mismatch.static else (entities[0], mismatch)

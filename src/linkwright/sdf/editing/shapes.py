@@ -38,7 +38,7 @@ class SimpleShape:
     """The kind, size and colour of a model of one simple shape.
 
     Attributes:
-        kind: which shape it is; a wall is a box, and a ramp is a wedge.
+        kind: the kind of shape; a wall is a box, and a ramp is a wedge.
         size: in metres: x, y, z of a box, wall or ramp; radius and length of a cylinder; the radius of a sphere.
         colour: red, green, blue, alpha from 0 to 1; None if the model does not specify a colour.
     """

@@ -45,7 +45,7 @@ class Entity:
         model: the model, with its includes resolved; None for a light, and for an include that cannot be resolved.
         light: the light; None for a model.
         world_pose: the pose of the entity's frame in the world.
-        shape: the only shape of the model, which is simple; None for a light, an include or any other model.
+        shape: the shape of a model that consists of one simple shape; None for a light, an include or any other model.
     """
 
     name: str
@@ -166,7 +166,7 @@ class WorldText:
             raise EditError(phrase("the result would not be valid SDF: {reason}", reason=diagnostic.message)) from None
 
     def free_name(self, preferred_name: str, used_names: AbstractSet[str] | None = None) -> str:
-        """Return the preferred name if it is free, or else with the first free number.
+        """Return the preferred name, or this name with the first free number if it is in use.
 
         `used_names` are the names in use; None for the names in this world.
         """

@@ -188,7 +188,7 @@ class _Bridge(SingleNode):
 class ParameterBridge(_Bridge):
     """The node of ``parameter_bridge``.
 
-    It bridges the topics in its arguments and in the file that its parameter ``config_file`` names.
+    The node bridges the topics in its arguments and in the file that its parameter ``config_file`` names.
 
     Raises:
         LinkwrightError: NODE820, an argument or the file is invalid; NODE821, the file cannot be read.
@@ -207,9 +207,9 @@ class ParameterBridge(_Bridge):
             self._connect(graph, topics)
 
     def _is_service(self, argument: str) -> bool:
-        """Return whether an argument describes a service (``SERVICE@ROS_TYPE``), with a warning.
+        """Return whether an argument describes a service, and log a warning if it does.
 
-        Services are not bridged.
+        The form of such an argument is ``SERVICE@ROS_TYPE``. Services are not bridged.
         """
         name, _, types = argument.partition("@")
         is_service = "/srv/" in types.partition("@")[0]
@@ -329,7 +329,8 @@ def _parse_entry(entry: Any, position: int, path: str) -> BridgedTopic:
     for side, value in zip(("publisher", "subscriber"), queues, strict=True):
         if not isinstance(value, int) or isinstance(value, bool) or value < 0:
             raise _bridge_file_error(
-                path, phrase("entry {number}: '{key}' is not a number", number=position, key=f"{side}_queue")
+                path,
+                phrase("entry {number}: '{key}' is not an integer of 0 or more", number=position, key=f"{side}_queue"),
             )
     lazy = entry.get("lazy")
     if lazy is not None and not isinstance(lazy, bool):

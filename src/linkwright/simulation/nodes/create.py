@@ -16,7 +16,9 @@ _TRUE_VALUES = ("", "true", "1", "yes", "t", "y")
 
 
 class Create(EntitySpawner):
-    """The node of ``create``, which spawns an entity and then ends with status 0.
+    """The node of ``create``, which spawns an entity and ends.
+
+    The exit status is 0, or 1 after a failure.
 
     Raises:
         LinkwrightError: NODE812, neither the command line nor the parameters name a description, or a number is

@@ -52,7 +52,7 @@ class Remove(SimulatorClient):
         self._call_service(_DELETE, "delete_entity", get_service(_DELETE).Request(name=name), self._on_response)
 
     def _on_response(self, response: Any) -> None:
-        """Log the result in a response, and end with status 0 if the request succeeded, else with 1."""
+        """Log the result of the request, and end with status 0 if it succeeded, else with 1."""
         if response.success:
             self._log("Result: true")
             self._end(0)

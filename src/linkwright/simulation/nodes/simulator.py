@@ -76,7 +76,7 @@ class Simulator(SingleNode):
         description may be replaced while the node runs: the robot keeps its pose and its joint positions.
 
     Attributes:
-        finished: receives status 0 after ``seconds``, or 1 if the simulation failed.
+        finished: a future with the exit status: 0 after ``seconds``, or 1 if the simulation failed.
 
     Raises:
         LinkwrightError: SIM150, the world does not exist; SIM101, MuJoCo is missing; an error in the world or robot.

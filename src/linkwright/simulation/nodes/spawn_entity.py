@@ -14,9 +14,10 @@ from linkwright.simulation.nodes.spawner import Entity, EntitySpawner, read_desc
 
 
 class SpawnEntity(EntitySpawner):
-    """The node of spawn_entity.py, which spawns an entity and then ends with status 0.
+    """The node of spawn_entity.py, which spawns an entity and ends.
 
-    With ``-b``, the node runs until it is closed.
+    The exit status is 0, or 1 after a failure. With ``-b``, the node runs until it is closed, and then deletes the
+    entity.
 
     Raises:
         LinkwrightError: NODE810, the command line is invalid; NODE811, the file cannot be read.

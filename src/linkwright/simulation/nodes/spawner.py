@@ -66,7 +66,7 @@ class SimulatorClient(SingleNode):
     finished: asyncio.Future[int]
 
     def _connect(self, node: Node, *, service_namespace: str = "", timeout: float | None = None) -> None:
-        """Set the node and the namespace of the simulator's services.
+        """Set the node, the service namespace and the timeout for calls to the simulator.
 
         Args:
             node: the node that calls the services.

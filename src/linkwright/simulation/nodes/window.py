@@ -7,9 +7,9 @@ from linkwright.nodes.options import NodeOptions, SingleNode, create_node
 
 
 class Window(SingleNode):
-    """The node of ``gzclient``, which does nothing until it is closed.
+    """The node of ``gzclient``, which logs where the world is shown and then stays idle.
 
-    It keeps running because launch files end all other processes when it ends.
+    The node keeps running, because launch files end all other processes when it ends.
     """
 
     DEFAULT_NAME = "_gzclient"  # hidden, because Gazebo's gzclient does not create a node

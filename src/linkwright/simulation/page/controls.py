@@ -1,4 +1,6 @@
-"""The simulation bar and the dragging of models, with topics and services only.
+"""The simulation bar of the page, and requests of pages to add, delete, drag or push models.
+
+The feature uses only topics and services.
 
 Source of the topic and service names: gazebo_ros and simulation_interfaces.
 """
@@ -87,7 +89,10 @@ class SimulationFeature(PageFeature):
         self._spawn_tasks: set[asyncio.Task[None]] = set()
 
     def opening(self) -> list[ServerMessage]:
-        """Return the initial messages for a new page: the state of the simulation."""
+        """Return the state of the simulation for a new page.
+
+        The method also begins to watch the graph for a simulator, unless a recording is shown.
+        """
         if not self._is_listening and not self._shows_recording:
             self._is_listening = True
             self.context.graph_changes.watch(self._update_presence)
@@ -100,7 +105,7 @@ class SimulationFeature(PageFeature):
         self._stop()
 
     def page_closed(self, page: Page) -> None:
-        """End the drag of the page, and unsubscribe after the last page."""
+        """End the drag of the page, and unsubscribe after the last page has closed."""
         self._drags.pop(page, None)
         if self._is_listening and len(self.context.pages) == 0:
             self._stop()

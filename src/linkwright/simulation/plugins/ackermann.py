@@ -19,7 +19,7 @@ from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
 
 _MOTOR_GAIN = 20.0
-"""The torque of a motor in N m per rad/s by which its wheel is too slow."""
+"""The gain of a wheel motor, in N m of torque per rad/s of velocity error."""
 _GRAVITY = 9.81
 
 
@@ -61,8 +61,8 @@ class ClassicAckermann(SimulatedPlugin[AckermannParameters]):
         """Create motors and servos for the wheels, and subscribe to the commands.
 
         Raises:
-            LinkwrightError: SIM134, a joint does not exist; SIM160, a wheel has no size, or both axles have the same
-                position.
+            LinkwrightError: SIM134, a joint does not exist; SIM160, a wheel has no known radius, or the track or the
+                wheelbase is zero.
         """
         parameters, node, simulation = self.parameters, self.node, self.simulation
         front = [self.joint(name) for name in (parameters.front_left_joint, parameters.front_right_joint)]
@@ -103,7 +103,7 @@ class ClassicAckermann(SimulatedPlugin[AckermannParameters]):
         self._time = self.simulation.time
 
     def reset(self) -> None:
-        """Stop the car, with the wheels straight ahead."""
+        """Stop the car, and reset its steering angle and the travelled distance."""
         self._begin()
         for servo in self._servos:
             servo.restart()

@@ -38,7 +38,7 @@ class DetachableJointParameters:
 class GzDetachableJoint(SimulatedPlugin[DetachableJointParameters]):
     """The substitute for ``gz-sim-detachable-joint-system``.
 
-    It attaches a link of another model to a link of its own model, and detaches it on request.
+    The plugin attaches a link of another model to a link of its own model, and detaches the link on request.
     """
 
     PARAMETERS = DetachableJointParameters

@@ -81,7 +81,7 @@ class GzParameters(GzDriveParameters):
 
 @dataclass(frozen=True, slots=True)
 class _WheelPair:
-    """The two wheels on one axis.
+    """The two wheels of one axle.
 
     Attributes:
         left: the motor of the left wheel.
@@ -167,7 +167,7 @@ class _DiffDrive(SimulatedPlugin[P], Generic[P]):
     def _measured_velocity(self) -> tuple[float, float]:
         """Return the forward velocity in m/s and the yaw rate in rad/s.
 
-        They are the values at the last call of `_read_angles`.
+        The values are those at the last call of `_read_angles`.
         """
         return self._pairs[0].drive.motion(*self._wheel_velocities)
 
@@ -253,9 +253,9 @@ class ClassicDiffDrive(_DiffDrive[ClassicParameters]):
             self._topics.publish(stamp, self._place.transform, published_forward, 0.0, angular)
 
     def _drive(self) -> None:
-        """Accelerate the wheels towards the commanded velocity, within a limit in m/s2.
+        """Accelerate the wheels towards the commanded velocity.
 
-        The limit applies to the rims of the wheels.
+        The parameter ``max_wheel_acceleration`` limits the acceleration of the wheel rims, in m/s2.
         """
         forward, angular = self._command
         for index, pair in enumerate(self._pairs):

@@ -30,9 +30,9 @@ class Entities:
         self._simulation = simulation
 
     def link(self, name: str) -> str:
-        """Return the full name, ``model::link``, of a link from this name or the link name.
+        """Return the full name of a link, ``model::link``, from its full or short name.
 
-        The link name is sufficient if only one model has such a link.
+        The short name is sufficient if only one model has such a link.
 
         Raises:
             LinkwrightError: SIM141, there is no such link, or several models have one.
@@ -40,9 +40,9 @@ class Entities:
         return self._full_name(name, self._simulation.scene.bodies)
 
     def joint(self, name: str) -> str:
-        """Return the full name, ``model::joint``, of a joint from this name or the joint name.
+        """Return the full name of a joint, ``model::joint``, from its full or short name.
 
-        The joint name is sufficient if only one model has such a joint.
+        The short name is sufficient if only one model has such a joint.
 
         Raises:
             LinkwrightError: SIM141, there is no such joint, or several models have one.

@@ -154,7 +154,7 @@ class GzOdometry(SimulatedPlugin[GzOdometryParameters]):
 
 
 def _in_frame_axes(frame: Transform, vector: Array) -> Array:
-    """Return a vector of the world's axes in the axes of a frame."""
+    """Return a vector, given in the axes of the world, in the axes of a frame."""
     x, y, z = vector
     return np.array(rotate(quaternion_inverse(frame[3:]), (float(x), float(y), float(z))))
 

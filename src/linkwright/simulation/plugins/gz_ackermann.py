@@ -121,7 +121,7 @@ class GzAckermann(SimulatedPlugin[SteeringParameters]):
         self._angles = self._wheel_angles()
 
     def reset(self) -> None:
-        """Stop the car, with the wheels straight ahead."""
+        """Stop the car, and reset its steering command and its odometry."""
         self._begin()
         self._commands.restart()
         self._limiter.restart()

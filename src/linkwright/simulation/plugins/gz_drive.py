@@ -18,7 +18,7 @@ GZ_RATE = 100.0
 GZ_TORQUE = 5.0
 """The maximum torque of a wheel in N m if a gz plugin specifies none. In gz, velocities are set without a limit."""
 MOTOR_GAIN = 20.0
-"""The torque of a motor in N m per rad/s by which its wheel is too slow."""
+"""The gain of a wheel motor, in N m of torque per rad/s of velocity error."""
 
 
 @dataclass(frozen=True, kw_only=True)

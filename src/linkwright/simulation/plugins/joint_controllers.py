@@ -19,7 +19,7 @@ from linkwright.simulation.plugins.pid import Gains, Pid
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
 
 _MOTOR_GAIN = 20.0
-"""The torque of a motor in N m per rad/s by which its joint is too slow."""
+"""The gain of a joint motor, in N m of torque per rad/s of velocity error."""
 _DEFAULT_MAX_COMMAND = 1000.0
 """The default of ``cmd_max`` in gz: no limit."""
 

@@ -65,7 +65,7 @@ class ClassicJointPoses(SimulatedPlugin[JointPoseParameters]):
         self._due = max(int(stamp.sec) * NANOSECONDS_PER_SECOND + int(stamp.nanosec), self.simulation.time)
 
     def _move(self) -> None:
-        """Set the joints to the next point of the trajectory if its time has come."""
+        """Set the joints to the next point of the trajectory if the point is due."""
         if not self._points or self.simulation.time < self._due:
             return
         point = self._points.popleft()

@@ -32,7 +32,10 @@ from linkwright.xmltree import Element
 Array = npt.NDArray[np.float64]
 
 _SPIN_GAIN = 1e-3
-"""The torque in N m per rad/s of speed error; it affects only the visible rotation of a rotor, not its thrust."""
+"""The gain of a rotor's motor, in N m of torque per rad/s of speed error.
+
+The gain affects only the visible rotation of the rotor, not its thrust.
+"""
 _MIN_SQUARED_SINE = 1e-3
 
 
@@ -74,7 +77,7 @@ class GzMulticopterMotor(SimulatedPlugin[MotorParameters]):
         """Find the rotor, and subscribe to its speed commands.
 
         Raises:
-            LinkwrightError: SIM133, SIM134, there is no such link or joint; SIM160, the motor is of another type.
+            LinkwrightError: SIM133, SIM134, there is no such link or joint; SIM160, the motor type is not ``velocity``.
         """
         parameters = self.parameters
         if parameters.motor_type != "velocity":
@@ -261,7 +264,7 @@ class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
         self._wanted = (linear, min(max(float(twist.angular.z), -max_yaw_rate), max_yaw_rate))
 
     def _stop_motion(self) -> bool:
-        """Replace the command by hovering, and return whether a motion was commanded."""
+        """Command the model to hover, and return whether a motion was commanded before."""
         old_command = self._wanted
         if old_command is None:
             return False

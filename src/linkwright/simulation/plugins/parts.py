@@ -75,7 +75,7 @@ def _frame_of(simulation: Simulation, model: Model, path: str) -> Pose:
 def _pose_on_link(simulation: Simulation, link: str, place: Transform) -> Pose:
     """Return a function that returns the pose in the world of a frame fixed to a link.
 
-    `link_pose` is the pose of the link in this frame.
+    `place` is the pose of the link in this frame.
     """
     frame_in_link = invert(place)
     return lambda: compose(simulation.link_pose(link), frame_in_link)
@@ -84,7 +84,7 @@ def _pose_on_link(simulation: Simulation, link: str, place: Transform) -> Pose:
 def _parts(simulation: Simulation, model: Model, path: str, frames: Frames, place: Pose) -> Iterator[Part]:
     """Yield the parts of a model.
 
-    `frame_pose` returns the pose of the model's frame in the world.
+    `place` returns the pose of the model's frame in the world.
     """
     for link in model.links:
         name = f"{path}{SEPARATOR}{link.name}"

@@ -31,7 +31,7 @@ class Pid:
         self._before: float | None = None
 
     def force(self, error: float, seconds: float) -> float:
-        """Return the force in N m (or N) for an error.
+        """Update the controller with an error, and return the force in N m (or N).
 
         `seconds` is the time since the last call.
         """

@@ -16,7 +16,7 @@ To add a plugin or a type of sensor, write a class and declare it as an entry po
 
 For a sensor, `sensor` is the sensor to measure, with its pose. The same class serves a sensor with a plugin in its
 ``<sensor>``, which ``linkwright.simulated_plugins`` finds by its library, and a sensor without a plugin, which
-``linkwright.simulated_sensors`` finds by its type. Noise is drawn from `random`, so the same seed gives the same bits.
+``linkwright.simulated_sensors`` finds by its type. Noise is drawn from `random`, so the same seed gives the same noise.
 Create costly messages only if ``output.is_wanted``.
 
 All methods are called in the simulation's thread: `start` after the model is added, functions passed to `every` at

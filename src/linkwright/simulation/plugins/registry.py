@@ -40,7 +40,7 @@ _SENSORS_OF_SYSTEMS = {
 _OWN_SYSTEMS = ("physics", "user-commands", "label")
 """The systems of gz whose features the simulation itself provides: moving, spawning and deleting models, labels."""
 _NO_LIBRARY = ("", "__default__")
-"""The values of ``filename`` that mean "no library" in files that programs wrote."""
+"""The values of ``filename`` that mean "no library" in generated files."""
 _BUILT_IN = frozenset(
     (
         *(f"gz-sim-{name}-system" for name in (*_OWN_SYSTEMS, *_SENSORS_OF_SYSTEMS)),

@@ -25,7 +25,7 @@ class VelocityControlParameters:
 class GzVelocityControl(PlanarDrive[VelocityControlParameters]):
     """The substitute for ``gz-sim-velocity-control-system``.
 
-    It controls models, but not single links.
+    The plugin controls models, but not single links.
     """
 
     PARAMETERS = VelocityControlParameters
@@ -53,7 +53,7 @@ class GzVelocityControl(PlanarDrive[VelocityControlParameters]):
         self.every(0.0, self._move)
 
     def reset(self) -> None:
-        """Set the commanded velocity to the initial velocity in the parameters, or to none."""
+        """Command the initial velocity of the parameters, or drop the command if they have none."""
         parameters = self.parameters
         self._command: tuple[Vector3, Vector3] | None = None
         if parameters.initial_linear is not None or parameters.initial_angular is not None:

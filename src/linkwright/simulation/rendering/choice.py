@@ -39,7 +39,7 @@ def make_renderer(simulation: Simulation, method: str = "") -> Renderer:
             return _create_renderer(simulation, candidate)
         except Exception:  # noqa: BLE001, PERF203, S112 - a missing library may raise anything
             continue
-    raise AssertionError("MuJoCo's rays need nothing, and never fail")
+    raise AssertionError("MuJoCo's ray caster needs no other library, and never fails")
 
 
 def _create_renderer(simulation: Simulation, method: str) -> Renderer:

@@ -40,7 +40,7 @@ _RADIUS_TOLERANCE = 1e-6
 _UNIFORM_LIGHT_QUADS, _OTHER_LIGHT_QUADS = 1, 4
 """The squares along each edge of a box's face, in uniform and in other light. Light is computed at their corners."""
 _SLICES, _STACKS = 28, 14
-"""The slices of spheres and cylinders, as in MuJoCo, and the stacks of spheres. Half as many stacks are as accurate."""
+"""The slices of spheres and cylinders, as in MuJoCo, and the stacks of spheres, which cover half the angle."""
 _COMPILE, _STRIP, _FAN = 0x1300, 0x5, 0x6
 """OpenGL's GL_COMPILE, GL_TRIANGLE_STRIP and GL_TRIANGLE_FAN."""
 _BUILT_IN, _SPHERE, _CYLINDER, _TUBE = 8, 0, 3, 4
@@ -174,7 +174,7 @@ class OpenGlRenderer:
             self._replace_display_list(_CYLINDER, [tube_strip, *end_fans])
 
     def _replace_display_list(self, shape: int, primitives: list[tuple[int, list[tuple[Vector3, Vector3]]]]) -> None:
-        """Replace one of MuJoCo's display lists by other primitives.
+        """Replace one of MuJoCo's display lists with other primitives.
 
         Each primitive consists of its OpenGL kind and the normal and position of each vertex.
         """

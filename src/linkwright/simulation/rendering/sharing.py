@@ -62,7 +62,7 @@ class SharedRenderer:
 
 
 def shared_renderer(simulation: Simulation) -> SharedRenderer:
-    """Return the shared renderer of a simulation, with one more camera registered."""
+    """Register a camera, and return the shared renderer of its simulation."""
     if simulation not in _renderers:
         _renderers[simulation] = SharedRenderer(simulation)
     return _renderers[simulation].use()

@@ -30,7 +30,7 @@ from linkwright.simulation.scene.surfaces import apply_surface, grip_of
 from linkwright.xmltree import Element
 
 _MIN_MOMENT_RATIO = 1e-9
-"""The minimum ratio of the least to the largest principal moment of inertia that MuJoCo accepts."""
+"""The margin of the triangle inequality that MuJoCo requires, as a fraction of the largest principal moment."""
 COLLISION_GROUP, VISUAL_GROUP = 3, 2
 """MuJoCo's groups of collision geoms and of visual geoms."""
 SECOND_AXIS = "#2"

@@ -97,7 +97,7 @@ def _rejection_message(world: World, finder: ResourceFinder) -> Phrase | None:
 def step_in_nanoseconds(step: float, world: World) -> int:
     """Return a time step in ns from a time step in s.
 
-    `world` locates an invalid value.
+    An error refers to the element of `world` that sets the time step, if there is one.
 
     Raises:
         LinkwrightError: SIM106, the time step is not positive, or shorter than a nanosecond.

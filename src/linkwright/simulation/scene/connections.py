@@ -21,7 +21,7 @@ class Connections:
     """The joints of a world that connect its models.
 
     Attributes:
-        attaching_joints: joints that attach models to their parents, by the names of the child links.
+        hanging: joints that attach models to their parents, by the names of the child links.
         loops: joints between links that already have a parent.
         poses: the poses of the connected models' frames in the world.
     """

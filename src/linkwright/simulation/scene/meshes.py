@@ -33,7 +33,7 @@ _MOST_TRIANGLES = 1_000_000
 _MAX_HULL_VERTICES = 64
 """The maximum number of vertices of a convex hull."""
 _MIN_AREA = 1e-12
-"""The total area in m2 up to which the triangles of a visual are left out: invisible, and rejected by MuJoCo."""
+"""The total area in m2 up to which the triangles of a visual are left out, because MuJoCo rejects them."""
 
 
 class MeshLibrary:
@@ -385,7 +385,10 @@ def _flat_list(values: Any, kind: Any = np.float32) -> list[Any]:
 
 
 def _version(path: Path | None) -> tuple[Path | None, int]:
-    """Return a cache key for a file that changes when the file is saved."""
+    """Return a cache key of a file.
+
+    Saving the file changes the key.
+    """
     return path, 0 if path is None else modification_time(path)
 
 

@@ -37,7 +37,7 @@ _LOOP_STEPS = 4.0
 _MAX_ROLLING_WHEELS = 2
 """The maximum number of driven wheels on a link that can roll. With more, some wheels slip in every turn."""
 _MAX_SPEED_CHANGE = 1.0
-"""The maximum change in rad/s of a free wheel's speed within a step, caused by a motor at its maximum torque.
+"""The maximum change of a free wheel's speed in rad/s that a motor causes within a step.
 
 The inertia of the wheel alone is so low that 5 N m change its speed by 14 rad/s in 1 ms. The speed would overshoot the
 target in alternate directions, and the wheel would slip and leave the ground. The rotor of a real geared motor has

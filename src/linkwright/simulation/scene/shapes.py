@@ -35,7 +35,7 @@ def add_shape(body: Any, shape: Shape, pose: Transform, *, fixed: bool) -> Any |
         body: the body of the specification.
         shape: the shape; `linkwright.simulation.scene.meshes` adds other shapes, such as meshes and heightmaps.
         pose: the pose of the shape in the frame of the body.
-        fixed: whether the body never moves.
+        fixed: whether the body never moves; on a movable body, a plane becomes a thin box.
     """
     kinds = load_mujoco().mjtGeom
     match shape:

@@ -63,7 +63,7 @@ def friction_of(surface: Surface) -> float:
 def grip_of(surface: Surface) -> float:
     """Return the higher of a surface's two coefficients of friction, or else the default.
 
-    It is used for driven wheels, for which the lower coefficient describes side slip.
+    This coefficient applies to driven wheels, because their lower coefficient describes side slip.
     """
     if surface.friction is not None:
         return max(surface.friction.mu, surface.friction.mu2, 0.0)

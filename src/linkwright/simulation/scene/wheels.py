@@ -18,11 +18,11 @@ _ROUNDNESS_TOLERANCE = 0.05
 
 
 SKIDDING_GRIP = 0.5
-"""The maximum friction of wheels that slip in every turn, as the wheels of a robot with more than two driven ones do.
+"""The maximum friction of wheels that slip in every turn.
 
-With higher friction, MuJoCo's contacts lift the wheels. A robot that is as long as it is wide then turns at 0.31 times
-the rate that its wheels would give it without slip. With this value it turns at 0.43 times that rate; Coulomb friction
-gives 0.50 times, regardless of the coefficient.
+The wheels of a robot with more than two driven wheels slip. With higher friction, MuJoCo's contacts lift the wheels. A
+robot that is as long as it is wide then turns at 0.31 times the rate that its wheels would give it without slip. With
+this value it turns at 0.43 times that rate; Coulomb friction gives 0.50 times, regardless of the coefficient.
 """
 
 

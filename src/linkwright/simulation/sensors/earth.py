@@ -53,7 +53,7 @@ class Globe:
         )
 
     def east_north_up(self, vector: Array) -> Array:
-        """Return a vector of the world's axes in the axes east, north and up."""
+        """Return a vector, given in the axes of the world, in the axes east, north and up."""
         rotated: Array = self._heading @ vector
         return rotated
 

@@ -105,9 +105,7 @@ def accelerations(simulation: Simulation) -> None:
 def part_of(geom: str) -> str:
     """Return the name of the visual or collision to which a MuJoCo geom belongs.
 
-    It is derived from the name of the geom.
-
-    An example is ``robot::base_link::lid#visual``.
+    The name is the beginning of the geom's name, such as ``robot::base_link::lid#visual``.
     """
     name, separator, kind = geom.partition("#")
     return name + separator + kind.partition("#")[0]

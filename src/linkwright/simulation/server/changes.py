@@ -173,7 +173,7 @@ def add_models(simulation: Simulation, added: Sequence[AddedModel]) -> None:
 def surroundings(world: World) -> tuple[object, ...]:
     """Return the properties of a world on which plugins of models depend.
 
-    They serve for comparison with another world.
+    The server compares these properties with those of a world that replaces this one.
     """
     physics = physics_of(world)
     joints = tuple(world.joints)

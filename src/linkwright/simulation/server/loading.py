@@ -67,7 +67,7 @@ class WorldLoader:
             return True
 
     def load(self, uri: str, text: str = "", *, refused: Sequence[str] = ()) -> None:
-        """Replace the running world by the world in a file or text.
+        """Replace the running world with the world in a file or text.
 
         Findings that the running world also has do not prevent the replacement.
 

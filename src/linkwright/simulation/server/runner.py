@@ -18,7 +18,7 @@ _CHUNK = 0.005
 _MAX_CHUNK = 0.05
 """The maximum simulated time in s between two checks. All messages published in between arrive together."""
 _MAX_DELAY = 0.25
-"""The delay in s of real time up to which a simulation catches up; it does not make up for a greater delay."""
+"""The maximum delay, in s of real time, for which a simulation makes up by running faster."""
 _PAUSED_PERIOD = 1 / 30
 """The maximum real time in s between two checks while the simulation is paused."""
 _MEASUREMENT_PERIOD = 0.5

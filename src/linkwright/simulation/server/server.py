@@ -121,7 +121,7 @@ class SimulationServer:
     def findings(self) -> list[Diagnostic]:
         """The findings on the models in the world.
 
-        They may be read from any thread.
+        The findings may be read from any thread.
         """
         return [diagnostic for findings in tuple(self._findings.values()) for diagnostic in tuple(findings)]
 
@@ -160,7 +160,7 @@ class SimulationServer:
         self._warn_unsimulated(unsimulated_model_elements(model))
 
     def renew(self, model: Model, name: str) -> None:
-        """Replace a model by a changed model with the same pose, velocity and joint positions.
+        """Replace a model with a changed model, and keep the pose, velocity and joint positions.
 
         Args:
             model: the changed model, with its includes resolved.
@@ -177,7 +177,7 @@ class SimulationServer:
         self.report(collision_warnings(self.simulation, name), name)
 
     def load(self, world: World, finder: ResourceFinder, allow: Callable[[Sequence[Diagnostic]], object]) -> None:
-        """Replace the running world by another one.
+        """Replace the running world with another one.
 
         Models and plugins that both worlds contain continue, and spawned models remain.
 
@@ -209,7 +209,7 @@ class SimulationServer:
             self._load(_WORLD_OWNER, world_plugins(new_world, self._options.systems), "")
 
     def _exchange(self, gone: Iterable[str], added: Sequence[AddedModel]) -> None:
-        """Remove the models in `removed_names`, and add the models in `added`.
+        """Remove the models in `gone`, and add the models in `added`.
 
         An added model replaces a running model of the same name. Models attached to a removed or replaced model are
         also replaced.
@@ -240,7 +240,7 @@ class SimulationServer:
     def _attached_models(self, names: Collection[str]) -> Iterator[AddedModel]:
         """Yield the models that joints of the world attach to the named models.
 
-        They are added again, and continue at their current poses.
+        These models are added again, with their current poses and velocities.
         """
         models = self.simulation.scene.models
         for name in {
@@ -373,7 +373,7 @@ class SimulationServer:
     ) -> None:
         """Start a plugin or sensor.
 
-        It resumes from its unchanged previous instance, if `old_plugins` contains one.
+        The plugin or sensor resumes from its unchanged previous instance, if `old_plugins` contains one.
         """
         calls = Calls(lambda error: self._failed(owner, place, error))
         node = self._node(place, namespace, calls)
@@ -476,7 +476,7 @@ class SimulationServer:
     def report(self, findings: Iterable[Diagnostic], model: str = _WORLD_OWNER) -> None:
         """Log each new finding once, and keep the findings about a model in `findings`.
 
-        They are removed with the model.
+        The findings about a model are removed with the model.
         """
         reported = list(findings)
         if reported and model != _WORLD_OWNER:

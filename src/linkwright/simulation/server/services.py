@@ -129,9 +129,9 @@ class Services:
         return name
 
     def renew(self, text: str, name: str) -> None:
-        """Replace a model by the model in a description.
+        """Replace a model with the model in a description.
 
-        This may be called from any thread.
+        The method may be called from any thread.
 
         The description is read immediately. The model is replaced later in the simulation's thread, which logs errors.
 
@@ -231,7 +231,7 @@ class Services:
     def _step(self, request: Any, response: Any) -> Any:
         if not self._runner.paused:
             response.result.result = _WRONG_STATE
-            response.result.error_message = "the simulation runs: pause it to make single steps"
+            response.result.error_message = "the simulation is running: pause it to make single steps"
             return response
         try:
             self._runner.step(request.steps)

@@ -14,7 +14,7 @@ _UNSIMULATED = frozenset(
     {"audio_source", "fluid_added_mass", "gripper", "particle_emitter", "projector", "soft_contact"}
 )
 _UNSIMULATED_IN = frozenset({("actor", "animation"), ("geometry", "image")})
-"""Pairs of a child and a parent: the child is simulated in other elements, but not in this parent."""
+"""Pairs of a parent and a child: the child is simulated in other elements, but not in this parent."""
 _PLUGINS_NOT_SIMULATED = frozenset({"actor", "visual"})
 
 

@@ -18,7 +18,7 @@ class Wrench:
     Attributes:
         force: the force in N, in the axes of the world.
         torque: the torque in N m, in the axes of the world.
-        point: the point of application of the force, in the frame of the link.
+        point: the point of application of the force in m, in the frame of the link.
         start_ns: the simulated time in nanoseconds from which the wrench acts.
         end_ns: the simulated time in nanoseconds until which the wrench acts; None for no end.
     """

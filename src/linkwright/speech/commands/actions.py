@@ -162,10 +162,11 @@ MOTIONS = Drive, GoTo, Launch
 def fill_template(template: Any, values: Values) -> Any:
     """Fill a template with the values of slots.
 
-    A text that consists of one slot becomes its value; in other texts, slots are replaced by their formatted values.
+    A string that consists of one slot becomes the slot's value. In other strings, slots are replaced with their
+    formatted values.
 
     Args:
-        template: a text, a number, or lists and mappings of them.
+        template: a string, a number, or lists and mappings of them.
         values: the values of the slots.
     """
     if isinstance(template, Mapping):

@@ -40,15 +40,15 @@ def read_command_file(path: str | Path) -> CommandSet:
     """Read a command file.
 
     Raises:
-        LinkwrightError: VOICE301, it cannot be read; VOICE302, it is invalid; VOICE303, a phrase is invalid; VOICE304,
-            two commands share a phrase; VOICE305, a message does not fit its type; VOICE306, there are more phrases
-            than engines accept.
+        LinkwrightError: VOICE301, the file cannot be read; VOICE302, its content is invalid; VOICE303, a phrase is
+            invalid; VOICE304, two commands share a phrase; VOICE305, a message does not fit its type; VOICE306, there
+            are more phrases than engines accept.
     """
     return parse_commands(read_source(Path(path), phrase("file of commands"), "VOICE301"))
 
 
 def parse_commands(source: SourceText) -> CommandSet:
-    """Return the commands in the text of a file; see `read_command_file`."""
+    """Return the commands in the text of a file. See `read_command_file`."""
     return _Reader(source).read()
 
 

@@ -1,4 +1,4 @@
-"""A robot's commands: the command that a text expresses, and all phrases for engines."""
+"""A robot's commands: the matching of texts to commands, and the phrases for engines."""
 
 from __future__ import annotations
 
@@ -156,9 +156,10 @@ class CommandSet:
 
 
 def choose_text(texts: ByLanguage, language: str) -> str:
-    """Return the text in a language, or else for any language, in English, or in any other.
+    """Return the text in a language, or the best substitute for it.
 
-    The result is empty if there is no text.
+    Substitutes are a text for any language, the English text, and any other text, in this order. The result is empty if
+    there is no text.
     """
     for name in (language, ANY, "en"):
         if name in texts:

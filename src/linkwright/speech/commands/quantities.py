@@ -83,7 +83,10 @@ _PER_SECOND: Words = ("每", "秒")
 
 
 def parse_quantity(slot: str, words: Words) -> float | None:
-    """Return the value of words in a quantity slot's unit, or None if they are not a value."""
+    """Return the quantity that words express in a slot, or None if they express none.
+
+    The unit is m, rad, m/s or s, depending on the slot. The slot ``number`` has no unit.
+    """
     if slot == "number":
         return number(words)
     if slot == "speed" and words[:2] == _PER_SECOND:

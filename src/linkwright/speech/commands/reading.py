@@ -20,7 +20,7 @@ class Keys:
     Args:
         document: the document that contains the mapping.
         node: the mapping.
-        what: what the mapping is, for messages.
+        what: the description of the mapping, for messages.
         allowed_keys: the allowed keys; None to allow any key.
 
     Raises:

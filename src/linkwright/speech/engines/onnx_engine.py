@@ -49,7 +49,7 @@ class OnnxEngine(SpeechEngine):
         self._phrases = {_normalize(phrase): phrase for phrase in options.phrases}
         self._frames, self._activity = MelFrames(), VoiceActivity()
         self._buffer: Samples = np.zeros(0, np.int16)
-        self._sample_count = 0  # the number of samples
+        self._sample_count = 0  # the number of samples so far
 
     def hear(self, samples: Samples) -> Sequence[Heard]:
         """Process samples, and return results at the end of an utterance.

@@ -34,8 +34,8 @@ class PocketsphinxEngine(SpeechEngine):
     """An engine that recognises phrases with pocketsphinx.
 
     The confidence rates the acoustic fit, and is 0.5 for a score of -8 per frame. The probability from pocketsphinx
-    itself is not useful: it is divided among all paths through the grammar that sound
-    alike, and a fifth of clear phrases had less than 0.1.
+    itself is not useful: it is divided among all paths through the grammar that sound alike, and a fifth of clear
+    phrases had less than 0.1.
 
     Raises:
         LinkwrightError: VOICE102, pocketsphinx is not installed; VOICE103, the dictionary lacks a word; VOICE104, the
@@ -172,7 +172,7 @@ _TRIAL_SCRIPT = "import json, sys, pocketsphinx; pocketsphinx.Decoder(**json.loa
 
 
 def _load_in_subprocess(folder: Path, settings: dict[str, Any]) -> None:
-    """Load a model in a separate process first, and raise if that fails.
+    """Load a model in a separate process first, and raise an error if that fails.
 
     The library ends its process if a model is damaged.
     """

@@ -102,7 +102,7 @@ class Templates:
     def worst_distance(self, match: Match, take: int) -> float:
         """Return the mean distance in the worst 80 ms of the best path through a take.
 
-        It detects words that differ in a single speech sound.
+        This distance separates words that differ in a single speech sound.
         """
         column, column_offset = (
             int(self._last_columns[take]),

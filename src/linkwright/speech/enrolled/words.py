@@ -74,7 +74,7 @@ class Words:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """The phrases of the words."""
+        """The names of the words."""
         return tuple(self._takes)
 
     def takes(self, name: str) -> tuple[Take, ...]:

@@ -54,7 +54,7 @@ class AudioCapture(SingleNode):
             self._start()
 
     def close(self) -> None:
-        """Close the microphone."""
+        """Close the microphone and the node."""
         if self._microphone is not None:
             self._microphone.close()
             self._microphone = None
@@ -133,7 +133,7 @@ class AudioCapture(SingleNode):
 
 
 class RobotAudioCapture(AudioCapture):
-    """audio_capture with the topics of Linkwright's robots, in the namespace ``/audio``."""
+    """The node audio_capture for Linkwright's robots, with topics in the namespace ``/audio``."""
 
     DEFAULT_NAME = "audio_capture"
     NAMESPACE = NAMESPACE

@@ -50,7 +50,7 @@ class AudioFormat:
     sample_format: str = "S16LE"
 
     def __post_init__(self) -> None:
-        """Raise if the format is not supported.
+        """Check that the format is supported.
 
         Raises:
             LinkwrightError: VOICE411, sound in this format is not supported.

@@ -1,4 +1,4 @@
-"""The topics of audio_common's audio_capture, with sound to publish."""
+"""The publishers for the topics of audio_common's audio_capture."""
 
 from __future__ import annotations
 

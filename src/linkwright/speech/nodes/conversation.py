@@ -130,7 +130,7 @@ class Conversation:
             self.answer(phrase("I am stuck, so I am stopping"))
 
     def on_goal_end(self, is_reached: bool, reason: str) -> None:
-        """Answer the user whether a goal was reached, or why it failed."""
+        """Report to the user whether a goal was reached, or why it failed."""
         if is_reached:
             self.answer(phrase("I am done"))
         elif reason:

@@ -31,17 +31,17 @@ Ending: TypeAlias = Literal["done", "stuck"]
 
 
 class Driver:
-    """The publisher of the velocities of drives.
+    """A controller that publishes the velocities of a drive until its limit is reached.
 
-    A distance or an angle is measured with ``odom`` (nav_msgs/msg/Odometry). If no odometry is received, it is computed
-    from speed and time. Time is the node's time, which may be simulated.
+    A distance or an angle is measured with ``odom`` (nav_msgs/msg/Odometry). Without odometry, the distance or angle is
+    computed from speed and time. Time is the node's time, which may be simulated.
 
     Args:
         node: the node that publishes.
         topic: the topic of the velocities.
         speed: the speed in m/s.
         turn_speed: the turning speed in rad/s.
-        on_end: called when a drive is finished, or has taken far too long.
+        on_end: called with ``done`` when a drive has reached its limit, or with ``stuck`` when it takes far too long.
     """
 
     def __init__(

@@ -37,7 +37,7 @@ class Goals:
     """A client of one action with at most one goal at a time.
 
     Args:
-        node: the node that sends them.
+        node: the node that sends the goals.
         type_name: the type of the action.
         name: the name of the action.
         on_end: called when a goal ends, with whether it was reached, and the server's reason or an empty string. It is
@@ -188,7 +188,10 @@ class Requests:
         self._launch_process = subprocess.Popen(command, stdin=subprocess.DEVNULL)  # noqa: S603 - fixed words, no shell
 
     def cancel(self, except_action: str = "") -> None:
-        """Cancel the goals of these requests, except goals of the action `except_action`, and end the launch file."""
+        """Cancel the goals of these requests, and end the launch file.
+
+        Goals of the action `except_action` are not canceled.
+        """
         for name, goals in self._goals.items():
             if name != except_action:
                 goals.cancel()

@@ -68,7 +68,7 @@ class VoiceFeature(PageFeature):
         self._word_book = WordBook()
 
     def opening(self) -> list[ServerMessage]:
-        """Return a message with whether a node executes commands.
+        """Return a message that states whether a node executes commands.
 
         Other nodes, such as an object seeker, may answer as well.
         """

@@ -51,8 +51,8 @@ class Floor:
 class SoundBudget:
     """A limit for the sound that a page sends and the loss that it reports.
 
-    Each may last as many seconds as have passed. The two are counted separately, because a page may send silence for
-    lost sound.
+    Each may last as long as the time that has passed, with a reserve of 10 s. The two are counted separately, because a
+    page may send silence for lost sound.
 
     Args:
         clock: returns the time in seconds.

@@ -121,7 +121,7 @@ class WordBook:
             )
 
     def _change(self, page: Page, change: Callable[[Words], object]) -> bool:
-        """Change the file and send it to all pages, or send the reason for a failure to the page.
+        """Change the file and send the words to watching pages, or send the reason for a failure.
 
         Returns:
             Whether the file was changed.

@@ -130,7 +130,7 @@ def speech_span(powers: Powers) -> tuple[int, int, NDArray[np.float64]]:
     """Return the longest speech segment of a recording, and the noise floor.
 
     Returns:
-        The first frame of the section, the frame after its last, and the noise floor, shape ``(BANDS,)``; the two
+        The first frame of the segment, the frame after its last, and the noise floor, shape ``(BANDS,)``; the two
         frames are equal if there is no speech.
     """
     if len(powers) < _START_FRAMES:

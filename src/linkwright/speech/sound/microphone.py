@@ -21,7 +21,7 @@ class Microphone:
 
     Args:
         device: a number or part of a name, as ``python -m sounddevice`` lists them; empty for the system's default.
-        block_size: the number of samples in a block, about.
+        block_size: the approximate number of samples in a block.
         on_samples: called with each block, in a thread of PortAudio.
 
     Raises:

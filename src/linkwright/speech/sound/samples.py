@@ -11,7 +11,7 @@ RATE = 16_000
 """Samples per second. Speech engines are trained at this rate, and the sound of microphones is resampled to it."""
 
 BLOCK = RATE // 10
-"""The samples in a block of a microphone: 100 ms."""
+"""The number of samples in a block of a microphone: 100 ms."""
 
 Samples: TypeAlias = NDArray[np.int16]
 """Mono 16-bit PCM, shape ``(n,)``, at `RATE`."""

@@ -15,10 +15,10 @@ from numpy.typing import NDArray
 from linkwright.speech.sound.samples import RATE, Samples
 
 HOP = RATE // 100
-"""The samples from one frame to the next: 10 ms."""
+"""The number of samples from one frame to the next: 10 ms."""
 
 WINDOW = RATE // 40
-"""The samples from which a frame is computed: 25 ms."""
+"""The number of samples from which a frame is computed: 25 ms."""
 
 BANDS = 26
 

@@ -1,4 +1,4 @@
-"""The exceptions of rclpy that `linkwright.graph` lacks, and rclpy's names for all."""
+"""The exceptions of rclpy that `linkwright.graph` lacks, and rclpy's names for all exceptions."""
 
 from __future__ import annotations
 

@@ -22,14 +22,14 @@ class Executor(executors.Executor):
 
 
 class SingleThreadedExecutor(executors.SingleThreadedExecutor, Executor):
-    """Runs callbacks one after another in the thread that spins."""
+    """An executor that runs callbacks one after another in the spinning thread."""
 
     def __init__(self, *, context: Context | None = None) -> None:
         super().__init__(context=context)
 
 
 class MultiThreadedExecutor(executors.MultiThreadedExecutor, Executor):
-    """Runs callbacks in a pool of threads."""
+    """An executor that runs callbacks in a pool of threads."""
 
     def __init__(self, num_threads: int | None = None, *, context: Context | None = None) -> None:
         super().__init__(num_threads, context=context)

@@ -1,4 +1,4 @@
-"""Serializes and deserializes messages (rclpy ``serialization``)."""
+"""Serialization and deserialization of messages (rclpy ``serialization``)."""
 
 from __future__ import annotations
 

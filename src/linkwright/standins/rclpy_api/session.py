@@ -56,7 +56,7 @@ def init(
 ) -> InitContextManager:
     """Initialise a context.
 
-    Nodes can be created only after this.
+    Nodes can be created only afterwards.
 
     Args:
         args: the command line; None for ``sys.argv``.

@@ -1,4 +1,4 @@
-"""Sets clocks from ``/clock`` (rclpy ``time_source``).
+"""Setting of clocks from ``/clock`` (rclpy ``time_source``).
 
 The clock of a node does not need this module.
 """
@@ -24,7 +24,7 @@ USE_SIM_TIME_NAME = "use_sim_time"
 
 
 class TimeSource:
-    """Sets clocks from ``/clock`` while a node's parameter ``use_sim_time`` is true.
+    """A source that sets clocks from ``/clock`` while a node's ``use_sim_time`` is true.
 
     Args:
         node: the node that has the parameter and the subscription; None to attach a node later.

@@ -1,4 +1,4 @@
-"""Waits for a single message (rclpy ``wait_for_message``)."""
+"""Waiting for a single message (rclpy ``wait_for_message``)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Converts messages to dictionaries, YAML and CSV."""
+"""Conversion of messages to dictionaries, YAML and CSV."""
 
 from collections import OrderedDict
 from typing import Any

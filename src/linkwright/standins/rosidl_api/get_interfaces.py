@@ -1,4 +1,4 @@
-"""Lists interfaces and their files (the API of ``rosidl_runtime_py.get_interfaces``)."""
+"""Lists of interfaces and their files (the API of ``rosidl_runtime_py.get_interfaces``)."""
 
 from collections.abc import Iterable
 

@@ -1,4 +1,4 @@
-"""Sets the fields of a message from a dictionary."""
+"""Setting of a message's fields from a dictionary."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""Loads the classes of interfaces by name."""
+"""Loading of interface classes by name."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""Makes the stand-ins importable in every Python process with this folder on ``PYTHONPATH``.
+"""Activation of the stand-ins in every Python process with this folder on ``PYTHONPATH``.
 
 Linkwright is imported only when the program imports a stand-in that no other finder provides. If a real rclpy is
 importable, the stand-ins are not provided, because the nodes of each rclpy accept only its own message classes.
@@ -90,7 +90,7 @@ class StandIns:
 
 
 class SourceFolders:
-    """Finds stand-ins and interface modules that a source folder of the same name would hide.
+    """A finder of stand-ins and interface modules that a source folder of the same name hides.
 
     This finder comes before all others. Without it, Python would import such a folder, for example ``my_msgs/msg`` or
     ``launch`` next to ``package.xml``, as an empty module.
@@ -206,7 +206,10 @@ def _report_with_hint(kind: type[BaseException], error: BaseException, traceback
 
 
 def _is_between_messages(traceback: object) -> bool:
-    """Return whether a traceback ends in Linkwright's code, in its callees, or in an import."""
+    """Return whether a traceback ends in Linkwright's code, or passes through an import.
+
+    Code of the standard library counts as Linkwright's code if Linkwright's code calls it.
+    """
     is_ours, module_count = False, 0
     while traceback is not None:
         code = traceback.tb_frame.f_code  # type: ignore[attr-defined]  # as above

@@ -1,4 +1,4 @@
-"""Looks up transforms in the buffer of another process (tf2_ros ``BufferClient``)."""
+"""Lookup of transforms in the buffer of another process (tf2_ros ``BufferClient``)."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ _NO_ERROR = 0
 
 
 class BufferClient(BufferInterface):
-    """Requests transforms from a buffer server through an action.
+    """A client that requests transforms from a buffer server through an action.
 
     Another thread must spin the node.
 

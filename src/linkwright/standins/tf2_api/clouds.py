@@ -1,4 +1,4 @@
-"""Transforms point clouds into another frame (``tf2_sensor_msgs``)."""
+"""Transformation of point clouds into another frame (``tf2_sensor_msgs``)."""
 
 from __future__ import annotations
 

@@ -13,7 +13,7 @@ NO_TIME = Duration()
 class BufferInterface:
     """The base class of buffers.
 
-    It applies transforms to messages, and subclasses look the transforms up.
+    This class applies transforms to messages. Subclasses look up the transforms.
     """
 
     def __init__(self) -> None:

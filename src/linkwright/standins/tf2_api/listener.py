@@ -1,4 +1,4 @@
-"""Fills a buffer from the transform topics (tf2_ros ``TransformListener``)."""
+"""Listeners that fill a buffer from the transform topics (tf2_ros ``TransformListener``)."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _AUTHORITY = "default_authority"
 
 
 class TransformListener:
-    """Subscribes to ``/tf`` and ``/tf_static``, and adds their transforms to a buffer.
+    """A listener that adds the transforms of ``/tf`` and ``/tf_static`` to a buffer.
 
     The callbacks are in a reentrant group, so that another callback of the node can wait for a transform.
 
@@ -92,7 +92,7 @@ class TransformListener:
 
 
 class StaticTransformListener(TransformListener):
-    """Subscribes to ``/tf_static`` only, and adds its transforms to a buffer.
+    """A listener that adds only the transforms of ``/tf_static`` to a buffer.
 
     Args:
         buffer: the buffer to fill.

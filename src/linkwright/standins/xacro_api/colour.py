@@ -1,4 +1,4 @@
-"""Prints coloured messages to standard error, as ``xacro.color`` does."""
+"""Coloured messages on standard error, as in ``xacro.color``."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Parses the arguments of the command ``xacro``, as ``xacro.cli`` does."""
+"""Parsing of the arguments of the command ``xacro``, as in ``xacro.cli``."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def process_args(argv: Sequence[str], require_input: bool = True) -> tuple[argpa
     parser.add_argument("-o", dest="output", metavar="FILE", help="write to this file instead of standard output")
     parser.add_argument("--deps", action="store_true", dest="just_deps", help="print the files that are included")
     parser.add_argument("--inorder", "-i", action="store_true", dest="in_order", help="without effect")
-    parser.add_argument("--root-dir", dest="root_dir", metavar="DIR", help="folder that relative paths are in")
+    parser.add_argument("--root-dir", dest="root_dir", metavar="DIR", help="base folder of relative paths")
     parser.add_argument("-q", action="store_const", dest="verbosity", const=0, default=1, help="print errors only")
     parser.add_argument("-v", action="count", dest="verbosity", default=1, help="print more")
     parser.add_argument("--verbosity", metavar="LEVEL", dest="verbosity", type=int, default=1, help="0 to 4")

@@ -1,4 +1,4 @@
-"""Converts between the trees of `linkwright.xmltree` and documents of ``xml.dom.minidom``.
+"""Conversion between trees of `linkwright.xmltree` and documents of ``xml.dom.minidom``.
 
 The documents consist of minidom nodes with two differences: elements are serialized in the format of ros/xacro, and
 elements and texts record their locations. In contrast, ros/xacro replaces minidom's writing method for the entire

@@ -1,4 +1,4 @@
-"""Evaluates attribute values and expressions as the module ``xacro`` does."""
+"""Evaluation of attribute values and expressions, as in the module ``xacro``."""
 
 from __future__ import annotations
 

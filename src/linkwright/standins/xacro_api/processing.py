@@ -1,4 +1,4 @@
-"""Expands files, strings and documents as the module ``xacro`` does."""
+"""Expansion of files, strings and documents, as in the module ``xacro``."""
 
 from __future__ import annotations
 

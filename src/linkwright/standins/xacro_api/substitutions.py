@@ -1,4 +1,4 @@
-"""Resolves substitution arguments as ``xacro.substitution_args`` does."""
+"""Resolution of substitution arguments, as in ``xacro.substitution_args``."""
 
 from __future__ import annotations
 

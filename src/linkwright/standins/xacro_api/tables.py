@@ -93,8 +93,8 @@ class Table(dict[str, Any]):
         if key in self.recursive:
             cycle = " -> ".join([*self.recursive, key])
             raise XacroException(
-                f"the property '{key}' is defined by itself: {cycle}; "
-                'evaluate one of them where it is written: lazy_eval="false"'
+                f"the property '{key}' depends on itself: {cycle}; "
+                'write lazy_eval="false" in the definition of one of them'
             )
         self.recursive.append(key)
         try:

@@ -83,7 +83,7 @@ class _Ground:
 
 
 def arrange(stage: Stage, options: Options, generator: np.random.Generator) -> Shot:
-    """Arrange a camera and objects in a world.
+    """Place a camera, objects and distractors at random, and return the resulting shot.
 
     Args:
         stage: the world, after `Stage.begin`.
@@ -202,7 +202,10 @@ def _find_free_position(
     generator: np.random.Generator,
     distances: tuple[float, float],
 ) -> tuple[float, float] | None:
-    """Occupy a free position, usually in view of the camera, and return it, or return None."""
+    """Return a free position, usually in view of the camera, or None if none was found.
+
+    The position is marked as occupied.
+    """
     x, y, heading = camera
     minimum, maximum = stage.area
     nearest, may_be_hidden = distances[0] + radius, generator.random() < _OCCLUDED_SHARE

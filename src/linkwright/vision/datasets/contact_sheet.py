@@ -17,7 +17,7 @@ _IGNORED_COLOUR = "#808080"
 def contact_sheet(images: Sequence[LabelledImage], classes: Sequence[str]) -> bytes:
     """Return a JPEG of the first `MOST` images, with the class and visible box of each object.
 
-    Objects that are ignored, because too little of them is visible, have grey boxes.
+    Objects that are ignored, because they are too small or too hidden, have grey boxes.
     """
     from PIL import Image, ImageDraw
 

@@ -66,7 +66,8 @@ def make_dataset(
         begin: called with the studio before the first image.
 
     Raises:
-        LinkwrightError: VISION201 to VISION208, or an error in a world. The dataset written so far is complete.
+        LinkwrightError: VISION201 to VISION208, or an error in a world. The images finished before the error form a
+            complete dataset.
     """
     path = Path(path)
     options = options or Options()

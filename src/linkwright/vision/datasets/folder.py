@@ -28,7 +28,9 @@ _FILES = (CARD, "data.yaml", SHEET)
 
 
 class DatasetFolder:
-    """A dataset on disk, which is complete after `finish`, even after an interruption.
+    """A dataset on disk.
+
+    The dataset is complete after `finish`, even after an interruption.
 
     Args:
         path: the folder.
@@ -64,7 +66,7 @@ class DatasetFolder:
         return compute_statistics(self._classes, self._size, annotations)
 
     def open(self, *, force: bool = False, append: bool = False) -> None:
-        """Create the folder, or continue an existing one.
+        """Create the folder, or replace or continue the dataset in it.
 
         Args:
             force: replace the dataset in it.
@@ -92,7 +94,7 @@ class DatasetFolder:
         """Write an image and its labels, either both or neither.
 
         Raises:
-            OSError: they cannot be written.
+            OSError: the files cannot be written.
         """
         name = f"{sample.index:06d}"
         image = self.path / "images" / sample.split / f"{name}.{self._form}"
@@ -203,7 +205,7 @@ class DatasetFolder:
             card.get("height"),
             card.get("formats"),
         ) != expected:
-            message = phrase("the dataset in '{folder}' has other classes, image sizes or label formats", folder=folder)
+            message = phrase("the dataset in '{folder}' differs in classes, image size or label formats", folder=folder)
             hint = phrase("its classes are {names}", names=", ".join(map(str, card.get("classes") or ())))
             raise LinkwrightError(Diagnostic("VISION206", message, hint=hint))
         for split, content in lists.items():

@@ -33,7 +33,7 @@ class Label:
         area: the number of its visible pixels.
         visibility: the visible pixels divided by the pixels of the object without occlusion and truncation.
         truncated: whether the object reaches beyond the image.
-        ignored: whether too little of the object is visible for a label.
+        ignored: whether the object is too small or too hidden for a label.
         counts: the run lengths of its mask by columns, alternately outside and inside, beginning with outside.
     """
 
@@ -55,7 +55,7 @@ def label_image(stage: Stage, shot: Shot, geoms: Pixels, min_size: int, min_visi
         shot: the camera and the objects.
         geoms: the geom at each pixel, -1 for none, shape (height, width).
         min_size: the minimum length in pixels of a box's shorter side; a smaller object is ignored. For an object's
-                largest geom half of it is enough.
+            largest geom, half of this length is enough.
         min_visible: the minimum visible fraction of an object and of its largest geom; a less visible object is
             ignored.
     """
@@ -139,9 +139,10 @@ def _measure_whole(stage: Stage, shot: Shot, prop: Prop, visible: Box) -> tuple[
 
 
 def _window(stage: Stage, shot: Shot, prop: Prop, visible: Box) -> Box:
-    """Return the part of the image plane that contains an object with a margin.
+    """Return the rectangle of the image plane that contains an object, in pixels.
 
-    Its size is limited.
+    The rectangle reaches at most one image width and height beyond the image. It has this maximum size if part of the
+    object is behind the camera.
     """
     optics, data, model = shot.optics, stage.simulation.data, stage.simulation.model
     signs = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])

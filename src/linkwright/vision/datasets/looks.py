@@ -18,10 +18,10 @@ _NOISE_VALUES = 1 << 21
 
 
 def light(stage: Stage, generator: np.random.Generator) -> None:
-    """Replace the lights of a world by one to three random lights.
+    """Replace the lights of a world with one to three random lights.
 
-    All lights are directional: if OpenGL lights an infinite plane with a near light, the result depends on the previous
-    frame.
+    All lights are directional. With a nearby light, OpenGL's rendering of an infinite plane would depend on the
+    previous frame.
     """
     lights = []
     for number in range(int(generator.integers(1, 4))):

@@ -1,4 +1,4 @@
-"""The making of single images with their labels."""
+"""The rendering of single images with their labels."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ IMAGES_PER_PATTERN_SET = 50
 _SPLIT_BLOCK = 20
 """The number of consecutive images over which the fractions of the splits hold."""
 _PATTERN_STREAM, _IMAGE_STREAM, _SPLIT_STREAM = range(3)
-"""Streams of random numbers: those of patterns, images and splits are independent."""
+"""Independent streams of random numbers for patterns, images and splits."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,7 +112,7 @@ class Studio:
         self._camera = Camera()
 
     def make(self, index: int) -> LabelledImage:
-        """Return an image with its labels, by its number."""
+        """Render the image with a number, and return it with its labels."""
         options, stage_index = self._options, index % len(self._stages)
         stage, pattern_set = self._stages[stage_index], index // IMAGES_PER_PATTERN_SET
         if self._pattern_sets.get(stage_index) != pattern_set:

@@ -23,7 +23,7 @@ class Options:
         fixed_properties: what is not randomised: any of ``lights``, ``colours`` (with patterns) and ``lens`` (with
             sensor).
         min_size: the minimum length in pixels of a box's shorter side; smaller objects are ignored. For an object's
-            largest geom half of it is enough.
+        largest geom, half of this length is enough.
         min_visible: the minimum visible fraction of an object and of its largest geom; a less visible object is
             ignored.
         form: the image format, ``jpg`` or ``png``.

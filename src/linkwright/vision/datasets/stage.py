@@ -1,4 +1,4 @@
-"""A world whose objects move and change colour between images, without recompilation."""
+"""A world whose objects move and change colour without recompiling MuJoCo's model."""
 
 from __future__ import annotations
 
@@ -200,7 +200,7 @@ class Stage:
             model.geom_matid[geom] = self._patterns[kind][number % _PATTERNS_PER_KIND]
 
     def light(self, lights: Sequence[Light], ambient: Array, background: Array) -> None:
-        """Replace the lights of the world.
+        """Replace the lights, the ambient light and the background of the world.
 
         Args:
             lights: the new lights.
@@ -211,9 +211,9 @@ class Stage:
         self.simulation.world = replace(self._original_world, lights=tuple(lights), models=(), scene=scene)
 
     def set_patterns(self, generator: np.random.Generator) -> None:
-        """Replace all patterns by random ones.
+        """Replace all patterns with random patterns.
 
-        The rendering of the next image then takes longer.
+        The next image takes longer to render.
         """
         model = self.simulation.model
         for kind, size in _PATTERN_SIZES.items():

@@ -8,7 +8,7 @@ from math import sqrt
 from typing import Any
 
 _SIZE_LIMITS = (("small", 32), ("medium", 96), ("large", 1 << 30))
-"""COCO's size ranges of objects, each with the square root of its upper limit of the area in pixels."""
+"""COCO's size ranges of objects, each with the square root of the range's maximum area in pixels."""
 _MIN_VISIBLE = 0.75
 """The visible fraction below which an object counts as hidden."""
 
@@ -20,7 +20,7 @@ class ClassStatistics:
     Attributes:
         objects: the number of labelled objects.
         images: the number of images with at least one labelled object.
-        ignored: the number of objects of which too little is visible for a label.
+        ignored: the number of objects that are too small or too hidden for a label.
         small, medium, large: the number of objects by COCO's size ranges.
         hidden: the number of objects that are less than three quarters visible.
         truncated: the number of objects that reach beyond their image.
@@ -72,7 +72,7 @@ def compute_statistics(
 
 
 def as_table(statistics: Mapping[str, ClassStatistics]) -> str:
-    """Format statistics as lines of text."""
+    """Format statistics as a table with one line for each class."""
     titles = ("class", "objects", "images", "small", "medium", "large", "hidden", "truncated", "ignored")
     rows: list[tuple[str, ...]] = [titles]
     for name, class_statistics in statistics.items():

@@ -18,7 +18,7 @@ _FORMAT_HINT = phrase("write one name per line, or YAML with a list of names or 
 
 
 def parse_metadata_names(text: str) -> tuple[str, ...] | None:
-    """Return the class names in a model's metadata, in order, or None if none are usable.
+    """Return the class names in a model's metadata, in order, or None if they are not usable.
 
     Args:
         text: a Python literal of a dictionary or a list, as Ultralytics' exporters write it. It is never executed.

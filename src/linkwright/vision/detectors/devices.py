@@ -29,10 +29,10 @@ def parse_gpu(device: str) -> str | None:
 
 
 def refuse_network_options(options: DetectorOptions) -> tuple[Phrase, ...]:
-    """Raise if a detector without a network gets network options.
+    """Raise an error if a detector without a network gets network options.
 
     Returns:
-        Notes to log once: that the detector does not use the requested GPU; empty if none was requested.
+        A note that the requested GPU is not used, to log once; empty if no GPU was requested.
 
     Raises:
         LinkwrightError: VISION109, there are labels or an input size, or the device has a wrong form.

@@ -19,9 +19,9 @@ _MIN_TEXT_HEIGHT = 9
 
 
 def colour_of(name: str) -> tuple[int, int, int]:
-    """Return the red, green and blue of the colour in a class name.
+    """Return the colour for a class name: red, green and blue, from 0 to 255.
 
-    A name without a colour gets a colour derived from the name.
+    A name that contains a colour word gets that colour. For any other name, the colour is computed from the name.
     """
     named_colour = find_rgb(name)
     if named_colour is not None:

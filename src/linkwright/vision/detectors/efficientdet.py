@@ -64,7 +64,7 @@ class EfficientDetDetector(Detector):
 
     @property
     def names(self) -> tuple[str, ...]:
-        """The names of its classes."""
+        """The names of the network's classes."""
         return self._names
 
     def detect(self, image: NDArray[np.uint8], limits: Limits) -> Detections:
@@ -92,7 +92,7 @@ class EfficientDetDetector(Detector):
 def _find_outputs(file: Path, interpreter: Any) -> list[int]:
     """Return the tensor indices of the outputs: boxes, classes, scores and count.
 
-    They are taken from the last operation, because the order and the names of a file's outputs differ.
+    The indices come from the final operation, because the order and the names of outputs differ between files.
     """
     final_operations = [
         operation for operation in interpreter._get_ops_details() if operation["op_name"] == _FINAL_OPERATION

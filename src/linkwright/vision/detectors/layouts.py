@@ -47,7 +47,7 @@ class Candidates:
     Attributes:
         boxes: shape ``(n, 4)``: left, top, right, bottom.
         scores: shape ``(n,)``, 0 to 1.
-        classes: shape ``(n,)``, numbers of classes.
+        classes: shape ``(n,)``, class numbers.
     """
 
     boxes: NDArray[np.float32]
@@ -72,7 +72,7 @@ class Layout:
     def candidates(self, output: NDArray[np.float32], threshold: float) -> Candidates:
         """Return the boxes with at least the minimum score.
 
-        Only in the final layout does each object have a single box.
+        An object can have several boxes, except in the final layout.
 
         Args:
             output: the network's first output, shape ``(1, a, b)``.
@@ -114,7 +114,8 @@ def find_layout(
         size: the height and width of that image in pixels.
         metadata: the metadata of the network's file.
         file: the network's file, for messages.
-        labels: the number of names in the label file, which precede the names in the metadata; None if there is none.
+        labels: the number of names in the label file, which override the names in the metadata; None if there is no
+            label file.
         labels_file: the label file, for messages.
 
     Raises:
@@ -151,7 +152,7 @@ def find_layout(
 
 
 def class_count_error(file: Path, classes: int, name_count: int, labels: Path | None) -> LinkwrightError:
-    """Return the error for different numbers of names and of the network's classes (VISION107).
+    """Return the error for a network with more or fewer classes than names (VISION107).
 
     Args:
         file: the file of the network.

@@ -65,7 +65,7 @@ class NetworkDetector(Detector):
 
     @property
     def names(self) -> tuple[str, ...]:
-        """The names of its classes."""
+        """The names of the network's classes."""
         return self._names
 
     @property

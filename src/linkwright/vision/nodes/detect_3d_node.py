@@ -1,7 +1,7 @@
 """detect_3d_node: computes the positions of detected objects in metres.
 
 Source: yolo_ros 4 (the executable, the topics ``detections``, ``depth_image``, ``depth_info`` and ``detections_3d``,
-the parameters, and that messages up to half a second apart are matched). Deliberate differences: detections have the
+the parameters, and the matching of messages up to 0.5 s apart). Deliberate differences: detections have the
 types of vision_msgs, except in the node with yolo_ros's own name; depth images of 32FC1 are in metres regardless of the
 divisor, as in REP 118; and with a ``ground_frame``, objects without a known depth are placed where their boxes touch
 the ground.
@@ -189,7 +189,7 @@ class Detect3DNode(SingleNode):
 
 
 class YoloDetect3DNode(Detect3DNode):
-    """detect_3d_node of yolo_ros: it adds ``bbox3d`` to yolo_msgs/msg/DetectionArray."""
+    """The node detect_3d_node of yolo_ros, which adds ``bbox3d`` to detections."""
 
     FORM = YOLO_FORMAT
 

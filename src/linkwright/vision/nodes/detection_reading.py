@@ -37,7 +37,7 @@ class DetectionFormat(ABC):
         )
 
     def with_track_id(self, detection: Any, track_id: int) -> Any:
-        """Return a copy of a detection that has the ID of a track."""
+        """Return a copy of a detection with the ID of a track."""
         tracked = copy(detection)
         tracked.id = str(track_id)
         return tracked

@@ -334,7 +334,7 @@ class DetectorNode(SingleNode):
             self._results.popleft()()
 
     def _begin(self, detector: Detector) -> None:
-        """Log the detector's notes, and begin to subscribe to images."""
+        """Log the detector's notes, and start subscribing to images."""
         for note in detector.notes:
             self._node.get_logger().info(str(note))
         try:

@@ -63,7 +63,7 @@ class ImageWatch:
             logger.warning(localized(hint))
 
     def _diagnose(self) -> tuple[Phrase, Phrase | None]:
-        """Return why no images arrive, and a hint or None."""
+        """Return the reason why no images arrive, and a hint or None."""
         topic, message_type = self._source.topic, self._source.message_type
         publishers = self._node.get_publishers_info_by_topic(topic)
         if not publishers:

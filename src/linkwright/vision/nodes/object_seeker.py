@@ -217,7 +217,7 @@ class ObjectSeeker(SingleNode):
     def _choose_object(self, pose: Transform) -> SeenObject | None:
         """Return the object to drive to, or None.
 
-        It is the previous target or, if this is not visible, the nearest matching object.
+        The previous target has priority. Until the robot drives to it, the nearest matching object can replace it.
         """
         assert self._request is not None, "there is a request while the robot seeks"
         candidates = [

@@ -85,7 +85,7 @@ class TrackingNode(SingleNode):
 
 
 class YoloTrackingNode(TrackingNode):
-    """tracking_node of yolo_ros: the type of both topics is yolo_msgs/msg/DetectionArray."""
+    """The node tracking_node of yolo_ros, with yolo_msgs/msg/DetectionArray on both topics."""
 
     FORM = YOLO_FORMAT
     IGNORED = (*TrackingNode.IGNORED, "image_reliability")  # this tracker needs no images

@@ -83,9 +83,10 @@ class Command:
 
 
 class Seeker:
-    """The search for an object.
+    """A robot's search for an object.
 
-    It ends if the object is lost, the path is blocked, or detections stop arriving.
+    The search ends when the robot arrives, unless the robot follows the object. It also ends if the object is lost, the
+    path is blocked, or detections stop arriving.
 
     Args:
         settings: the settings; None for the defaults.

@@ -29,7 +29,8 @@ class TrackerSettings:
     """The settings of a tracker, with ByteTrack's names and defaults where it has them.
 
     Attributes:
-        high: detections with at least this score start tracks, and are matched first (``track_high_thresh``).
+        high: detections with at least this score are matched first, and only they may start a track
+            (``track_high_thresh``).
         low: detections with a lower score are ignored (``track_low_thresh``).
         new_track_score: the minimum score that starts a track (``new_track_thresh``).
         match: the maximum of 1 - IoU for two boxes of the same object (``match_thresh``).

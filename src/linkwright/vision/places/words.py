@@ -79,7 +79,7 @@ _ANSWERS: Mapping[Answer, Callable[[str], Phrase]] = {
     Answer.ARRIVED: lambda it: phrase("I am at the {it}.", it=it),
     Answer.NOT_FOUND: lambda it: phrase("I cannot find the {it}.", it=it),
     Answer.LOST: lambda it: phrase("I have lost the {it}.", it=it),
-    Answer.BLOCKED: lambda it: phrase("Something is between me and the {it}.", it=it),
+    Answer.BLOCKED: lambda it: phrase("There is something between me and the {it}.", it=it),
     Answer.BLIND: lambda _: phrase("I am stopping, because I receive no detections."),
     Answer.STOPPED: lambda _: phrase("I am stopping."),
 }

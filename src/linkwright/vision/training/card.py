@@ -18,7 +18,7 @@ class Examination:
     """The results of a network on a set of images.
 
     Attributes:
-        title: what the images are.
+        title: the description of the images, used as the heading.
         figures: the results.
         origin: the worlds and options of the images' dataset; empty if unknown.
     """

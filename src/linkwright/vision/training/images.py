@@ -110,7 +110,7 @@ def augmented(
 
     Args:
         lesson: the images.
-        place: the index of the image in it.
+        place: the index of the image in `lesson`.
         view: the size of the part in pixels, and the range of scales.
         generator: the random generator.
 

@@ -8,7 +8,7 @@ from linkwright.diagnostics import missing_extra
 
 
 def need_pytorch() -> None:
-    """Raise if PyTorch is not installed.
+    """Check that PyTorch and its ONNX exporter are installed.
 
     Raises:
         LinkwrightError: VISION301, PyTorch or its ONNX exporter is not installed.

@@ -15,7 +15,7 @@ from linkwright.vision.training.images import read_image
 from linkwright.vision.training.reading import LabelledFile
 
 EVALUATION_LIMITS = Limits(threshold=0.01, iou=0.6, max_detections=MOST)
-"""The limits of evaluated detections. They include uncertain ones, because average precision rates their order."""
+"""The limits of evaluated detections. The threshold is low, because average precision includes uncertain detections."""
 
 
 def evaluate_detector(model: str | Path, names: Sequence[str], images: Sequence[LabelledFile]) -> Evaluation:

@@ -40,7 +40,7 @@ class LabelledFile:
         path: the path of the image.
         classes: shape ``(n,)``, indices into the dataset's names.
         boxes: shape ``(n, 4)``: left, top, right, bottom, as fractions of the image's width and height.
-        ignored: shape ``(n,)``, whether the object does not count because too little of it is visible.
+        ignored: shape ``(n,)``, whether the object does not count, because the COCO file marks it with ``iscrowd``.
     """
 
     path: Path
@@ -211,7 +211,10 @@ def _read_labelled(path: Path, classes: int, hidden: Sequence[list[float]]) -> L
 
 
 def label_path(image: Path) -> Path:
-    """Return the path of an image's label file, with the last folder ``images`` as ``labels``."""
+    """Return the path of an image's label file.
+
+    The last folder ``images`` of the path becomes ``labels``, and the suffix becomes ``.txt``.
+    """
     parts = list(image.parts)
     for index in range(len(parts) - 2, -1, -1):
         if parts[index] == "images":

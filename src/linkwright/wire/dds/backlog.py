@@ -1,4 +1,4 @@
-"""Holds back samples until readers have acknowledged the large samples before them.
+"""Hold back samples until readers have acknowledged the large samples before them.
 
 A reader of Fast DDS that has received part of a sample requests the rest. If a newer sample has replaced that sample in
 the writer's history, Cyclone answers with a GAP. Fast DDS up to 3.6 then frees the sample but keeps a reference to it,

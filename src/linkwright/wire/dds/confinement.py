@@ -1,4 +1,4 @@
-"""Keeps multicast announcements inside the machine, on Linux.
+"""Keep multicast announcements inside the machine, on Linux.
 
 A time to live of 0 should have this effect. However, Linux drops such a packet only on an interface where the machine
 itself is a member of the packet's group (``ip_mc_output``); on any other interface it sends the packet. The process

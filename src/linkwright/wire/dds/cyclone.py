@@ -197,7 +197,7 @@ class Cyclone:
     def guid(self, entity: int) -> bytes:
         """Return the globally unique identifier of an entity, 16 bytes."""
         buffer = c.create_string_buffer(16)
-        check_call(self.dds_get_guid(entity, buffer), "asking for an identifier")
+        check_call(self.dds_get_guid(entity, buffer), "reading the GUID of an entity")
         return buffer.raw
 
     def matched(self, entity: int, *, writer: bool) -> list[int]:

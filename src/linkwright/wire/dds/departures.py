@@ -1,4 +1,4 @@
-"""Distinguishes lost publishers (killed, crashed, unreachable) from orderly departures.
+"""Distinguish lost publishers (killed, crashed, unreachable) from orderly departures.
 
 A publisher that leaves announces this: ROS 2 withdraws an endpoint from ``ros_discovery_info`` before removing it from
 the domain (rmw_dds_common), and so does Linkwright. An endpoint that disappears without being withdrawn is lost: its
@@ -47,7 +47,7 @@ class _MissingWriter:
 
 
 class Departures:
-    """Decides whether publishers that disappeared were lost.
+    """A detector that decides whether publishers that disappeared were lost.
 
     Only the discovery thread may call the methods, except `watch`.
 

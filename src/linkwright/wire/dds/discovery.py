@@ -248,7 +248,10 @@ def machine_id() -> str:
 
 
 def _pointer(qos: int) -> int:
-    """Return the pointer: policies are read on demand while the sample is on loan."""
+    """Return the pointer unchanged.
+
+    Policies are read on demand while the sample is on loan.
+    """
     return qos
 
 

@@ -61,8 +61,7 @@ def encode(info: ParticipantEntities, gid_size: int) -> bytes:
 def decode(data: bytes) -> ParticipantEntities | None:
     """Decode an announcement of either gid size, or return None if it has neither.
 
-    The size is correct if it results in exactly the length of the data. If both sizes do, there are no gids, and the
-    result is the same.
+    A size is correct if decoding ends at the end of the data, apart from padding. The older size is tried first.
     """
     for gid_size in (OLD_GID_SIZE, GID_SIZE):
         try:

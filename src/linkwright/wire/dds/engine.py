@@ -101,7 +101,10 @@ class Engine(AnyEngine):
         self._reception.start()
 
     def wake(self) -> None:
-        """Wake the thread that processes the queue of requests. Callable from any thread."""
+        """Wake the thread that processes the queue of requests.
+
+        Any thread may call this method.
+        """
         self._control.wake()
 
     def close(self) -> None:
@@ -246,7 +249,7 @@ class Engine(AnyEngine):
             self._remote.announce()
 
     def _connect_fast(self, mirror: IncomingService | OutsideServer) -> None:
-        """Make a new service or client known to the participants on Fast DDS, if they are served."""
+        """Announce a new service or client to the Fast DDS participants, if there are any."""
         if self._fast is None:
             self._discover_fast()
         else:
@@ -255,7 +258,7 @@ class Engine(AnyEngine):
     def _discover_fast(self) -> None:
         """Create the participant for Fast DDS if needed, and look for newly discovered participants.
 
-        It is needed once a participant on Fast DDS exists and this process has a service or a client.
+        This participant is needed once a Fast DDS participant exists and this process has a service or a client.
         """
         fast_participants = self._remote.fast_participants()
         if self._fast is None and self._is_fast_possible and fast_participants and (self._services or self._clients):
@@ -281,7 +284,10 @@ class Engine(AnyEngine):
         self._control.wake()
 
     def _on_waiting(self, topic: OutgoingTopic) -> None:
-        """Record a topic whose messages wait for acknowledgements. Called by any thread."""
+        """Record a topic whose messages wait for acknowledgements.
+
+        Any thread may call this method.
+        """
         if topic not in self._waiting:
             self._waiting[topic] = None
             self._control.wake()
@@ -298,7 +304,7 @@ class Engine(AnyEngine):
         self._control.wake()
 
     def _log_mismatches(self) -> None:
-        """Report incompatible QoS. Node names become known shortly after a mismatch."""
+        """Report incompatible QoS once the node names are known, or after a timeout."""
         for topic, deadline in tuple(self._mismatch_deadlines.items()):
             is_due = time.monotonic() >= deadline
             topic.log_mismatches(finally_=is_due)

@@ -61,7 +61,7 @@ class EarlyRequest:
 
 
 class FastServer:
-    """A service of this process, as clients on Fast DDS call it.
+    """The part of a service that answers clients on Fast DDS.
 
     Such a client considers a service ready as soon as it has discovered one reader and one writer of the service. These
     may be Cyclone's. The client's request then reaches only Cyclone's reader, which does not provide the sequence
@@ -201,7 +201,7 @@ class FastServer:
 
 
 class FastClient:
-    """The servers on Fast DDS, as a client of this process calls them.
+    """The part of a client that calls servers on Fast DDS.
 
     Args:
         client: the client.
@@ -234,7 +234,7 @@ class FastClient:
         return partial(self._forget, number)
 
     def is_ready(self) -> bool:
-        """Return whether a server knows both endpoints of this client.
+        """Return whether a server has discovered both endpoints of this client.
 
         Otherwise the server's reply would be lost.
         """

@@ -1,4 +1,4 @@
-"""Joins a graph to a DDS domain if DDS is installed.
+"""Join a graph to a DDS domain if DDS is installed.
 
 Whether DDS is installed is checked without importing it, because the import takes 0.15 s.
 """

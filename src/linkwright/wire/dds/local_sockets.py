@@ -1,4 +1,4 @@
-"""Counts the processes of this machine in a domain, by the ports that the system reports.
+"""Count the processes of this machine in a domain, by the ports that the system reports.
 
 Every DDS implementation listens on the ports that RTPS assigns to a domain (DDSI-RTPS 2.3, 9.6.1.1): one shared port
 for multicast, one separate port for unicast, or both. This way a process is counted even before it has answered.

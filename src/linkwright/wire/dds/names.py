@@ -1,4 +1,4 @@
-"""Maps ROS 2 names and types to DDS (design article "Topic and service name mapping", rmw)."""
+"""Map ROS 2 names and types to DDS (design article "Topic and service name mapping", rmw)."""
 
 from __future__ import annotations
 

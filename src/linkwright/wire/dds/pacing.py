@@ -1,4 +1,4 @@
-"""Sends large samples to Fast DDS readers on this machine as fast as these can receive them.
+"""Send large samples to Fast DDS readers on this machine as fast as these can receive them.
 
 Cyclone sends all packets of a sample at once. A reader of Fast DDS receives into a buffer of 208 kB, so most packets of
 an image are lost. A reliable reader requests the lost packets again, which costs milliseconds for every three packets,
@@ -100,7 +100,7 @@ class Receiver:
 
 
 class Pacer:
-    """Sends the large samples of all writers of a participant, in a thread.
+    """A thread that sends the large samples of all writers of a participant.
 
     The thread starts with the first sample.
 
@@ -122,7 +122,10 @@ class Pacer:
         return {prefix: address for prefix, address in addresses.items() if address is not None}
 
     def add(self, writer: PacedWriter) -> None:
-        """Queue a writer whose samples are to be sent. Callable from any thread."""
+        """Queue a writer whose samples are to be sent.
+
+        Any thread may call this method.
+        """
         with self._lock:
             if self._thread is None:
                 self._thread = threading.Thread(target=self._run, name="linkwright-dds-pace", daemon=True)
@@ -179,7 +182,7 @@ class Pacer:
 
 
 class PacedWriter:
-    """Writes the samples of one writer in order, and sends large ones to Fast DDS readers first.
+    """A writer that keeps its samples in order, and sends large ones to Fast DDS readers first.
 
     Args:
         guid: the writer's GUID.
@@ -209,7 +212,10 @@ class PacedWriter:
         self._condition = threading.Condition(threading.RLock())  # reentrant, as in `Backlog`
 
     def write(self, sample: bytes) -> None:
-        """Write a sample immediately, or queue it behind large samples. Callable from any thread."""
+        """Write a sample immediately, or queue it behind large samples.
+
+        Any thread may call this method.
+        """
         with self._condition:
             if not self._is_pacing and not self._paced_addresses(sample):
                 self._write_now(sample)

@@ -83,11 +83,11 @@ class Participant:
 
     def create_reader(self, topic: int, qos: int | None) -> int:
         """Create a reader for a topic, or for one of Cyclone's builtin topics."""
-        return check_call(self._dds.dds_create_reader(self.entity, topic, qos, None), "making a reader")
+        return check_call(self._dds.dds_create_reader(self.entity, topic, qos, None), "creating a reader")
 
     def create_writer(self, topic: int, qos: int) -> int:
         """Create a writer for a topic."""
-        return check_call(self._dds.dds_create_writer(self.entity, topic, qos, None), "making a writer")
+        return check_call(self._dds.dds_create_writer(self.entity, topic, qos, None), "creating a writer")
 
     def delete(self, *entities: int) -> None:
         """Delete entities.

@@ -156,7 +156,7 @@ class RemoteEndpoint:
 
 
 class DepartureWatch(Protocol):
-    """Receives notifications of endpoints that disappear.
+    """A receiver of notifications about endpoints that disappear.
 
     `wire.dds.departures.Departures` implements this protocol.
     """
@@ -305,7 +305,8 @@ class RemoteGraph(Outside):
 
         Discovery is complete when all participants have announced their nodes, and the endpoints of those nodes are
         known. A participant that listens to announcements belongs to ROS and will announce its own nodes. For a
-        participant without known endpoints, discovery waits briefly.
+        participant without known endpoints, discovery waits briefly. A participant that has been known for longer
+        than the time limit counts only if it has announced itself to ROS.
         """
         now = time.monotonic()
         with self._lock:

@@ -114,7 +114,7 @@ class Pair:
 
 
 class OutsideServer:
-    """The servers of other processes, as a client of this process calls them.
+    """The connection of a client to the servers of other processes.
 
     Implements `linkwright.graph.endpoints.service.OutsideService`.
 
@@ -171,7 +171,10 @@ class OutsideServer:
         return False
 
     def review(self) -> None:
-        """Update whether there is a server whose reader and writer both match ours."""
+        """Check whether a server is available, and update the client.
+
+        A server is available if both its reader and its writer match ours.
+        """
         self._uses_cyclone = self._is_server_available()
         is_ready = self._uses_cyclone or (self._fast is not None and self._fast.is_ready())
         if is_ready != self._is_ready:
@@ -204,7 +207,7 @@ class OutsideServer:
 
 
 class IncomingService:
-    """A service of this process, as clients of other processes call it.
+    """The connection of a service to the clients of other processes.
 
     Args:
         service: the service.

@@ -161,7 +161,9 @@ _ANNOUNCEMENT_INTERVAL = "<SPDPInterval>3 s</SPDPInterval>"
 """The interval at which a process announces itself outside this machine, as in Fast DDS."""
 
 _THIS_MACHINE = '<Peer address="127.0.0.1" PruneDelay="inf"/>'
-"""The ports of this machine, for as long as the process lives.
+"""The element that lets a process announce itself to the ports of this machine.
+
+Announcements continue for as long as the process lives.
 
 A node of Fast DDS on LOCALHOST announces itself on loopback alone, and Cyclone ignores packets on loopback unless
 loopback is one of its interfaces. So this process announces itself to the node, which answers at this process's address

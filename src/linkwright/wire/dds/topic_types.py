@@ -90,7 +90,7 @@ class TopicTypes:
         name = _TOPIC_NAME.format(len(self._type_addresses))
         unused_topic = check_call(self._dds.create_topic(participant, name, described_type, None, None), operation)
         pointer = c.c_void_p()
-        check_call(self._dds.dds_get_entity_sertype(unused_topic, c.byref(pointer)), "asking for a type")
+        check_call(self._dds.dds_get_entity_sertype(unused_topic, c.byref(pointer)), "reading the type of a topic")
         address: int = self._dds.ddsi_sertype_ref(pointer)
         functions = c.c_void_p.from_address(address)
         functions.value = _table_without_descriptions(functions.value or 0)

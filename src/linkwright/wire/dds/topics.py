@@ -47,7 +47,7 @@ if TYPE_CHECKING:
 _PATIENCE = 2 * LEASE
 """Seconds for which a publisher with KEEP_ALL waits for slow readers."""
 
-_NAMELESS = "a node that is not known by name"
+_NAMELESS = "a node whose name is not known"
 
 MAX_SAMPLES = 256
 """The maximum number of samples that are taken before other readers are served."""
@@ -316,9 +316,9 @@ class OutgoingTopic(MirroredTopic):
         """
         if code >= 0 or self._participant.closed or self._publisher.destroyed or not self._log_limits.is_due("failed"):
             return
-        reason = "the subscribers outside do not keep up" if code == TIMEOUT else describe(code)
+        reason = "the subscriptions in other processes do not keep up" if code == TIMEOUT else describe(code)
         self._publisher.node.logger.warning(
-            f"A message of topic '{self._publisher.name}' was not sent out of this process: {reason}"
+            f"A message of topic '{self._publisher.name}' was not sent to other processes: {reason}"
         )
 
     def log_mismatches(self, *, finally_: bool) -> None:
@@ -425,7 +425,7 @@ class IncomingTopic(MirroredTopic):
 
 
 class _LogLimits:
-    """Limits the frequency of a topic's log messages."""
+    """Limits for the frequency of a topic's log messages."""
 
     _LOG_INTERVAL_S = 30.0
 

@@ -1,4 +1,4 @@
-"""Descriptions of ROS types for Cyclone. Cyclone checks samples against them.
+"""Descriptions of ROS types, against which Cyclone checks samples.
 
 Cyclone also announces the descriptions to other tools, and compares types structurally if both sides describe theirs.
 Therefore types are described member by member, like the types that rmw_cyclonedds_cpp describes (final, keyless;
@@ -27,7 +27,7 @@ class UndescribableError(Exception):
 
 
 class WireTypes:
-    """Creates and caches the descriptions of types.
+    """A cache that creates the descriptions of types on first use.
 
     Any thread may use this object.
     """

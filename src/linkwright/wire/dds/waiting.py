@@ -39,8 +39,8 @@ class WaitingThread(threading.Thread):
     ) -> None:
         super().__init__(name=name, daemon=True)
         self._dds = load()
-        self._waitset = check_call(self._dds.dds_create_waitset(owner), "making a waitset")
-        self._guard = check_call(self._dds.dds_create_guardcondition(owner), "making a guard condition")
+        self._waitset = check_call(self._dds.dds_create_waitset(owner), "creating a waitset")
+        self._guard = check_call(self._dds.dds_create_guardcondition(owner), "creating a guard condition")
         check_call(self._dds.dds_waitset_attach(self._waitset, self._guard, 0), "attaching the guard condition")
         self._handlers: dict[int, Handler] = {}
         self._report = report
@@ -50,7 +50,7 @@ class WaitingThread(threading.Thread):
     def attach(self, entity: int, handler: Handler) -> None:
         """Register a handler to be called while an enabled status of the entity is set."""
         self._handlers[entity] = handler
-        check_call(self._dds.dds_waitset_attach(self._waitset, entity, entity), "attaching")
+        check_call(self._dds.dds_waitset_attach(self._waitset, entity, entity), "attaching an entity to the waitset")
 
     def detach(self, entity: int) -> None:
         """Stop calling the handler of an entity.
@@ -61,7 +61,10 @@ class WaitingThread(threading.Thread):
         self._dds.dds_waitset_detach(self._waitset, entity)
 
     def wake(self) -> None:
-        """Wake the thread so that it calls `idle`. Callable from any thread."""
+        """Wake the thread so that it calls `idle`.
+
+        Any thread may call this method.
+        """
         self._dds.dds_set_guardcondition(self._guard, True)
 
     def stop(self, timeout: float) -> bool:

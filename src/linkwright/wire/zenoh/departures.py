@@ -1,4 +1,4 @@
-"""Distinguishes lost publishers (killed, crashed, unreachable) from orderly departures.
+"""Distinguish lost publishers (killed, crashed, unreachable) from orderly departures.
 
 A token disappears when its owner withdraws it, and when its session ends for any reason. Linkwright's sessions have an
 additional token, and announce their departure before that token disappears. Without this announcement, their endpoints
@@ -45,7 +45,7 @@ class _MissingPublisher:
 
 
 class Departures:
-    """Decides whether publishers that disappeared were lost.
+    """A detector that decides whether publishers that disappeared were lost.
 
     Only the discovery thread may call the methods, except `watch`.
 

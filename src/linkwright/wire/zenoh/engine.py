@@ -1,4 +1,4 @@
-"""Creates and withdraws the mirrors of this process's endpoints in a Zenoh session.
+"""Create and withdraw the mirrors of this process's endpoints in a Zenoh session.
 
 One thread does this in the order of the requests, and updates the tables of the remote graph. Zenoh's threads pass on
 incoming traffic as bytes.
@@ -85,14 +85,20 @@ class Engine(AnyEngine):
         self._interests = Interests(self._session, settings.domain_id, self._on_token)
 
     def start(self) -> None:
-        """Start the thread."""
+        """Announce the session, subscribe to tokens, and start the thread.
+
+        A client of a router subscribes only to the tokens that its endpoints need.
+        """
         self._presence_token = self._session.liveliness().declare_token(self._own_token("here"))
         if not self._is_client:
             self._interests.add_all()
         self._thread.start()
 
     def wake(self) -> None:
-        """Wake the thread that processes the queue of requests. Callable from any thread."""
+        """Wake the thread that processes the queue of requests.
+
+        Any thread may call this method.
+        """
         self._wake_event.set()
 
     def has_neighbours(self) -> bool:

@@ -1,4 +1,4 @@
-"""Joins a graph to others over Zenoh, if Zenoh is installed.
+"""Join a graph to others over Zenoh, if Zenoh is installed.
 
 Whether Zenoh is installed is checked without importing it.
 """

@@ -1,4 +1,4 @@
-"""Opens a session.
+"""Open Zenoh sessions, with retries for as long as the configuration allows.
 
 Waiting for a router or peers is logged and can be interrupted.
 """
@@ -27,7 +27,7 @@ _LOG_INTERVAL_S = 10.0
 
 
 class SessionOpener:
-    """Opens sessions, with retries for as long as the configuration allows.
+    """An opener of sessions that retries for as long as the configuration allows.
 
     Zenoh itself could wait, but that wait cannot be interrupted and reports nothing.
 
@@ -40,7 +40,7 @@ class SessionOpener:
         self._logger = logger
         self._cancel_event = cancel_event
         self.waits = False
-        """Whether a session is being opened that waits for others."""
+        """Whether opening a session currently waits for a router or peers."""
 
     def open(self, config: zenoh.Config) -> zenoh.Session:
         """Open a session.
@@ -80,7 +80,7 @@ class SessionOpener:
 
 
 class ObstacleReporter:
-    """Reports, from a thread, why the addresses that a session connects to cannot be reached.
+    """A thread that reports why the addresses that a session connects to cannot be reached.
 
     Args:
         config: the configuration of the session.
@@ -116,7 +116,7 @@ class ObstacleReporter:
                 continue
             reasons = (
                 joined(obstacles(self._config), "; ")
-                or f"{', '.join(configured_addresses(self._config))} accepts no session"
+                or f"{', '.join(configured_addresses(self._config))} does not accept a session"
             )
             if not self._end_event.is_set() and not self._is_connected():
                 self._log(reasons)

@@ -1,4 +1,4 @@
-"""Encodes QoS profiles as one chunk of a liveliness token.
+"""Encode QoS profiles as one chunk of a liveliness token.
 
 The form is ``<reliability>:<durability>:<history>,<depth>:<deadline>:<lifespan>:<liveliness>,<lease>``. Times consist
 of seconds and nanoseconds. Values that are the default of rmw_zenoh_cpp are left empty.

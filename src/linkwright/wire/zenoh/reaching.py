@@ -1,6 +1,6 @@
-"""Finds the reasons why a connection to an address fails.
+"""Find the reasons why a connection to an address fails.
 
-Zenoh does not report them. To do so, this module connects to the address with sockets and TLS in the same way as Zenoh.
+Zenoh does not report these reasons. This module therefore connects to the address with sockets and TLS, as Zenoh does.
 """
 
 from __future__ import annotations

@@ -29,7 +29,7 @@ _RESULT_TIMEOUT_S = 30 * 24 * 3600.0
 
 
 class OutsideServer:
-    """The servers of other processes, as a client of this process calls them.
+    """The connection of a client to the servers of other processes.
 
     Implements `linkwright.graph.endpoints.service.OutsideService`.
 
@@ -68,7 +68,7 @@ class OutsideServer:
         return partial(self._forget, number)
 
     def review(self, count: int) -> None:
-        """Update whether there is a server that can be reached.
+        """Check whether a server is reachable, and update the client.
 
         Args:
             count: the number of known remote servers.
@@ -93,7 +93,10 @@ class OutsideServer:
         self._client.outside = None
 
     def _receive(self, number: int, reply: zenoh.Reply) -> None:
-        """Pass on the first reply to a request. Called in a thread of Zenoh."""
+        """Pass the first reply to a request on to the client.
+
+        Zenoh calls this method in one of its threads.
+        """
         sample = reply.ok
         if sample is None:
             return
@@ -122,7 +125,7 @@ class OutsideServer:
 
 
 class IncomingService:
-    """A service of this process, as clients of other processes call it.
+    """The connection of a service to the clients of other processes.
 
     Args:
         service: the service.
@@ -155,7 +158,10 @@ class IncomingService:
             request.drop()
 
     def _receive(self, query: zenoh.Query) -> None:
-        """Pass a request to the service. Called in a thread of Zenoh."""
+        """Pass a request to the service.
+
+        Zenoh calls this method in one of its threads.
+        """
         metadata = attachment.read(None if query.attachment is None else query.attachment.to_bytes())
         body = None if query.payload is None else query.payload.to_bytes()
         if metadata is None or body is None:

@@ -1,4 +1,4 @@
-"""Opens a Zenoh session with the settings of the environment."""
+"""Open a Zenoh session with the settings of the environment."""
 
 from __future__ import annotations
 

@@ -30,7 +30,7 @@ _MAX_HISTORY = 1_000_000
 
 
 class OutgoingTopic:
-    """A publisher of this process, as subscriptions of other processes receive it.
+    """The connection of a publisher to the subscriptions of other processes.
 
     Args:
         publisher: the publisher.
@@ -75,7 +75,9 @@ class OutgoingTopic:
         self._send: Callable[[Any], None] | None = self._sender()
 
     def review(self, count: int) -> None:
-        """Enable sending while there is a subscription, or while late joiners must be served.
+        """Enable or disable sending, and update the number of remote subscriptions.
+
+        Sending is enabled while there is a subscription, or while late joiners must be served.
 
         Args:
             count: the number of known remote subscriptions.
@@ -114,7 +116,7 @@ class OutgoingTopic:
 
 
 class IncomingTopic:
-    """A subscription of this process, as publishers of other processes reach it.
+    """The connection of a subscription to the publishers of other processes.
 
     Args:
         subscription: the subscription.
@@ -164,7 +166,10 @@ class IncomingTopic:
         self._zenoh.undeclare()
 
     def _receive(self, sample: zenoh.Sample) -> None:
-        """Pass a sample to the subscription. Called in a thread of Zenoh."""
+        """Pass a sample to the subscription.
+
+        Zenoh calls this method in one of its threads.
+        """
         encoded = sample.attachment
         metadata = attachment.read(None if encoded is None else encoded.to_bytes())
         if metadata is None:

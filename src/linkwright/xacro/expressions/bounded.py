@@ -1,4 +1,4 @@
-"""Limited versions of Python functions whose calls could otherwise take hours.
+"""Limited versions of Python functions that could otherwise run for hours.
 
 An expression is charged for each step of its work, and the clock is read between two steps. However, a single call of
 a function that is written in C cannot be interrupted. Therefore, each function that can be slow for some arguments
@@ -114,7 +114,7 @@ def check_codec(value: Any, encoding: str) -> None:
 
     Raises:
         RefusalError: if the value is too long for the codec.
-        LookupError: if there is no such codec. Non-ASCII names are included, because Python 3.15 warns about them.
+        LookupError: if there is no such codec, or if the name is not ASCII, about which Python 3.15 warns.
     """
     if isinstance(encoding, str) and not encoding.isascii():
         raise LookupError(f"unknown encoding: {encoding}")

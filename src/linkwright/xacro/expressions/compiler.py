@@ -1,7 +1,7 @@
 """The compiler from the syntax tree of an expression to nested closures.
 
 There is one method for each kind of node that expressions may use. Nodes of any other kind are refused. A closure
-takes the environment and returns the value of its node. The sandbox performs the operations on values. Every closure
+receives the environment and returns the value of its node. The sandbox performs the operations on values. Every closure
 that can fail stores its position in the text, so that the columns in messages are exact.
 """
 

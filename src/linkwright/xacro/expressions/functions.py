@@ -153,7 +153,7 @@ _CONSTANT_TIME_FUNCTIONS = frozenset(
 def cost(value: Any) -> int:
     """Return the number of steps that one pass over a value costs.
 
-    The contents of the items do not count.
+    The contents of the items are not included.
     """
     units_per_step = _UNITS_PER_STEP.get(value.__class__)
     return len(value) // units_per_step if units_per_step else 0

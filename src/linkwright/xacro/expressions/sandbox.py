@@ -1,6 +1,6 @@
 """The sandbox of expressions: the operations that expressions may apply to values.
 
-Expressions come from untrusted files. Therefore, the sandbox lists what is allowed and refuses everything else. An
+Expressions come from untrusted files. Therefore, the sandbox lists the allowed operations and refuses all others. An
 attribute is accessible only if it is listed for the type of the value. A type can be called only if it is listed. No
 value may exceed the limits below.
 """
@@ -148,14 +148,15 @@ def check_size(value: Any) -> Any:
     """Return a value unchanged if it is not too large.
 
     Raises:
-        RefusalError: if a string, list or number exceeds the limits. Nested lists count with their whole content.
+        RefusalError: if a string, list or number exceeds the limits. The size of a list includes the contents of nested
+        lists.
     """
     weight(value)
     return value
 
 
 def weight(value: Any) -> int:
-    """Return the number of items or characters in a value, including nested ones.
+    """Return the number of items or characters in a value, including nested items.
 
     The weight of an integer is the number of full 64-bit words. Other numbers have the weight 0.
 
@@ -237,14 +238,14 @@ def _collection_weight(value: Any) -> int:
 
 
 def add(left: Any, right: Any) -> Any:
-    """Return ``left + right``."""
+    """Return ``left + right``, unless the result would be too long."""
     if isinstance(left, (str, list, tuple, bytes)) and isinstance(right, (str, list, tuple, bytes)):
         _check_length(len(left) + len(right))
     return left + right
 
 
 def multiply(left: Any, right: Any) -> Any:
-    """Return ``left * right``."""
+    """Return ``left * right``, unless the result would be too large."""
     if left.__class__ is float or right.__class__ is float:
         return left * right
     for sequence, count in ((left, right), (right, left)):
@@ -254,7 +255,7 @@ def multiply(left: Any, right: Any) -> Any:
 
 
 def power(base: Any, exponent: Any) -> Any:
-    """Return ``base ** exponent``."""
+    """Return ``base ** exponent``, unless the result would be too large."""
     if (
         isinstance(base, int)
         and isinstance(exponent, int)
@@ -266,7 +267,7 @@ def power(base: Any, exponent: Any) -> Any:
 
 
 def shift_left(value: Any, bits: Any) -> Any:
-    """Return ``value << bits``."""
+    """Return ``value << bits``, unless the result would be too large."""
     if isinstance(value, int) and isinstance(bits, int) and value.bit_length() + bits > MAX_BITS:
         raise RefusalError(phrase("the number has more than {max_bits:,} bits", max_bits=MAX_BITS))
     return value << bits

@@ -213,14 +213,14 @@ class Scope:
         return Local(self, {})
 
     def remove(self, name: str) -> None:
-        """Remove a name from every scope of the chain except the outermost one."""
+        """Remove a name from every scope of the chain except the outermost scope."""
         scope = self
         while scope.parent is not None:
             scope.values.pop(name, None)
             scope = scope.parent
 
     def document_scope(self) -> Scope:
-        """Return the scope of the document: the one directly inside the outermost scope."""
+        """Return the scope of the document, which is directly inside the outermost scope."""
         scope = self
         while scope.parent is not None and scope.parent.parent is not None:
             scope = scope.parent

@@ -1,8 +1,8 @@
 """The names that the language provides to expressions.
 
-They are the same as in ros/xacro: a few of Python's functions, all of ``math``, and the groups ``math``, ``python``
-and ``xacro``. Functions that could create very large values, or access objects that expressions must not access, are
-guarded.
+The names are the same as in ros/xacro: a few of Python's functions, all of ``math``, and the groups ``math``,
+``python`` and ``xacro``. Functions that could create very large values, or access objects that expressions must not
+access, are guarded.
 """
 
 from __future__ import annotations
@@ -169,7 +169,7 @@ class Provider(Protocol):
         ...
 
     def reporter(self, name: str, code: str, severity: Severity) -> Callable[..., str]:
-        """Return the function that shows messages: ``xacro.message``, ``warning`` or ``error``."""
+        """Return the function that shows messages, such as ``xacro.message`` or ``xacro.error``."""
         ...
 
     def deprecated(self, better: str, function: Callable[..., Any]) -> Callable[..., Any]:

@@ -49,7 +49,7 @@ class YamlDict(dict[Any, Any]):
 
 
 class YamlList(list[Any]):
-    """A sequence read from YAML, whose items behave like those of a `YamlDict`."""
+    """A sequence read from YAML, whose items behave like the items of a `YamlDict`."""
 
     __slots__ = ()
 

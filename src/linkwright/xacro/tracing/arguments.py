@@ -58,7 +58,7 @@ class Arguments:
     """The arguments of a description, as found by `examine_arguments`.
 
     Attributes:
-        arguments: the arguments, declared ones first.
+        arguments: the arguments, declared arguments first.
         unused: a warning for each passed argument that no file declares or uses.
         problems: the errors that stopped the expansion. If there are any, `arguments` may be incomplete.
     """
@@ -159,7 +159,7 @@ class _Findings:
                     self.uses.setdefault(name, span)
 
     def arguments(self) -> tuple[Argument, ...]:
-        """Return all arguments, declared ones first."""
+        """Return all arguments, declared arguments first."""
         session = self.session
         declarations = {**session.declared, **self.elsewhere, **session.declared}
         missing_names = dict(session.missing)

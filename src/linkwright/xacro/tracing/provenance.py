@@ -40,7 +40,8 @@ class AttributeProvenance:
         written: the text in the source, such as ``${prefix}_link``.
         span: the location of this text.
         values: the names in the text, with their values.
-        calls: the calls and includes that contain the text, innermost first. They differ from the element's if
+        calls: the calls and includes that contain the text, innermost first. They differ from the calls of the element
+        if
             ``<xacro:attribute>`` has set the attribute.
     """
 

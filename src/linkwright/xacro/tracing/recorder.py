@@ -20,7 +20,7 @@ from linkwright.xmltree import Element, Text
 
 @dataclass
 class ElementRecord:
-    """The record of how an element was produced.
+    """The record of the production of an element.
 
     Attributes:
         node: the element in the source.
@@ -80,7 +80,7 @@ class Recorder:
     # the recorded moments
 
     def record_of(self, element: Element) -> ElementRecord | None:
-        """Return the record of how an element was produced, or None."""
+        """Return the record of the production of an element, or None."""
         moment = self._records.get(id(element))
         return moment[1] if moment else None
 
@@ -254,7 +254,7 @@ def _evaluate_again(expander: Expander, node: Element, attribute: str, scope: Sc
 
 
 def _defining_scope(scope: Scope, name: str) -> Scope | None:
-    """Return the innermost enclosing scope that defines a name, or None if none does."""
+    """Return the innermost enclosing scope that defines a name, or None."""
     holder: Scope | None = scope
     while holder is not None and name not in holder.values:
         holder = holder.parent

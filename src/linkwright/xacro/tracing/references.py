@@ -110,7 +110,7 @@ def _expression_references(content: str) -> Iterator[Reference]:
 class _PathCollector(ast.NodeVisitor):
     """A visitor that collects names with their attributes and keys, such as ``arm.joints[0]``.
 
-    Variables of lambdas and comprehensions are collected in `bound_names`.
+    Variables of lambdas and comprehensions are collected in `bound`.
     """
 
     def __init__(self) -> None:
@@ -139,7 +139,7 @@ class _PathCollector(ast.NodeVisitor):
 
 
 def _root_name(node: ast.AST) -> str | None:
-    """Return the first name of an expression such as ``arm.joints[0]``, or None for others."""
+    """Return the first name of an expression such as ``arm.joints[0]``, or None for any other."""
     while True:
         if isinstance(node, ast.Name):
             return node.id

@@ -23,7 +23,7 @@ PROBE = "xacro:.probe"
 
 
 class TracedSession(Session):
-    """A session that inserts probes into the files that it reads.
+    """A session that inserts probes into the files as it reads them.
 
     Args:
         inputs: the inputs of the expansion.
@@ -93,7 +93,7 @@ def with_probes(document: Document) -> Document:
 
 
 def without_probes(document: Document) -> Document:
-    """Remove the probes from a document in place, and return the document."""
+    """Remove the probes from a document, and return the document."""
     pending = [document.root]
     while pending:
         element = pending.pop()
@@ -109,7 +109,7 @@ def without_probes(document: Document) -> Document:
 
 
 def recorded_probe(record: object) -> Element:
-    """Return a probe that stays in the result.
+    """Return a probe that is kept in the result.
 
     The `origin` of the probe is the record of the enclosing element.
     """

@@ -41,7 +41,7 @@ class Evaluation(NamedTuple):
 
 @dataclass(slots=True)
 class EvaluatedExpression:
-    """An expression, a substitution, or a text that contains some, and its values.
+    """An expression, a substitution, or a text that contains such parts, with its values.
 
     Attributes:
         file: the name of the file.
@@ -81,7 +81,7 @@ def evaluated_expressions(inputs: Inputs) -> list[EvaluatedExpression]:
 
 
 class _RecordingSession(Session):
-    """A session that records the value of each expression that it evaluates."""
+    """A session that records the value of each evaluated expression."""
 
     def __init__(self, inputs: Inputs) -> None:
         super().__init__(inputs.name, inputs.arguments, inputs.packages, inputs.limits, inputs.root_dir, inputs.overlay)

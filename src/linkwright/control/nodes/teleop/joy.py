@@ -201,7 +201,7 @@ class JoyNode(SingleNode):
 class JoyLinuxNode(JoyNode):
     """The running joy_linux_node, a `JoyNode` with other parameters.
 
-    These are ``dev``, ``dev_name`` and ``coalesce_interval``.
+    The other parameters are ``dev``, ``dev_name`` and ``coalesce_interval``.
     """
 
     def _read_settings(self, node: Node) -> _Settings:

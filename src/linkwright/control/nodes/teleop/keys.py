@@ -61,7 +61,7 @@ SPEEDS = {
 
 
 def keys_in(text: str) -> Iterator[str]:
-    """Iterate over the keys in a terminal's input.
+    """Return an iterator over the keys in a terminal's input.
 
     Some keys send several characters.
     """

@@ -26,7 +26,7 @@ _BOOLEAN_TEXTS = ("true", "false", "True", "False", "TRUE", "FALSE")
 
 
 def _read_choice_list(entity: Entity) -> list[str] | None:
-    """Return the value of the list ``choices`` of a YAML tag, or None if it has none.
+    """Return the list ``choices`` of a YAML tag, or None if the tag has no choices.
 
     Raises:
         TypeError: LAUNCH118, the value is not a list of strings.

@@ -49,7 +49,7 @@ class UnsetEnvironmentVariable(NamedAction):
 
 @expose_action("append_env")
 class AppendEnvironmentVariable(AssigningAction):
-    """Adds a value to an environment variable that holds a list, such as a search path.
+    """Adds a value to an environment variable that contains a list, such as a search path.
 
     Args:
         name: the name of the variable.

@@ -181,9 +181,9 @@ class ExecuteLocal(Action):
     # --- execution ------------------------------------------------------------------------------------------
 
     def prepare(self, context: LaunchContext) -> None:
-        """Evaluate the name, command, folder and environment of the process.
+        """Evaluate the name, command, working directory and environment of the process.
 
-        After this call, users can read these values before the process starts.
+        Launch files can read these values before the process starts.
         """
         self._description.prepare(context, self)
 

@@ -45,7 +45,7 @@ class _ArgumentSplitter:
 
     Attributes:
         arguments: the finished arguments, each as a list of substitutions.
-        quote: the quote that is open; empty if none is.
+        quote: the open quote; empty if no quote is open.
     """
 
     def __init__(self) -> None:

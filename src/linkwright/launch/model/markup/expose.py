@@ -16,10 +16,16 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 
 action_parse_methods: dict[str, Any] = {}
-"""Maps tags to functions of entity and parser that return the class or factory of an action and its arguments."""
+"""Maps tags to functions that parse an action.
+
+The parameters are entity and parser. The functions return the class or factory of the action, and its arguments.
+"""
 
 substitution_parse_methods: dict[str, Any] = {}
-"""Maps names to functions that return the class or factory of a substitution, and its keyword arguments."""
+"""Maps names to functions that parse a substitution.
+
+They return the class or factory of the substitution, and its keyword arguments.
+"""
 
 
 def expose_action(name: str) -> Callable[[T], T]:

@@ -52,7 +52,7 @@ def is_valid_scalar_type(data_type: Any) -> bool:
 
 
 def extract_type(data_type: Any) -> tuple[Any, bool]:
-    """Return the scalar type that a type consists of, and whether the type is a list.
+    """Return the scalar type of a type or of its list items, and whether the type is a list.
 
     Raises:
         ValueError: the type is neither a scalar type nor a list of one.

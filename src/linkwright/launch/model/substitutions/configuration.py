@@ -102,7 +102,7 @@ class EnvironmentVariable(DeclaredSubstitution, tag="env", shown="EnvVar({name})
             return context.environment[name]
         if self.default_value is not None:
             return perform_substitutions(context, self.default_value)
-        hint = did_you_mean(name, context.environment) or phrase("set it, or pass a default_value to the substitution")
+        hint = did_you_mean(name, context.environment) or phrase("set the variable, or pass a default_value")
         ros_error = SubstitutionFailure(f"environment variable '{name}' does not exist")
         raise error_at(
             self.place,

@@ -64,7 +64,7 @@ class ForEachVar(DeclaredSubstitution, tag="for-var", shown="{kind}(name={name},
             hint = (
                 phrase("the loop has {names}", names=quoted_names(loop_names))
                 if loop_names
-                else phrase("use it inside a loop")
+                else phrase("use the substitution inside a loop")
             )
         ros_error = RuntimeError(f"No value available for {type(self).__name__} '{name}' and no default value provided")
         raise error_at(

@@ -129,7 +129,7 @@ class LaunchTest(pytest.Function):
     Attributes:
         options: the options of the launch fixture.
         test: the test function or bound method.
-        begun: the generator, after its part before the ``yield`` has passed; None before that.
+        begun: the generator after its first part has passed; None before that.
         first_part: the test that runs the first part of the same generator; None for a test with a single part.
     """
 

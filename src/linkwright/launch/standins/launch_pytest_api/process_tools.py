@@ -21,14 +21,17 @@ from linkwright.launch.model.context import Handler, LaunchContext
 from linkwright.launch.model.process_event_handlers import OnProcessExit, OnProcessIO, OnProcessStart
 
 Validate = Callable[[str], Any]
-"""A function that validates a text: it returns a false value or raises AssertionError if the text is wrong."""
+"""A function that validates a text.
+
+It returns a false value or raises AssertionError if the text is wrong.
+"""
 
 Reaction = Callable[..., None]
 _P = ParamSpec("_P")
 
 
 class _Wait:
-    """A wait until an event occurs or a condition holds.
+    """Waits until an event occurs or a condition holds.
 
     Args:
         context: the context of the launch.

@@ -24,7 +24,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command to its parser."""
     parser.add_argument("launch_test_file", help="the file with generate_test_description and tests")
     parser.add_argument("--package-name", help="the package that the tests belong to, for the report")
-    parser.add_argument("-v", "--verbose", action="store_true", help="log in detail what the launcher does")
+    parser.add_argument("-v", "--verbose", action="store_true", help="log details of the launch")
     parser.add_argument(
         "-s",
         "--show-args",
@@ -38,7 +38,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def parse_arguments() -> tuple[argparse.ArgumentParser, argparse.Namespace]:
     """Parse ``sys.argv``, and return the parser of the command and the parsed arguments."""
-    parser = argparse.ArgumentParser(prog="launch_test", description="Run the tests of a file beside their launch.")
+    parser = argparse.ArgumentParser(prog="launch_test", description="Run the tests of a file and their launch.")
     add_arguments(parser)
     return parser, parser.parse_args()
 

@@ -1,4 +1,4 @@
-"""Tests that are processes of a launch and exit with 0 (``launch_testing.legacy``).
+"""Tests that run as processes or other actions of a launch (``launch_testing.legacy``).
 
 The tests of nav2 and other projects use this module.
 """

@@ -79,7 +79,7 @@ class _RunnerWorker:
         return results
 
     def _bind(self, context: Mapping[str, Any]) -> None:
-        """Pass the attributes and arguments of the launch to the tests during it and after it."""
+        """Pass the attributes and arguments of the launch to its tests."""
         attributes_during: dict[str, Any] = {
             "launch_service": self._launch_service,
             "proc_info": self._proc_info,

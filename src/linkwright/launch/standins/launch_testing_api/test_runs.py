@@ -13,7 +13,8 @@ from linkwright.launch.model.description import LaunchDescription
 from linkwright.launch.standins.launch_testing_api.marks import AFTER_SHUTDOWN, MARKERS, PARAMETRIZED, TIMEOUT
 
 _READY_SECONDS = 15.0
-"""The default for the maximum seconds from the start of a launch until its tests may start."""
+"""The default maximum time in seconds from the start of a launch until its tests may start."""
+
 
 NormalizedDescription = tuple[LaunchDescription, dict[str, Any]]
 

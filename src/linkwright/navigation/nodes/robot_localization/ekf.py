@@ -4,7 +4,7 @@ The nodes follow robot_localization 3.5 (ROS 2 Humble) and later, with these del
 
 - When simulated time jumps back, such as on the reset of a world, the filter restarts even if ``reset_on_time_jump`` is
   false; the original would wait until time has caught up.
-- If a sensor provides no acceleration (or no position), a true value in its ``_config`` does not measure it as 0.
+- A true value in ``_config`` for a quantity that the sensor does not provide is ignored, not measured as 0.
 - Lookups of transforms never wait, so ``transform_timeout`` has no effect. Neither has ``debug``.
 - ``process_noise_covariance`` and ``initial_estimate_covariance`` may be the 15 numbers of the diagonal.
 - Sensors and their rules: see `linkwright.navigation.estimation.readings`.

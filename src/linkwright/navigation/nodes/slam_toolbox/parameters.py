@@ -32,7 +32,7 @@ _WITHOUT_EFFECT: dict[str, bool | int | float | str] = {
     "ceres_dogleg_type": "TRADITIONAL_DOGLEG",
     "ceres_loss_function": "None",
 }
-"""Parameters that parameter files contain and that have no effect, with their defaults."""
+"""Parameters that occur in parameter files but have no effect, with their defaults."""
 
 
 @dataclass(frozen=True, slots=True)

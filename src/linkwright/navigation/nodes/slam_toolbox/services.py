@@ -51,7 +51,7 @@ class ToolboxServices:
             self._endpoints.append(node.create_subscription(kind, "/initialpose", self._on_initial_pose, 1))
 
     def close(self) -> None:
-        """Remove the services."""
+        """Remove the services and the subscription."""
         for endpoint in self._endpoints:
             endpoint.destroy()
 

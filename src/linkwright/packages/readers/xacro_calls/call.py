@@ -1,6 +1,6 @@
 """Records of the xacro calls and included launch files in a file.
 
-The texts in them may contain placeholders with several possible values.
+The texts in these records may contain placeholders with several possible values.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ class XacroCall:
 
 @dataclass(frozen=True, slots=True)
 class Inclusion:
-    """The inclusion of a launch file by another one.
+    """The inclusion of a launch file by another launch file.
 
     Attributes:
         path: the path of the included file.

@@ -44,7 +44,7 @@ class Scope:
     entries: dict[str, list[tuple[ast.expr, ast.expr]]] = field(default_factory=dict)
 
     def find(self, name: str) -> tuple[Scope, list[Binding]] | None:
-        """Return the innermost scope that binds a name, with the bindings, or None if none does."""
+        """Return the innermost scope that binds a name, with the bindings, or None."""
         scope: Scope | None = self
         while scope is not None:
             if name in scope.names:

@@ -45,7 +45,7 @@ class DisplayHost(Protocol):
     time: TimeControl
 
     def robot_changed(self, gone: set[str]) -> None:
-        """Handle a change of a display's robot.
+        """Handle a new robot of a display.
 
         `gone` contains the frames that only the previous robot had.
         """
@@ -63,7 +63,7 @@ _LEVEL_RANK: dict[StatusLevel, int] = {"ok": 0, "warn": 1, "error": 2}
 def worst_level(rows: list[StatusRow]) -> StatusLevel:
     """Return the most severe level of status rows.
 
-    It is the level of the display's own row.
+    The display's own row has this level.
     """
     return max((row.level for row in rows), key=_LEVEL_RANK.__getitem__, default="ok")
 
@@ -168,7 +168,7 @@ class ViewerDisplay:
         self.publish_properties()
 
     def property_id(self, path: Path) -> str:
-        """Return the ID of one of the display's properties."""
+        """Return the ID of the property at a path."""
         return self.properties.identity(path)
 
     def publish_properties(self) -> None:
@@ -202,7 +202,7 @@ class ViewerDisplay:
         """Update derived state after values were restored and `changed` was called for each of them."""
 
     def enabled_changed(self) -> None:
-        """Handle a change of the check box of the display or of a group that contains it."""
+        """Handle a change to the check box of the display or of a group that contains the display."""
         self.frames_changed()
 
     def arranged(self, displays: Sequence[ViewerDisplay]) -> None:
@@ -213,7 +213,7 @@ class ViewerDisplay:
         """
 
     def frames_changed(self) -> None:
-        """Handle a change of the frames, of their known poses, or of the Fixed Frame."""
+        """Handle a change to the frames, their known poses, or the Fixed Frame."""
 
     def receive(self, message: Any) -> None:
         """Handle a page's message for this display, such as a mesh status or a marker action."""

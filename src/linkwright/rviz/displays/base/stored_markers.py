@@ -37,7 +37,7 @@ class StoredMarkersDisplay(TopicDisplay):
         return [self._store]
 
     def receive(self, message: Any) -> None:
-        """Show the error of a marker's mesh or texture that a page reported in the status."""
+        """Show an error in the status if a page cannot load a mesh or texture of a marker."""
         if isinstance(message, MeshStatus) and message.error is not None and message.link in self._store:
             self.set_status_row(
                 message.link,

@@ -189,7 +189,7 @@ class TopicDisplay(DataDisplay, ABC):
         return self.MESSAGE, self.properties.text(TOPIC).strip(), qos_of(self.properties)
 
     def most_waiting(self) -> int:
-        """Return the maximum number of messages that wait for their transforms."""
+        """Return the maximum number of messages that are queued until their transforms are available."""
         return int(self.properties.number(TOPIC, FILTER_SIZE))
 
     # --- methods for subclasses --------------------------------------------------------------------------------
@@ -212,12 +212,12 @@ class TopicDisplay(DataDisplay, ABC):
         self._unsubscribe()
 
     def changed(self, path: Path) -> None:
-        """Subscribe again after the topic or its QoS has changed."""
+        """Subscribe again if the topic or its QoS has changed."""
         if path[0] == TOPIC and path != (TOPIC, FILTER_SIZE):
             self._restart()
 
     def enabled_changed(self) -> None:
-        """Subscribe or unsubscribe."""
+        """Subscribe if the display is enabled, otherwise unsubscribe."""
         self._restart()
 
     def frames_changed(self) -> None:
@@ -502,7 +502,7 @@ class _ShownContent:
 
 
 class RecentDisplay(TopicDisplay):
-    """A display of the most recent messages, each at its frame's pose at its time.
+    """A display of the most recent messages, each at the pose that its frame had at its stamp.
 
     A subclass sets `LENGTH` to the property with the number of messages, where 0 means all messages. Without
     `LENGTH` the display shows one message.

@@ -174,7 +174,7 @@ def _child(node: _Node, child: int) -> _Node:
 
 
 class _Leaves:
-    """Collects the leaves of an octree while the tree is read."""
+    """The leaves of an octree, collected while the tree is read."""
 
     def __init__(self) -> None:
         self._nodes: list[_Node] = []

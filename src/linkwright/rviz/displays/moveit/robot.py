@@ -1,4 +1,4 @@
-"""Draws a robot as markers in a state from a message, without tf."""
+"""Draws a robot as markers in a state from a message, without transforms from tf."""
 
 from __future__ import annotations
 

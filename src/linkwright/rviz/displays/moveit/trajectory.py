@@ -111,7 +111,7 @@ def display_seconds(text: str, duration: float) -> float:
 
 
 class MotionPlayer:
-    """Plays motions by showing their states one after the other.
+    """A player of motions that shows their states one after the other.
 
     Args:
         display: the display that has the properties.

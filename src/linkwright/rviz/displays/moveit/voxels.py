@@ -107,7 +107,7 @@ def _visible_mask(cells: Cells) -> NDArray[np.bool_]:
 
 _BITS = 20
 _NEIGHBOUR_OFFSETS = (1, -1, 1 << _BITS, -(1 << _BITS), 1 << 2 * _BITS, -(1 << 2 * _BITS))
-"""The differences between the codes of the six neighbours of a cell and its own code."""
+"""The differences between the codes of a cell's six neighbours and the code of the cell."""
 
 
 def _cell_codes(indices: NDArray[np.int64]) -> NDArray[np.int64]:

@@ -19,7 +19,10 @@ from linkwright.xmltree.reader import read_bytes
 _XACRO_SUFFIX = ".xacro"
 _DEFAULT_NAME = "world.sdf"
 _MAX_STEM_LENGTH = 56
-"""The limit in characters, of which a file system may count four bytes each."""
+"""The maximum length of the file name without suffix, in characters.
+
+File systems limit the length in bytes, and a character may occupy four of them.
+"""
 _MAX_UNDO_STEPS = 200
 """The maximum number of undo steps. Older steps are dropped."""
 _PROGRAM_FOLDER = Path(__file__).parents[3]
@@ -92,7 +95,7 @@ class EditedWorld:
 
     @property
     def unsaved(self) -> bool:
-        """Whether the text differs from the file."""
+        """Whether the text has changed since it was read or saved."""
         return self.world.text != self._saved_text
 
     @property
@@ -119,7 +122,7 @@ class EditedWorld:
             return False  # If the file cannot be read, the text in memory is the only copy.
 
     def reserve(self, names: Iterable[str]) -> None:
-        """Prevent new models and lights from taking these names.
+        """Prevent new models and lights from using these names.
 
         Names that the world already uses are not reserved.
         """
@@ -151,7 +154,7 @@ class EditedWorld:
             self.world = self.world.with_text(self._redo_texts.pop())
 
     def save(self, name: str | None) -> None:
-        """Save the world.
+        """Save the world to its file, or to a new file.
 
         Args:
             name: the path of another file: absolute, in ``~``, or relative to the world's folder; None for the file of

@@ -35,7 +35,7 @@ from linkwright.sdf.resources import Missing, ResourceFinder, model_file
 
 
 def world_entities(world: WorldText) -> list[WorldEntity]:
-    """Return the models and lights of a world in the form in which pages receive them."""
+    """Return the models and lights of a world as messages for pages."""
     return [_to_message(entity) for entity in world.entities.values()]
 
 
@@ -90,7 +90,7 @@ def apply_edit(world: WorldText, message: PageMessage) -> WorldText:
         case UngroupEntity(name):
             return ungroup(world, name)[0]
         case _:
-            raise TypeError(f"{type(message).__name__} changes no world")
+            raise TypeError(f"{type(message).__name__} is not an edit of a world")
 
 
 def _to_change(change: EntityChange) -> Change:

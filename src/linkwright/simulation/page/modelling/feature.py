@@ -53,7 +53,10 @@ class ModellingFeature(PageFeature):
         self._worker: asyncio.Task[None] | None = None
 
     def opening(self) -> list[ServerMessage]:
-        """Return the initial message for a new page, with the entities of an editable world."""
+        """Return the state of world editing for a new page.
+
+        The method also begins to watch the graph for a simulated world.
+        """
         if not self._is_watching:
             self._is_watching = True
             self.context.graph_changes.watch(self._update_availability)

@@ -42,7 +42,7 @@ class SensorPlugin(SimulatedPlugin[P], ABC, Generic[P]):
 
     @abstractmethod
     def make_sensor(self) -> None:
-        """Create the sensor model with which `measure` measures."""
+        """Create the sensor model that `measure` uses."""
 
     @abstractmethod
     def make_topics(self) -> None:
@@ -55,7 +55,7 @@ class SensorPlugin(SimulatedPlugin[P], ABC, Generic[P]):
     def is_needed(self) -> bool:
         """Return whether to measure.
 
-        By default, this is whether a topic has a subscription.
+        By default, the sensor measures while a topic has a subscription.
         """
         return self.is_wanted()
 
@@ -76,7 +76,7 @@ class SensorPlugin(SimulatedPlugin[P], ABC, Generic[P]):
     def classic_frame(self) -> str:
         """Return the frame of Gazebo classic's messages.
 
-        This is the parameter ``frame_name``, or the link if the parameter is empty.
+        The frame is the parameter ``frame_name``, or the link if the parameter is empty.
         """
         frame: str = getattr(self.parameters, "frame_name", "")
         return frame.lstrip("/") or self.sensor.link.rpartition(SEPARATOR)[2]

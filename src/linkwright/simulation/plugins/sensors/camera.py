@@ -130,7 +130,7 @@ class CameraParameters(FrameName):
 class ClassicCamera(CameraPlugin[CameraParameters]):
     """The substitute for ``libgazebo_ros_camera.so`` and the cameras of ROS 1.
 
-    It serves sensors of the types camera, depth and multicamera.
+    The plugin serves sensors of the types camera, depth and multicamera.
     """
 
     PARAMETERS = CameraParameters
@@ -188,7 +188,10 @@ class ClassicCamera(CameraPlugin[CameraParameters]):
 
     @property
     def rate(self) -> float:
-        """The number of images per simulated second that the sensor declares, or else the plugin."""
+        """The number of images per simulated second.
+
+        The rate of the sensor takes precedence over the rate of the plugin.
+        """
         return self.sensor.sensor.update_rate or self.parameters.update_rate
 
     def is_wanted(self) -> bool:

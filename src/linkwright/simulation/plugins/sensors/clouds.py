@@ -70,7 +70,7 @@ def fill_lidar_cloud(
 def fill_camera_cloud(message: Any, points: Points, colour: Points, *, swap_red_blue: bool = False) -> None:
     """Fill a PointCloud2 with the points of an image and their colours.
 
-    The points have shape (height, width, 3).
+    `points` are in m, and `colour` contains RGB bytes, both of shape (height, width, 3).
 
     With `swap_red_blue`, red and blue are exchanged as in Gazebo classic.
 

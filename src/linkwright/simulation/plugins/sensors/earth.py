@@ -43,7 +43,7 @@ class _Receiver(SensorPlugin[P], Generic[P]):
 class ClassicGps(_Receiver[FrameName]):
     """The substitute for ``libgazebo_ros_gps_sensor.so``.
 
-    It publishes the geographic position, and the velocity in m/s towards east, north and up.
+    The plugin publishes the geographic position, and the velocity in m/s towards east, north and up.
     """
 
     PARAMETERS = FrameName
@@ -79,7 +79,10 @@ class GzNavsat(_Receiver[NoParameters], OneTopic[NoParameters]):
 
 
 class GzMagnetometer(OneTopic[NoParameters]):
-    """The sensor ``magnetometer`` of gz, which publishes in tesla as ros_gz_bridge does."""
+    """The sensor ``magnetometer`` of gz.
+
+    The sensor publishes the magnetic field in tesla, as ros_gz_bridge does.
+    """
 
     def make_sensor(self) -> None:
         """Create the magnetometer for the magnetic field of the world."""

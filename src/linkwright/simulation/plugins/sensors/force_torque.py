@@ -45,7 +45,7 @@ class _ForceTorque(OneTopic[P], Generic[P]):
 class ClassicForceTorque(_ForceTorque[ForceTorqueParameters]):
     """The substitute for ``libgazebo_ros_ft_sensor.so``.
 
-    It publishes the wrench that the child link exerts on its parent, in the child's frame.
+    The plugin publishes the wrench that the child link exerts on its parent, in the child's frame.
     """
 
     PARAMETERS = ForceTorqueParameters

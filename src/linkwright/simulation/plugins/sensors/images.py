@@ -24,7 +24,10 @@ ENCODINGS = {
 }  # fmt: skip
 """The ROS encodings, by the image formats of SDF."""
 DEPTH_FORMATS = frozenset({"R_FLOAT16", "R_FLOAT32", "FLOAT32"})
-"""The formats that depth cameras in files for gz declare; they do not determine the encoding of colours."""
+"""The formats that depth cameras in files for gz declare.
+
+They do not determine the encoding of colours.
+"""
 DEFAULT_ENCODING = "bgr8"
 """The encoding of images whose format is not in `ENCODINGS`."""
 _GREY_WEIGHTS = np.array([0.299, 0.587, 0.114], np.float32)
@@ -47,7 +50,10 @@ class PixelNoise:
         self._negative_noise: Pixels = np.empty(0, np.uint8)
 
     def apply(self, colour: Pixels) -> Pixels:
-        """Return RGB colours with noise, or the colours themselves if there is no noise."""
+        """Return RGB colours with noise, or the colours themselves if there is no noise.
+
+        The colours are bytes of shape (height, width, 3).
+        """
         noise = self._noise
         if noise.type == "none" or not (noise.stddev > 0 or noise.mean):
             return colour
@@ -95,7 +101,7 @@ def fill_depth(message: Any, depth: Pixels, nearest: float, farthest: float) -> 
 
 
 def clip_depth(depth: Pixels, nearest: float, farthest: float) -> Pixels:
-    """Return depths, with -inf up to `nearest` and inf from `farthest` on."""
+    """Return depths in m, with -inf up to `nearest` and inf from `farthest` on."""
     result: Pixels = np.array(depth, dtype=np.float32)
     np.copyto(result, np.inf, where=depth >= farthest)
     np.copyto(result, -np.inf, where=depth <= nearest)

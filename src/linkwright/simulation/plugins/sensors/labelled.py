@@ -172,8 +172,8 @@ class GzSegmentation(_LabellingCamera):
 class GzBoxes(_LabellingCamera):
     """The sensor ``boundingbox_camera`` of gz.
 
-    It publishes bounding boxes of the visible parts of labelled models, and an image with these boxes. Unlike in gz,
-    boxes of the types ``full_2d`` and ``3d`` also cover only the visible parts.
+    The sensor publishes bounding boxes of the visible parts of labelled models, and an image with these boxes. Unlike
+    in gz, boxes of the types ``full_2d`` and ``3d`` also cover only the visible parts.
     """
 
     def make_topics(self) -> None:

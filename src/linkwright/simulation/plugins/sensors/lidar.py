@@ -210,7 +210,10 @@ class OldLaser(_OneLidar[LaserParameters]):
 
     @property
     def rate(self) -> float:
-        """The number of scans per simulated second that the sensor declares, or else the plugin."""
+        """The number of scans per simulated second.
+
+        The rate of the sensor takes precedence over the rate of the plugin.
+        """
         return self.sensor.sensor.update_rate or self.parameters.update_rate
 
     def publish(self, scan: Scan) -> None:
@@ -266,7 +269,7 @@ class VelodyneParameters(LaserParameters):
 class Velodyne(_OneLidar[VelodyneParameters]):
     """The substitute for ``libgazebo_ros_velodyne_laser.so`` of velodyne_simulator.
 
-    Points have an intensity, a ring and a time. They are ordered by firing, in which all lasers measure at once; in an
+    Points have an intensity, a ring and a time. They are ordered by firing; all lasers measure in each firing. In an
     organized cloud, each firing is a row.
     """
 

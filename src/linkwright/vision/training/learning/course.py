@@ -196,7 +196,7 @@ class Course:
         return evaluate(self.names, *self._detect_validation(self.averaged))
 
     def best_threshold(self, network: Network) -> float:
-        """Return the score threshold at which F1 on the validation split is greatest."""
+        """Return the score threshold at which F1 on the validation split is highest."""
         return best_f1_threshold(self.names, *self._detect_validation(network))
 
     @torch.no_grad()
@@ -245,7 +245,7 @@ class Course:
         temporary.replace(path)
 
     def begin_with(self, path: Path) -> None:
-        """Start from the weights of an ONNX file; see `load_weights`."""
+        """Start from the weights of an ONNX file. See `load_weights`."""
         images, size = self._training.images[:_STATISTICS_IMAGES], self.options.batch
         batches = (_tensor(images[start : start + size], self._device) for start in range(0, len(images), size))
         load_weights(self.network, self.names, path, batches)

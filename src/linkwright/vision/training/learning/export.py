@@ -55,9 +55,9 @@ def to_onnx(
 
     Args:
         network: the network to export.
-        names: the names of its classes.
-        width: the width of its images, a multiple of 32.
-        height: the height of its images, a multiple of 32.
+        names: the names of the network's classes.
+        width: the width of the input images in pixels, a multiple of 32.
+        height: the height of the input images in pixels, a multiple of 32.
         facts: further metadata for the file.
         threshold: the score of the network that becomes 0.5 in the file; the order of the scores stays the same.
     """

@@ -27,8 +27,8 @@ class Assignment:
         boxes: shape (batch, cells, 4), pixels; only meaningful for cells with an object.
         scores: shape (batch, cells, classes), the target scores between 0 and 1.
         is_assigned: shape (batch, cells), whether an object is assigned to the cell.
-        is_ignored: shape (batch, cells), whether the cell counts for no score, because it is inside an ignored object
-            only.
+        is_ignored: shape (batch, cells), whether the cell is left out of the score loss, because it is inside an
+            ignored object and not assigned.
     """
 
     boxes: Tensor

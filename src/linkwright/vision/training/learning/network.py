@@ -76,7 +76,7 @@ class HalfStage(nn.Module):
 
 
 class Pooling(nn.Module):
-    """Spatial pyramid pooling (SPPF): the joined results of zero to three chained poolings."""
+    """Spatial pyramid pooling (SPPF), which concatenates zero to three chained poolings."""
 
     def __init__(self, channels: int) -> None:
         super().__init__()

@@ -77,10 +77,10 @@ class Optimizer:
 
 
 def orthogonalize(gradient: Tensor) -> Tensor:
-    """Return a matrix near to a kernel, with singular values of about 1 (Newton-Schulz).
+    """Return a matrix near a gradient, with all singular values about 1 (Newton-Schulz).
 
     Args:
-        gradient: shape (outputs, inputs, height, width); its rows are the outputs.
+        gradient: the gradient of a kernel, shape (outputs, inputs, height, width). Each row of the matrix is an output.
 
     Returns:
         The matrix, in the shape of `gradient`.

@@ -1,4 +1,4 @@
-"""Parses incoming RTPS messages and builds outgoing ones (DDSI-RTPS 2.5, 9.4).
+"""Parse incoming RTPS messages and build outgoing ones (DDSI-RTPS 2.5, 9.4).
 
 Only the submessages that Linkwright uses are supported.
 """
@@ -81,7 +81,7 @@ class Heartbeat:
 class Gap:
     """GAP: some samples are not for a reader, or are no longer available.
 
-    These are the samples from `start` to before `base`, and the samples in `other_numbers`.
+    These are the samples from `start` to before `base`, and the samples in `others`.
     """
 
     source: bytes

@@ -89,7 +89,7 @@ class Network:
     """
 
     SOCKET = socket.socket
-    """The class of its socket."""
+    """The class of the socket."""
 
     def __init__(self, settings: Settings) -> None:
         self._network_addresses = addresses_from_settings(settings)

@@ -198,9 +198,9 @@ class RtpsParticipant:
             return list(local.writer.readers)
 
     def matched_writers(self, local: LocalReader) -> dict[bytes, float | None]:
-        """Return the writers that match one of our readers, by GUID, and when each sent a heartbeat.
+        """Return the GUIDs of the writers that match one of our readers, each with a time.
 
-        The value is the time of the first heartbeat, in seconds of the steady clock; None if none has arrived yet.
+        The time is when the writer's first heartbeat arrived, in seconds of the steady clock; None if none has arrived.
         """
         with self._lock:
             return {guid: local.reader.heard_at(guid) for guid in local.reader.writers}

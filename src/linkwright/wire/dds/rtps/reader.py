@@ -168,7 +168,7 @@ class Reader:
         return [self._acknowledge(heartbeat.writer, writer_state)]
 
     def on_gap(self, gap: Gap) -> None:
-        """Handle a GAP. The samples in it count as received.
+        """Handle a GAP by counting its samples as received.
 
         Such samples are not for this reader, or the writer no longer has them.
         """

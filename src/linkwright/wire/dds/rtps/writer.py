@@ -1,4 +1,4 @@
-"""RTPS writers, which ensure that every reader receives every sample.
+"""RTPS writers that resend samples until the readers have acknowledged them.
 
 Source: DDSI-RTPS 2.5, 8.4.9.
 """

@@ -19,7 +19,7 @@ DECLARED = {
     "use_composition": ("True", "Whether the servers are composed in a container"),
     "slam": ("False", "Whether to build a map instead of localizing in one"),
     "map": ("", "The path of the map's YAML file"),
-    "use_localization": ("True", "Whether to run mapping or localization"),
+    "use_localization": ("True", "Whether to run localization, or mapping if slam is true"),
     "params_file": (str(HERE / "params" / "nav2_params.yaml"), "The path of the parameter file"),
     "graph": ("", "Not used"),
     "keepout_mask": ("", "Not used"),

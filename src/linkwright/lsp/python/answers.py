@@ -1,0 +1,129 @@
+"""Combines the answers of several language servers to one request."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+from linkwright.lsp.python.open_texts import OpenText
+
+OWN = "linkwright"
+"""The name of Linkwright's own server, and the source of its findings."""
+
+COMPLETION = "textDocument/completion"
+CODE_ACTION = "textDocument/codeAction"
+RENAME = "textDocument/rename"
+
+CAPABILITIES: Mapping[str, str] = {
+    COMPLETION: "completionProvider",
+    CODE_ACTION: "codeActionProvider",
+    RENAME: "renameProvider",
+    "textDocument/prepareRename": "renameProvider",
+    "textDocument/hover": "hoverProvider",
+    "textDocument/definition": "definitionProvider",
+    "textDocument/references": "referencesProvider",
+    "textDocument/documentHighlight": "documentHighlightProvider",
+    "textDocument/documentSymbol": "documentSymbolProvider",
+    "textDocument/formatting": "documentFormattingProvider",
+    "textDocument/rangeFormatting": "documentRangeFormattingProvider",
+}
+"""The requests that several servers are asked, with the capability of the servers that answer."""
+
+_SERVER = "linkwrightServer"
+_DATA = "data"
+
+
+def is_enough(method: str, answer: Any) -> bool:
+    """Return whether the answer of Linkwright's own server makes the others' unnecessary."""
+    return method not in (COMPLETION, CODE_ACTION) and not _is_empty(answer)
+
+
+def combined(method: str, answers: Sequence[tuple[str, Any]], text: OpenText, parameters: Mapping[str, Any]) -> Any:
+    """Return the answer to a request.
+
+    Completions and code actions are those of all servers. Other answers are those of the first server that has one.
+
+    Args:
+        method: the method of the request.
+        answers: the name of each server and its answer, Linkwright's own server first.
+        text: the text.
+        parameters: the parameters of the request.
+    """
+    found = [(server, answer) for server, answer in answers if not _is_empty(answer)]
+    if method == COMPLETION:
+        return _completions([answer for _, answer in found], text, parameters)
+    if method == CODE_ACTION:
+        return [action for server, answer in found for action in _actions(server, answer)]
+    return found[0][1] if found else next((answer for _, answer in answers), None)
+
+
+def server_of_action(action: Mapping[str, Any]) -> tuple[str, dict[str, Any]] | None:
+    """Return the server of a code action and the server's own action, or None for Linkwright's own server."""
+    data = action.get(_DATA)
+    if not isinstance(data, dict) or _SERVER not in data:
+        return None
+    own = {name: value for name, value in action.items() if name != _DATA}
+    return data[_SERVER], own if data[_DATA] is None else {**own, _DATA: data[_DATA]}
+
+
+def marked_action(server: str, action: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a code action that names its server."""
+    return {**action, _DATA: {_SERVER: server, _DATA: action.get(_DATA)}}
+
+
+def _actions(server: str, actions: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
+    """Return the code actions of a server; those of other servers are marked, and their commands left out."""
+    if server == OWN:
+        return list(actions)
+    return [marked_action(server, action) for action in actions if action.get("command") is None]
+
+
+def _completions(found: Sequence[Any], text: OpenText, parameters: Mapping[str, Any]) -> Any:
+    """Return the items of all servers, or of the first that replaces more or less than the word at the cursor.
+
+    Editors take the range of the first item for that of all items.
+    """
+    if len(found) < 2:
+        return found[0] if found else None
+    lists = [answer if isinstance(answer, dict) else {"isIncomplete": False, "items": answer} for answer in found]
+    first, *others = lists
+    place = _edited_range(first)
+    if place is not None and text.written(place) != text.word_before(parameters["position"]):
+        return first
+    names = {_plain(item["label"]) for item in first["items"]}
+    items = list(map(_with_defaults(first), first["items"]))
+    for each in others:
+        items += [item for item in map(_with_defaults(each), each["items"]) if _plain(item["label"]) not in names]
+    return {"isIncomplete": any(each.get("isIncomplete") for each in lists), "items": items}
+
+
+def _edited_range(answer: Mapping[str, Any]) -> Mapping[str, Any] | None:
+    """Return the range that the items of a list replace, or None for the word at the cursor."""
+    place = answer.get("itemDefaults", {}).get("editRange") or answer["items"][0].get("textEdit")
+    if place is None:
+        return None
+    found: Mapping[str, Any] = place.get("range") or place.get("insert") or place
+    return found
+
+
+def _with_defaults(answer: Mapping[str, Any]) -> Callable[[Mapping[str, Any]], dict[str, Any]]:
+    """Return a function that adds the defaults of a list to an item."""
+    defaults = dict(answer.get("itemDefaults", {}))
+    place = defaults.pop("editRange", None)
+
+    def completed(item: Mapping[str, Any]) -> dict[str, Any]:
+        result = {**defaults, **item}
+        if place is not None and "textEdit" not in item:
+            range_ = {"range": place} if "start" in place else place
+            result["textEdit"] = {**range_, "newText": item.get("textEditText", item["label"])}
+        return result
+
+    return completed
+
+
+def _plain(label: str) -> str:
+    return label.rstrip("=(")
+
+
+def _is_empty(answer: Any) -> bool:
+    return answer is None or answer == [] or (isinstance(answer, dict) and answer.get("items") == [])

@@ -1,0 +1,127 @@
+"""The Python files that an editor has open: their texts, and the findings of each server about them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+from lsprotocol import types
+
+from linkwright.lsp.positions import TextPositions
+
+Finding = dict[str, Any]
+"""A diagnostic of the protocol."""
+
+
+class OpenText:
+    """A Python file that an editor has open.
+
+    Servers publish their findings at different times, but an editor shows only those that were published last. So the
+    findings of each server are kept, and they move with the text until the server has checked it again.
+
+    Args:
+        uri: the URI of the file.
+        text: the text.
+        version: the version of the text.
+        encoding: the encoding whose code units positions count.
+
+    Attributes:
+        uri: the URI of the file.
+        version: the version of the text, as the editor counts.
+    """
+
+    def __init__(self, uri: str, text: str, version: int, encoding: str) -> None:
+        self.uri = uri
+        self.version = version
+        self._encoding = encoding
+        self._positions = TextPositions(text, encoding)
+        self._findings: dict[str, list[Finding]] = {}
+
+    @property
+    def text(self) -> str:
+        """The text, with the changes that are not saved."""
+        return self._positions.text
+
+    def change(self, version: int, changes: Iterable[Mapping[str, Any]]) -> None:
+        """Apply changes of the editor, and move the findings with the text.
+
+        Args:
+            version: the version of the new text.
+            changes: the content changes of the protocol, each for the text after the previous one.
+        """
+        findings = [finding for own in self._findings.values() for finding in own]
+        places = [offsets(self._positions, finding["range"]) for finding in findings]
+        for change in changes:
+            before, place = self.text, change.get("range")
+            if place is None:
+                text = change["text"]
+            else:
+                start, end = offsets(self._positions, place)
+                text = before[:start] + change["text"] + before[end:]
+            self._positions = TextPositions(text, self._encoding)
+            moved = _Replacement(before, text).moved
+            places = [moved(*each) for each in places]
+        self.version = version
+        for finding, (start, end) in zip(findings, places, strict=True):
+            finding["range"] = as_range(self._positions, start, end)
+
+    def set_findings(self, server: str, findings: Sequence[Finding]) -> None:
+        """Replace the findings of a server about the present text."""
+        self._findings[server] = [dict(finding) for finding in findings]
+
+    def findings(self) -> list[Finding]:
+        """Return the findings of all servers."""
+        return [finding for findings in self._findings.values() for finding in findings]
+
+    def findings_of(self, server: str) -> list[Finding]:
+        """Return the findings of one server."""
+        return self._findings.get(server, [])
+
+    def word_before(self, position: Mapping[str, int]) -> str:
+        """Return the part of a name that is written before a position."""
+        offset = self._positions.offset(_position(position))
+        start = offset
+        while start > 0 and (self.text[start - 1].isalnum() or self.text[start - 1] == "_"):
+            start -= 1
+        return self.text[start:offset]
+
+    def written(self, place: Mapping[str, Any]) -> str:
+        """Return the text of a range."""
+        start, end = offsets(self._positions, place)
+        return self.text[start:end]
+
+
+class _Replacement:
+    """The smallest range of a text that another text replaces."""
+
+    def __init__(self, before: str, after: str) -> None:
+        shortest = min(len(before), len(after))
+        start = next((at for at in range(shortest) if before[at] != after[at]), shortest)
+        rest = shortest - start
+        kept = next((at for at in range(rest) if before[-1 - at] != after[-1 - at]), rest)
+        self._start, self._end = start, len(before) - kept
+        self._growth = len(after) - len(before)
+
+    def moved(self, start: int, end: int) -> tuple[int, int]:
+        """Return the place of a range in the new text. Text that is inserted at one of its ends stays outside."""
+        first = start if start < self._start else self._after(start)
+        last = end if end <= self._start else self._after(end)
+        return first, max(first, last)
+
+    def _after(self, offset: int) -> int:
+        return offset + self._growth if offset >= self._end else self._start
+
+
+def offsets(positions: TextPositions, place: Mapping[str, Any]) -> tuple[int, int]:
+    """Return the character offsets of a range of the protocol."""
+    return positions.offset(_position(place["start"])), positions.offset(_position(place["end"]))
+
+
+def as_range(positions: TextPositions, start: int, end: int) -> dict[str, Any]:
+    """Return the range of the protocol between two character offsets."""
+    places = {"start": positions.position(start), "end": positions.position(end)}
+    return {name: {"line": place.line, "character": place.character} for name, place in places.items()}
+
+
+def _position(place: Mapping[str, int]) -> types.Position:
+    return types.Position(place["line"], place["character"])

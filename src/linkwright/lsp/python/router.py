@@ -1,0 +1,451 @@
+"""One language server out of several: Linkwright's own, and those for Python files."""
+
+from __future__ import annotations
+
+import logging
+import threading
+import time
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field
+from functools import partial
+from pathlib import Path
+from queue import Empty, SimpleQueue
+from typing import Any
+
+from linkwright.diagnostics import phrase
+from linkwright.diagnostics.translation import localized
+from linkwright.lsp.python.answers import (
+    CAPABILITIES,
+    CODE_ACTION,
+    OWN,
+    RENAME,
+    combined,
+    is_enough,
+    marked_action,
+    server_of_action,
+)
+from linkwright.lsp.python.open_texts import OpenText
+from linkwright.lsp.python.programs import Program, program_environment
+from linkwright.lsp.python.servers import INITIALIZE_ID, Message, Peer, PythonServer
+from linkwright.lsp.python.workspace_stubs import WorkspaceStubs
+from linkwright.lsp.server import path_of
+
+_log = logging.getLogger(__name__)
+_PATIENCE_SECONDS = 5.0
+"""The time that other servers have for an answer after Linkwright's own server has answered."""
+_MAX_STARTS = 3
+_METHOD_NOT_FOUND = -32601
+_PUBLISH = "textDocument/publishDiagnostics"
+_TEXT_NOTIFICATIONS = ("textDocument/didChange", "textDocument/didSave", "textDocument/didClose")
+_FILES_CHANGED = "workspace/didChangeWatchedFiles"
+_CHANGED = 2
+_WARNING = 2
+_INTERFACE_FILES = (".msg", ".srv", ".action", ".idl", "package.xml")
+_FORWARDED = ("window/showMessage",)
+_CLIENT_FEATURES = (
+    "completion",
+    "hover",
+    "definition",
+    "references",
+    "rename",
+    "codeAction",
+    "formatting",
+    "rangeFormatting",
+    "documentSymbol",
+    "documentHighlight",
+    "publishDiagnostics",
+)
+
+
+@dataclass(slots=True)
+class _Question:
+    """A request of the editor that several servers answer."""
+
+    method: str
+    parameters: Message
+    text: OpenText
+    answers: dict[str, Message] = field(default_factory=dict)
+    awaited: list[str] = field(default_factory=list)
+    deadline: float | None = None
+
+
+class Router:
+    """Forwards the messages of an editor to Linkwright's own server, and those about Python files to others, too.
+
+    The other servers start when the editor opens the first Python file. All work is done by one thread, in the order
+    of `post`.
+
+    Args:
+        editor: the editor.
+        own: Linkwright's own server.
+        programs: the other servers.
+    """
+
+    def __init__(self, editor: Peer, own: Peer, programs: Sequence[Program]) -> None:
+        self._editor = editor
+        self._own = own
+        self._programs = {program.name: program for program in programs}
+        self._servers: dict[str, PythonServer] = {}
+        self._starts: dict[str, int] = {}
+        self._initialize: Message = {}
+        self._initialize_id: Any = None
+        self._encoding = "utf-16"
+        self._environment: dict[str, str] | None = None
+        self._stubs: WorkspaceStubs | None = None
+        self._search = ThreadPoolExecutor(1, thread_name_prefix="modules")
+        self._held: list[tuple[str, Message]] | None = None
+        self._texts: dict[str, OpenText] = {}
+        self._questions: dict[Any, _Question] = {}
+        self._resolving: dict[Any, str] = {}
+        self._events: SimpleQueue[Callable[[], object] | None] = SimpleQueue()
+        self._thread = threading.Thread(target=self._run, daemon=True)
+        self._thread.start()
+
+    def from_editor(self, message: Message | None) -> None:
+        """Receive a message of the editor; None if the editor has closed the connection."""
+        self._events.put(self._own.close if message is None else partial(self._on_editor, message))
+
+    def from_own(self, message: Message | None) -> None:
+        """Receive a message of Linkwright's own server; None when it has ended."""
+        if message is not None:
+            self._events.put(partial(self._on_own, message))
+
+    def close(self) -> None:
+        """End the other servers."""
+        self._events.put(None)
+        self._thread.join()
+        self._search.shutdown(cancel_futures=True)
+        for server in self._servers.values():
+            server.close()
+        if self._stubs is not None:
+            self._stubs.close()
+
+    def _run(self) -> None:
+        while True:
+            deadlines = [question.deadline for question in self._questions.values() if question.deadline is not None]
+            wait = max(0.0, min(deadlines) - time.monotonic()) if deadlines else None
+            try:
+                event = self._events.get(timeout=wait)
+            except Empty:
+                self._answer_late()
+                continue
+            if event is None:
+                return
+            self._attempt(event)
+
+    def _attempt(self, work: Callable[[], object]) -> None:
+        try:
+            work()
+        except Exception:  # noqa: BLE001 - the editor continues to work, and the log has the reason
+            _log.exception("A message about a Python file failed")
+
+    # --- from the editor --------------------------------------------------------------------------------------
+
+    def _on_editor(self, message: Message) -> None:
+        method, parameters = message.get("method"), message.get("params") or {}
+        if method == "codeAction/resolve":
+            self._resolve(message)
+            return
+        text = self._texts.get(_uri(parameters))
+        if "id" in message and method in CAPABILITIES and text is not None:
+            self._ask(message, text)
+            return
+        if method == "initialize":
+            self._initialize, self._initialize_id = parameters, message["id"]
+        self._own.send(message)
+        if method == "exit":
+            self._own.close()
+        elif method == "textDocument/didOpen":
+            self._opened(parameters["textDocument"])
+        elif method in _TEXT_NOTIFICATIONS and text is not None:
+            self._text_changed(message, text)
+        elif method == "$/cancelRequest":
+            for name in self._questions[parameters["id"]].awaited if parameters["id"] in self._questions else ():
+                self._send(name, message)
+        elif method == _FILES_CHANGED:
+            self._send_all(message)
+            if any(change["uri"].endswith(_INTERFACE_FILES) for change in parameters["changes"]):
+                self._renew_stubs()
+        if method == "textDocument/didSave" and _uri(parameters).endswith(_INTERFACE_FILES):
+            self._renew_stubs()
+
+    def _opened(self, item: Message) -> None:
+        if item.get("languageId") != "python":
+            return
+        text = OpenText(item["uri"], item["text"], item["version"], self._encoding)
+        self._texts[text.uri] = text
+        if self._environment is None and self._held is None:
+            self._prepare()
+        for server in self._servers.values():
+            server.send(_opening(text))
+
+    def _text_changed(self, message: Message, text: OpenText) -> None:
+        self._send_all(message)
+        if message["method"] == "textDocument/didChange":
+            text.change(message["params"]["textDocument"]["version"], message["params"]["contentChanges"])
+        elif message["method"] == "textDocument/didClose":
+            del self._texts[text.uri]
+            self._editor.send(_publication({"uri": text.uri, "diagnostics": text.findings_of(OWN)}))
+
+    def _ask(self, message: Message, text: OpenText) -> None:
+        """Send a request to all servers, and remember to combine their answers."""
+        others = self._servers if self._held is None else self._programs
+        question = _Question(message["method"], message["params"], text, awaited=[OWN, *others])
+        self._questions[message["id"]] = question
+        for name in tuple(question.awaited):
+            self._send(name, _for_server(message, name))
+
+    def _resolve(self, message: Message) -> None:
+        """Send a code action to the server that offered it."""
+        found = server_of_action(message["params"])
+        if found is None or found[0] not in self._servers:
+            self._own.send(message)
+            return
+        name, action = found
+        self._resolving[message["id"]] = name
+        self._send(name, {**message, "params": action})
+
+    # --- from the servers -------------------------------------------------------------------------------------
+
+    def _on_own(self, message: Message) -> None:
+        if "method" not in message and message.get("id") in self._questions:
+            self._answered(OWN, message)
+            return
+        if "method" not in message and message.get("id") == self._initialize_id and "result" in message:
+            self._initialize_id = None
+            self._encoding = message["result"]["capabilities"].get("positionEncoding", self._encoding)
+            message = _with_python(message)
+        if message.get("method") == _PUBLISH and message["params"]["uri"] in self._texts:
+            self._publish(OWN, message["params"])
+            return
+        self._editor.send(message)
+
+    def _on_server(self, server: PythonServer, message: Message | None) -> None:
+        if self._servers.get(server.name) is not server:
+            return
+        if message is None:
+            self._ended(server)
+        elif "method" not in message:
+            if message.get("id") == INITIALIZE_ID:
+                server.initialized(message.get("result", {}).get("capabilities", {}))
+            elif self._resolving.pop(message.get("id"), None) is not None:
+                self._editor.send(_resolved(server.name, message))
+            else:
+                self._answered(server.name, message)
+        elif "id" in message:
+            error = {"code": _METHOD_NOT_FOUND, "message": "not supported"}
+            server.send({"jsonrpc": "2.0", "id": message["id"], "error": error})
+        elif message["method"] == _PUBLISH:
+            self._publish(server.name, message["params"])
+        elif message["method"] in _FORWARDED:
+            self._editor.send(message)
+
+    def _publish(self, name: str, published: Message) -> None:
+        """Publish the findings of all servers about a text, unless a server's findings are outdated."""
+        text = self._texts.get(published["uri"])
+        if text is None or published.get("version") not in (None, text.version):
+            return
+        text.set_findings(name, published["diagnostics"])
+        self._publish_all(text)
+
+    def _publish_all(self, text: OpenText) -> None:
+        parameters = {"uri": text.uri, "version": text.version, "diagnostics": text.findings()}
+        self._editor.send(_publication(parameters))
+
+    def _answered(self, name: str, message: Message) -> None:
+        """Store the answer of a server, and answer the editor once all have answered."""
+        identifier = message.get("id")
+        question = self._questions.get(identifier)
+        if question is None or name not in question.awaited:
+            return
+        question.awaited.remove(name)
+        question.answers[name] = message
+        if name == OWN:
+            question.deadline = time.monotonic() + _PATIENCE_SECONDS
+            if "error" not in message and is_enough(question.method, message.get("result")):
+                question.awaited.clear()
+            if "error" in message and question.method == RENAME:  # a rename that was refused is not tried otherwise
+                question.awaited.clear()
+        if not question.awaited:
+            self._answer(identifier, question)
+
+    def _answer(self, identifier: Any, question: _Question) -> None:
+        del self._questions[identifier]
+        names = [name for name in (OWN, *self._programs) if name in question.answers]
+        answers = [
+            (name, question.answers[name].get("result")) for name in names if "error" not in question.answers[name]
+        ]
+        result = combined(question.method, answers, question.text, question.parameters)
+        own = question.answers.get(OWN, {})
+        if result is None and "error" in own:
+            self._editor.send(own)
+        else:
+            self._editor.send({"jsonrpc": "2.0", "id": identifier, "result": result})
+
+    def _answer_late(self) -> None:
+        """Answer the requests whose time is over, without the servers that are late."""
+        now = time.monotonic()
+        for identifier, question in list(self._questions.items()):
+            if question.deadline is not None and question.deadline <= now:
+                self._answer(identifier, question)
+
+    # --- the other servers ------------------------------------------------------------------------------------
+
+    def _prepare(self) -> None:
+        """Search the workspace for modules and messages, and start the servers then."""
+        self._held = []
+        folders = _folders(self._initialize)
+
+        def search() -> None:
+            stubs = WorkspaceStubs(folders)
+            stubs.update()
+            environment = program_environment(folders, stubs.folder)
+            self._events.put(partial(self._prepared, stubs, environment))
+
+        self._search.submit(self._attempt, search)
+
+    def _prepared(self, stubs: WorkspaceStubs, environment: dict[str, str]) -> None:
+        self._stubs, self._environment = stubs, environment
+        for program in self._programs.values():
+            self._start(program)
+        held, self._held = self._held or [], None
+        for name, message in held:
+            self._send(name, message)
+
+    def _start(self, program: Program) -> None:
+        """Start a server, and open the texts there; after too many starts, tell the user."""
+        assert self._environment is not None, "it was prepared"
+        self._starts[program.name] = starts = self._starts.get(program.name, 0) + 1
+        if starts <= _MAX_STARTS:
+            parameters = _initialization(self._initialize, self._encoding)
+            try:
+                server = PythonServer(program, self._environment, parameters, self._received)
+            except OSError:
+                self._starts[program.name] = _MAX_STARTS
+            else:
+                self._servers[program.name] = server
+                for text in self._texts.values():
+                    server.send(_opening(text))
+                return
+        for identifier in [each for each, question in self._questions.items() if program.name in question.awaited]:
+            self._answered(program.name, {"id": identifier, "result": None})
+        message = phrase("'{program}' does not run, so Python files are edited without it", program=program.name)
+        shown = {"type": _WARNING, "message": localized(message)}
+        self._editor.send({"jsonrpc": "2.0", "method": "window/showMessage", "params": shown})
+
+    def _received(self, server: PythonServer, message: Message | None) -> None:
+        self._events.put(partial(self._on_server, server, message))
+
+    def _ended(self, server: PythonServer) -> None:
+        """Complete what a server that has ended owes, and start it again."""
+        del self._servers[server.name]
+        server.close()
+        for identifier, question in list(self._questions.items()):
+            if server.name in question.awaited:
+                self._answered(server.name, {"id": identifier, "result": None})
+        for identifier in [each for each, name in self._resolving.items() if name == server.name]:
+            del self._resolving[identifier]
+            self._editor.send({"jsonrpc": "2.0", "id": identifier, "result": None})
+        self._start(self._programs[server.name])
+        if server.name not in self._servers:
+            for text in self._texts.values():
+                text.set_findings(server.name, ())
+                self._publish_all(text)
+
+    def _renew_stubs(self) -> None:
+        """Write the stubs of changed messages, and notify the servers."""
+        stubs = self._stubs
+        if stubs is None:
+            return
+
+        def update() -> None:
+            changes = [{"uri": file.as_uri(), "type": _CHANGED} for file in stubs.update()]
+            message = {"jsonrpc": "2.0", "method": _FILES_CHANGED, "params": {"changes": changes}}
+            self._events.put(partial(self._send_all, message))
+
+        self._search.submit(self._attempt, update)
+
+    def _send_all(self, message: Message) -> None:
+        for server in self._servers.values():
+            server.send(message)
+
+    def _send(self, name: str, message: Message) -> None:
+        """Send a message to a server; a request that it does not support counts as answered."""
+        if name == OWN:
+            self._own.send(message)
+            return
+        if self._held is not None:
+            self._held.append((name, message))
+            return
+        server = self._servers.get(name)
+        capability = CAPABILITIES.get(message.get("method", ""))
+        if server is None or (
+            capability and server.capabilities is not None and not server.capabilities.get(capability)
+        ):
+            self._answered(name, {"id": message.get("id"), "result": None})
+        else:
+            server.send(message)
+
+
+def _uri(parameters: Message) -> str:
+    document = parameters.get("textDocument") if isinstance(parameters, dict) else None
+    return str(document.get("uri", "")) if isinstance(document, dict) else ""
+
+
+def _opening(text: OpenText) -> Message:
+    document = {"uri": text.uri, "languageId": "python", "version": text.version, "text": text.text}
+    return {"jsonrpc": "2.0", "method": "textDocument/didOpen", "params": {"textDocument": document}}
+
+
+def _publication(parameters: Message) -> Message:
+    return {"jsonrpc": "2.0", "method": _PUBLISH, "params": parameters}
+
+
+def _for_server(message: Message, name: str) -> Message:
+    """Return a request for a server: a code action is requested with the server's own findings."""
+    if message["method"] != CODE_ACTION:
+        return message
+    context = message["params"]["context"]
+    findings = [each for each in context["diagnostics"] if str(each.get("source", OWN)).lower() == name]
+    return {**message, "params": {**message["params"], "context": {**context, "diagnostics": findings}}}
+
+
+def _resolved(name: str, message: Message) -> Message:
+    return {**message, "result": marked_action(name, message["result"])} if message.get("result") else message
+
+
+def _with_python(message: Message) -> Message:
+    """Return the response to ``initialize`` with what the servers for Python files add."""
+    capabilities = dict(message["result"]["capabilities"])
+    completion, actions = capabilities["completionProvider"], capabilities["codeActionProvider"]
+    characters, kinds = completion["triggerCharacters"], actions["codeActionKinds"]
+    capabilities["completionProvider"] = {**completion, "triggerCharacters": [*characters, "."]}
+    capabilities["codeActionProvider"] = {**actions, "codeActionKinds": [*kinds, "source.organizeImports"]}
+    return {**message, "result": {**message["result"], "capabilities": capabilities}}
+
+
+def _initialization(parameters: Message, encoding: str) -> Message:
+    """Return the parameters of ``initialize`` for a server: those of the editor, as far as the router supports them."""
+    capabilities = parameters.get("capabilities", {})
+    document, workspace = capabilities.get("textDocument", {}), capabilities.get("workspace", {})
+    folders = parameters.get("workspaceFolders") or [
+        {"uri": folder.as_uri(), "name": folder.name} for folder in _folders(parameters)
+    ]
+    return {
+        "rootUri": parameters.get("rootUri"),
+        "workspaceFolders": folders,
+        "capabilities": {
+            "general": {**capabilities.get("general", {}), "positionEncodings": [encoding]},
+            "textDocument": {name: document[name] for name in _CLIENT_FEATURES if name in document},
+            "workspace": {name: workspace[name] for name in ("workspaceEdit",) if name in workspace},
+        },
+    }
+
+
+def _folders(parameters: Message) -> list[Path]:
+    """Return the folders that the editor has opened."""
+    uris = [folder["uri"] for folder in parameters.get("workspaceFolders") or ()]
+    root = parameters.get("rootUri")
+    paths = [path_of(uri) for uri in uris or ([root] if root else [])]
+    return [path for path in paths if path is not None]

@@ -1,0 +1,72 @@
+"""One answer out of those of several servers."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from linkwright.lsp.python.answers import combined, is_enough, server_of_action
+from linkwright.lsp.python.open_texts import OpenText
+
+TEXT = OpenText("file:///a.py", 'Node(pac, "tur")\n', 1, "utf-16")
+OWN, TY, RUFF = "linkwright", "ty", "ruff"
+
+
+def complete(*answers: tuple[str, Any], character: int = 8) -> Any:
+    parameters = {"position": {"line": 0, "character": character}}
+    return combined("textDocument/completion", answers, TEXT, parameters)
+
+
+def edit(start: int, end: int, text: str) -> dict[str, Any]:
+    place = {"start": {"line": 0, "character": start}, "end": {"line": 0, "character": end}}
+    return {"label": text, "textEdit": {"range": place, "newText": text}}
+
+
+@pytest.mark.parametrize("empty", [None, [], {"items": []}])
+def test_the_first_answer_that_is_not_empty_counts(empty: Any) -> None:
+    answer = {"contents": "a node"}
+    assert combined("textDocument/hover", [(OWN, empty), (TY, answer)], TEXT, {}) == answer
+    assert combined("textDocument/hover", [(OWN, answer), (TY, {"contents": "b"})], TEXT, {}) == answer
+    assert combined("textDocument/hover", [(OWN, empty), (TY, None)], TEXT, {}) == empty
+    assert not is_enough("textDocument/hover", empty)
+    assert is_enough("textDocument/hover", answer)
+
+
+def test_completions_are_those_of_all_servers_and_each_name_is_offered_once() -> None:
+    own = [edit(5, 8, "package="), edit(5, 8, "parameters=")]
+    typed = {"isIncomplete": True, "items": [{"label": "package="}, {"label": "pacing"}]}
+    found = complete((OWN, own), (TY, typed))
+    assert [item["label"] for item in found["items"]] == ["package=", "parameters=", "pacing"]
+    assert found["isIncomplete"]
+
+
+def test_in_a_string_that_linkwright_completes_there_are_no_others() -> None:
+    own = {"isIncomplete": False, "items": [edit(11, 14, "turtle_bot")]}
+    assert complete((OWN, own), (TY, [{"label": "turn"}]), character=13) == own
+
+
+def test_defaults_of_a_list_are_those_of_its_items_only() -> None:
+    place = {"start": {"line": 0, "character": 5}, "end": {"line": 0, "character": 8}}
+    own = {"itemDefaults": {"editRange": place, "insertTextFormat": 2}, "items": [{"label": "package="}]}
+    found = complete((OWN, own), (TY, [{"label": "pacing"}]))
+    assert found["items"] == [
+        {"label": "package=", "insertTextFormat": 2, "textEdit": {"range": place, "newText": "package="}},
+        {"label": "pacing"},
+    ]
+
+
+def test_a_code_action_returns_to_its_server_with_its_own_data() -> None:
+    own, fix = {"title": "own", "data": 1}, {"title": "fix", "data": {"id": 2}}
+    command = {"title": "run", "command": "ruff.applyAutofix"}
+    found = combined(
+        "textDocument/codeAction", [(OWN, [own]), (TY, [{"title": "a"}]), (RUFF, [fix, command])], TEXT, {}
+    )
+    assert [action["title"] for action in found] == ["own", "a", "fix"]
+    assert found[0] == own
+    assert [server_of_action(action) for action in found] == [None, (TY, {"title": "a"}), (RUFF, fix)]
+
+
+def test_without_an_answer_of_linkwright_other_actions_are_still_marked() -> None:
+    found = combined("textDocument/codeAction", [(RUFF, [{"title": "fix"}])], TEXT, {})
+    assert server_of_action(found[0]) == (RUFF, {"title": "fix"})

@@ -1,0 +1,71 @@
+"""The Python files of an editor: texts after changes, and findings that move with the text."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from linkwright.lsp.positions import TextPositions
+from linkwright.lsp.python.open_texts import OpenText, as_range
+
+TEXTS = st.text(alphabet="ab 中😀\n", max_size=30)
+WORD = "x = 中😀\nvalue = 1\n"
+
+
+def finding(text: str, start: int, end: int) -> dict[str, Any]:
+    return {"range": as_range(TextPositions(text), start, end), "message": "m"}
+
+
+def place(line: int, start: int, end: int) -> dict[str, Any]:
+    return {"start": {"line": line, "character": start}, "end": {"line": line, "character": end}}
+
+
+@given(before=TEXTS, inserted=TEXTS, bounds=st.tuples(st.integers(0, 30), st.integers(0, 30)))
+def test_the_text_is_that_of_the_editor_whether_it_sends_ranges_or_all(
+    before: str, inserted: str, bounds: tuple[int, int]
+) -> None:
+    start, end = sorted(min(bound, len(before)) for bound in bounds)
+    after = before[:start] + inserted + before[end:]
+    ranges = OpenText("file:///a.py", before, 1, "utf-16")
+    ranges.change(2, [{"range": as_range(TextPositions(before), start, end), "text": inserted}])
+    whole = OpenText("file:///a.py", before, 1, "utf-16")
+    whole.change(2, [{"text": after}])
+    assert (ranges.text, ranges.version) == (whole.text, whole.version) == (after, 2)
+
+
+def test_several_changes_apply_one_after_the_other() -> None:
+    text = OpenText("file:///a.py", WORD, 1, "utf-16")
+    text.change(2, [{"range": place(1, 0, 5), "text": "名"}, {"range": place(0, 4, 7), "text": "😀"}])
+    assert text.text == "x = 😀\n名 = 1\n"
+
+
+def test_findings_move_with_the_text_until_their_server_has_checked_it() -> None:
+    text = OpenText("file:///a.py", WORD, 1, "utf-16")
+    text.set_findings("ty", [finding(WORD, 7, 12)])
+    text.set_findings("ruff", [finding(WORD, 0, 1)])
+    text.change(2, [{"text": "# 😀\n" + WORD}])
+    assert [each["range"] for each in text.findings()] == [place(2, 0, 5), place(1, 0, 1)]
+    text.change(3, [{"range": place(2, 0, 0), "text": "the_"}, {"range": place(1, 0, 0), "text": "😀\n"}])
+    assert [each["range"] for each in text.findings()] == [place(3, 4, 9), place(2, 0, 1)]
+    text.set_findings("ty", [])
+    assert text.findings() == text.findings_of("ruff")
+
+
+@given(before=TEXTS, after=TEXTS, bounds=st.tuples(st.integers(0, 30), st.integers(0, 30)))
+def test_moved_findings_stay_in_the_text(before: str, after: str, bounds: tuple[int, int]) -> None:
+    start, end = sorted(min(bound, len(before)) for bound in bounds)
+    text = OpenText("file:///a.py", before, 1, "utf-16")
+    text.set_findings("ty", [finding(before, start, end)])
+    text.change(2, [{"text": after}])
+    [moved] = text.findings()
+    assert text.written(moved["range"]) in after
+    if before[start:end] and before == after:
+        assert text.written(moved["range"]) == before[start:end]
+
+
+def test_the_word_before_a_position_is_part_of_a_name() -> None:
+    text = OpenText("file:///a.py", "😀 node.create_pub\n", 1, "utf-16")
+    assert text.word_before({"line": 0, "character": 11}) == "cre"
+    assert text.word_before({"line": 0, "character": 8}) == ""

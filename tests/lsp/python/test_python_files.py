@@ -1,0 +1,226 @@
+"""Python files in an editor, with the real ty and ruff."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import signal
+from collections.abc import AsyncIterator
+from pathlib import Path
+from typing import Any
+
+import psutil
+import pytest
+import pytest_asyncio
+from lsprotocol import types
+
+from linkwright.lsp.python.programs import installed_programs
+from tests.lsp.conftest import Editor, connected
+from tests.waiting import eventually
+
+pytestmark = pytest.mark.skipif(len(installed_programs()) < 2, reason="ty or ruff is not installed")
+
+NODE = """\
+import os
+from rclpy.node import Node
+from launch_ros.actions import Node as LaunchNode
+from std_msgs.msg import String
+from my_msgs.msg import Count
+from my_package.speed import half
+
+
+class Talker(Node):
+    def __init__(self):
+        super().__init__("说话😀"); self.publisher = self.create_publisher(String, "chatter", 10)
+        self.limit = half(Count(number=1).number)
+"""
+LAUNCH = """\
+from launch import LaunchDescription
+from launch_ros.actions import Node
+
+
+def generate_launch_description():
+    return LaunchDescription([Node(package="my_package", executable="talker")])
+"""
+CAPABILITIES = types.ClientCapabilities(
+    text_document=types.TextDocumentClientCapabilities(
+        hover=types.HoverClientCapabilities(content_format=[types.MarkupKind.Markdown]),
+        diagnostic=types.DiagnosticClientCapabilities(),
+        publish_diagnostics=types.PublishDiagnosticsClientCapabilities(version_support=True),
+        code_action=types.CodeActionClientCapabilities(
+            code_action_literal_support=types.ClientCodeActionLiteralOptions(
+                types.ClientCodeActionKindOptions([types.CodeActionKind.QuickFix, types.CodeActionKind.SourceFixAll])
+            ),
+            data_support=True,
+            resolve_support=types.ClientCodeActionResolveOptions(["edit"]),
+        ),
+    )
+)
+
+
+def manifest(name: str) -> str:
+    return (
+        f'<package format="3"><name>{name}</name><version>0.1.0</version><description>A package.</description>'
+        '<maintainer email="a@example.org">A</maintainer><license>MIT</license></package>\n'
+    )
+
+
+@pytest.fixture
+def workspace(tmp_path: Path) -> Path:
+    package, messages = (tmp_path / "src" / name for name in ("my_package", "my_msgs"))
+    (package / "my_package").mkdir(parents=True)
+    (package / "launch").mkdir()
+    (messages / "msg").mkdir(parents=True)
+    for folder in (package, messages):
+        (folder / "package.xml").write_text(manifest(folder.name))
+    (messages / "msg" / "Count.msg").write_text("int32 number\n")
+    (package / "setup.py").write_text("from setuptools import setup\n\nsetup(name='my_package')\n")
+    (package / "my_package" / "__init__.py").write_text("")
+    (package / "my_package" / "speed.py").write_text("def half(value: float) -> float:\n    return value / 2\n")
+    (package / "my_package" / "talker.py").write_text(NODE, encoding="utf-8")
+    (package / "launch" / "talker.launch.py").write_text(LAUNCH)
+    (tmp_path / "ruff.toml").write_text('[lint]\nselect = ["F"]\n')
+    return tmp_path
+
+
+@pytest_asyncio.fixture
+async def editor(workspace: Path) -> AsyncIterator[Editor]:
+    async with connected(workspace, CAPABILITIES, None, "--stdio", "--python") as editor:
+        yield editor
+
+
+TALKER = "src/my_package/my_package/talker.py"
+
+
+def place(text: str, wanted: str, more: int = 0) -> types.Position:
+    """Return the position of the first place with a text, in UTF-16 code units."""
+    before, found, _ = text.partition(wanted)
+    assert found
+    line = before.rpartition("\n")[2] + wanted[:more]
+    return types.Position(before.count("\n"), len(line.encode("utf-16-le")) // 2)
+
+
+def written(text: str, found: types.Range) -> str:
+    """Return the text of a range in one line."""
+    units = text.splitlines()[found.start.line].encode("utf-16-le")
+    return units[2 * found.start.character : 2 * found.end.character].decode("utf-16-le")
+
+
+async def hover(editor: Editor, name: str, position: types.Position) -> str:
+    found = await editor.client.text_document_hover_async(types.HoverParams(editor.document(name), position))
+    assert found is not None
+    assert isinstance(found.contents, types.MarkupContent)
+    return found.contents.value
+
+
+async def labels(editor: Editor, name: str, position: types.Position) -> list[str]:
+    found = await editor.client.text_document_completion_async(types.CompletionParams(editor.document(name), position))
+    items = found.items if isinstance(found, types.CompletionList) else found or []
+    return [item.label for item in items]
+
+
+async def test_the_modules_of_ros_and_of_the_workspace_are_found(editor: Editor) -> None:
+    editor.open(TALKER, language="python")
+    found = await editor.until(TALKER, "F401", "F401")
+    assert {written(NODE, finding.range) for finding in found} == {"os", "LaunchNode"}
+    assert "A node in the graph" in await hover(editor, TALKER, place(NODE, "Node)"))
+    assert "Count" in await hover(editor, TALKER, place(NODE, "Count\n"))
+    assert "create_publisher" in await hover(editor, TALKER, place(NODE, "create_publisher", more=3))
+
+
+async def test_unsaved_text_reaches_the_servers(editor: Editor) -> None:
+    editor.open(TALKER, language="python")
+    text = NODE.replace("import os\n", "").replace("LaunchNode", "_").replace("; ", "\n        ")
+    text += "        self.get_logger().inf\n"
+    editor.change(TALKER, text)
+    found = await editor.until(TALKER, "F401", "missing-attribute")
+    assert "has no attribute `inf`" in {each.code: each.message for each in found}["missing-attribute"]
+    assert "info" in await labels(editor, TALKER, place(text, "logger().inf", more=12))
+    editor.change(TALKER, text.replace("().inf", "().info('说😀')"))
+    await editor.until(TALKER, "F401")
+
+
+async def test_a_message_of_the_workspace_that_changes_is_known(editor: Editor, workspace: Path) -> None:
+    editor.open(TALKER, language="python")
+    text = NODE.replace("import os\n", "").replace("LaunchNode", "_").replace("; ", "\n        ")
+    editor.change(TALKER, text.replace("number=1", "size=1"))
+    await editor.until(TALKER, "F401", "unknown-argument")
+    message = workspace / "src" / "my_msgs" / "msg" / "Count.msg"
+    message.write_text("int32 number\nint32 size\n")
+    changed = types.FileEvent(message.as_uri(), types.FileChangeType.Changed)
+    editor.client.workspace_did_change_watched_files(types.DidChangeWatchedFilesParams([changed]))
+    await editor.until(TALKER, "F401")
+
+
+async def test_a_name_is_renamed_in_all_files_and_its_definition_is_found(editor: Editor, workspace: Path) -> None:
+    editor.open(TALKER, language="python")
+    document, position = editor.document(TALKER), place(NODE, "half(", more=1)
+    found = await editor.client.text_document_definition_async(types.DefinitionParams(document, position))
+    assert isinstance(found, list)
+    assert [location.uri for location in found if isinstance(location, types.Location)] == [
+        (workspace / "src/my_package/my_package/speed.py").as_uri()
+    ]
+    edit = await editor.client.text_document_rename_async(types.RenameParams(document, position, "halved"))
+    assert edit is not None
+    assert edit.changes is not None
+    assert {Path(uri).name: len(edits) for uri, edits in edit.changes.items()} == {"talker.py": 2, "speed.py": 1}
+
+
+async def test_ruff_formats_and_fixes(editor: Editor) -> None:
+    editor.open(TALKER, language="python")
+    document = editor.document(TALKER)
+    options = types.FormattingOptions(4, insert_spaces=True)
+    edits = await editor.client.text_document_formatting_async(types.DocumentFormattingParams(document, options))
+    assert edits is not None
+    assert 'super().__init__("说话😀")\n        self.publisher' in "".join(edit.new_text for edit in edits)
+    found = await editor.until(TALKER, "F401", "F401")
+    unused = next(finding for finding in found if finding.range.start.line == 0)
+    context = types.CodeActionContext(found)
+    asked = types.CodeActionParams(document, unused.range, context)
+    actions = await editor.client.text_document_code_action_async(asked)
+    fixes = [each for each in actions or () if isinstance(each, types.CodeAction)]
+    fix_all = next(each for each in fixes if str(each.kind).startswith("source.fixAll"))
+    resolved = await editor.client.code_action_resolve_async(fix_all)
+    assert "import os" not in str(resolved.edit)
+    assert resolved.edit is not None
+    assert any("Remove unused import" in each.title for each in fixes)
+
+
+async def test_in_a_launch_file_the_names_are_those_of_linkwright_and_the_code_that_of_ty(editor: Editor) -> None:
+    name = "src/my_package/launch/talker.launch.py"
+    text = LAUNCH.replace("def gen", "launch = LaunchDescription([])\nlaunch.add_a\n\n\ndef gen")
+    editor.open(name, text, language="python")
+    assert "my_package" in await labels(editor, name, place(text, '"my_p', more=3))
+    assert "add_action" in await labels(editor, name, place(text, "launch.add_a", more=12))
+    assert "`executable`" in await hover(editor, name, place(text, '"talker', more=3))
+
+
+async def children_of(editor: Editor) -> dict[str, psutil.Process]:
+    """Wait until both servers run, and return their processes by name."""
+    server = psutil.Process(editor.client._server.pid)  # type: ignore[union-attr]
+    await eventually(lambda: {"ty", "ruff"} <= {child.name() for child in server.children()})
+    return {child.name(): child for child in server.children()}
+
+
+async def test_a_server_that_is_killed_comes_back_with_the_unsaved_text(editor: Editor) -> None:
+    editor.open(TALKER, language="python")
+    await editor.until(TALKER, "F401", "F401")
+    editor.change(TALKER, NODE + "        self.speed = half(self.limit)\n        self.speed.real.x\n")
+    await editor.until(TALKER, "F401", "F401", "missing-attribute")
+    (await children_of(editor))["ty"].kill()
+    text = NODE + "        self.speed = half(self.limit)\n        self.speed.real.y\n"
+    editor.change(TALKER, text)
+    found = await editor.until(TALKER, "F401", "F401", "missing-attribute")
+    await eventually(lambda: "`y`" in str(editor.diagnostics), what=found)
+    assert editor.messages == []
+
+
+@pytest.mark.skipif(os.name == "nt", reason="Windows has no SIGKILL")
+async def test_the_servers_end_with_linkwright_even_if_it_is_killed(workspace: Path) -> None:
+    opened: Any = connected(workspace, CAPABILITIES, None, "--stdio", "--python")
+    editor = await opened.__aenter__()
+    editor.open(TALKER, language="python")
+    children = await children_of(editor)
+    os.kill(editor.client._server.pid, signal.SIGKILL)
+    await eventually(lambda: not any(child.is_running() for child in children.values()))
+    await asyncio.wait_for(editor.client.stop(), 10)

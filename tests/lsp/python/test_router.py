@@ -1,0 +1,215 @@
+"""Messages between an editor and several servers, also when a server fails."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from linkwright.lsp.python import router as router_module
+from linkwright.lsp.python.programs import Program
+from linkwright.lsp.python.router import Router
+from linkwright.lsp.python.servers import Message
+from tests.waiting import wait_until
+
+SERVER = """
+import json, sys
+from linkwright.process.framing import framed, read_content
+
+def send(message):
+    sys.stdout.buffer.write(framed(json.dumps(message).encode()))
+    sys.stdout.buffer.flush()
+
+while content := read_content(sys.stdin.buffer):
+    message = json.loads(content)
+    method, params = message.get("method"), message.get("params")
+    if method == "initialize":
+        send({"id": message["id"], "result": {"capabilities": {"hoverProvider": True}}})
+        send({"id": 7, "method": "workspace/configuration", "params": {}})
+    elif method == "textDocument/didOpen":
+        uri, version = params["textDocument"]["uri"], params["textDocument"]["version"]
+        for number in (version - 1, version):
+            finding = {"message": str(number), "range": {"start": POINT, "end": POINT}}
+            send({"method": "textDocument/publishDiagnostics",
+                  "params": {"uri": uri, "version": number, "diagnostics": [finding]}})
+    elif method == "textDocument/hover":
+        if "hang" in params: continue
+        if params.get("die") == NAME: sys.exit()
+        send({"id": message["id"], "result": {"contents": NAME}})
+    elif "result" not in message and "error" in message:
+        send({"method": "window/showMessage", "params": {"type": 1, "message": message["error"]["message"]}})
+"""
+URI = "file:///ws/a.py"
+
+
+class Peer:
+    """A peer that keeps its messages."""
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+        self.messages: list[Message] = []
+        self.is_closed = False
+
+    def send(self, message: Message) -> None:
+        self.messages.append(message)
+
+    def close(self) -> None:
+        self.is_closed = True
+
+    def until(self, wanted: Callable[[Message], object]) -> Message:
+        """Wait for a message."""
+        wait_until(lambda: any(map(wanted, list(self.messages))), what=lambda: self.messages)
+        return next(message for message in self.messages if wanted(message))
+
+    def answer(self, identifier: int) -> Message:
+        """Wait for the answer to a request."""
+        return self.until(lambda message: message.get("id") == identifier and "method" not in message)
+
+
+class Connection:
+    """An editor and Linkwright's own server, whose messages go through a router."""
+
+    def __init__(self, programs: list[Program], folder: Path) -> None:
+        self.editor, self.own = Peer("editor"), Peer("own")
+        self.router = Router(self.editor, self.own, programs)
+        self.request(1, "initialize", {"rootUri": folder.as_uri(), "capabilities": {}})
+        capabilities = {
+            "completionProvider": {"triggerCharacters": ["<"]},
+            "codeActionProvider": {"codeActionKinds": ["quickfix"]},
+        }
+        self.router.from_own({"id": 1, "result": {"capabilities": capabilities}})
+
+    def request(self, identifier: int | None, method: str, parameters: Message) -> None:
+        """Send a request, or a notification without an identifier, as the editor."""
+        message = {"method": method, "params": parameters}
+        self.router.from_editor(message if identifier is None else {**message, "id": identifier})
+
+    def open(self, uri: str = URI, language: str = "python") -> None:
+        """Open a file."""
+        document = {"uri": uri, "languageId": language, "version": 3, "text": "a = 1\n"}
+        self.request(None, "textDocument/didOpen", {"textDocument": document})
+
+    def hover(self, identifier: int, own: Any = None, **more: Any) -> None:
+        """Request a hover, which Linkwright's own server answers."""
+        place = {"textDocument": {"uri": URI}, "position": {"line": 0, "character": 0}}
+        self.request(identifier, "textDocument/hover", {**place, **more})
+        self.own.until(lambda message: message.get("id") == identifier)
+        self.router.from_own({"id": identifier, "result": own})
+
+    def findings(self, count: int) -> list[str]:
+        """Wait until so many findings were published, and return their messages."""
+
+        def is_published(message: Message) -> bool:
+            is_findings = message.get("method") == "textDocument/publishDiagnostics"
+            return is_findings and len(message["params"]["diagnostics"]) == count
+
+        return [each["message"] for each in self.editor.until(is_published)["params"]["diagnostics"]]
+
+
+def is_told(message: Message) -> bool:
+    text = "'ty' does not run, so Python files are edited without it"
+    return message.get("method") == "window/showMessage" and message["params"]["message"] == text
+
+
+def program(name: str, text: str = SERVER) -> Program:
+    names = f"NAME = {name!r}\nPOINT = {{'line': 0, 'character': 0}}\n"
+    return Program(name, (sys.executable, "-c", names + text))
+
+
+@pytest.fixture
+def connect(tmp_path: Path) -> Iterator[Callable[..., Connection]]:
+    made: list[Connection] = []
+
+    def connected(*programs: Program) -> Connection:
+        made.append(Connection(list(programs), tmp_path))
+        return made[-1]
+
+    yield connected
+    for connection in made:
+        connection.router.close()
+
+
+def test_the_servers_start_with_the_first_python_file(connect: Callable[..., Connection]) -> None:
+    connection = connect(program("ty"), program("ruff"))
+    capabilities = connection.editor.answer(1)["result"]["capabilities"]
+    assert capabilities["completionProvider"]["triggerCharacters"] == ["<", "."]
+    connection.open("file:///ws/a.xacro", "xml")
+    connection.own.until(lambda message: message["method"] == "textDocument/didOpen")
+    assert connection.router._servers == {}
+    connection.open()
+    assert connection.findings(2) == ["3", "3"]
+    published = {"uri": URI, "version": 3, "diagnostics": [{"message": "own"}]}
+    connection.router.from_own({"method": "textDocument/publishDiagnostics", "params": published})
+    assert sorted(connection.findings(3)) == ["3", "3", "own"]
+
+
+def test_a_request_before_the_servers_run_waits_for_them(connect: Callable[..., Connection]) -> None:
+    connection = connect(program("ty"))
+    connection.open()
+    connection.hover(5)
+    assert connection.editor.answer(5)["result"] == {"contents": "ty"}
+
+
+def test_an_answer_of_linkwright_comes_first_and_does_not_wait(connect: Callable[..., Connection]) -> None:
+    connection = connect(program("ty"))
+    connection.open()
+    connection.hover(5, own={"contents": "own"}, hang=True)
+    assert connection.editor.answer(5)["result"] == {"contents": "own"}
+
+
+def test_a_server_that_does_not_answer_is_left_out(
+    connect: Callable[..., Connection], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(router_module, "_PATIENCE_SECONDS", 0.1)
+    connection = connect(program("ty"))
+    connection.open()
+    connection.hover(5, hang=True)
+    assert connection.editor.answer(5)["result"] is None
+
+
+def test_a_server_that_ends_is_started_again_until_the_user_is_told_once(connect: Callable[..., Connection]) -> None:
+    connection = connect(program("ty"), program("ruff"))
+    connection.open()
+    assert connection.findings(2) == ["3", "3"]
+    for identifier in (5, 6, 7):
+        connection.hover(identifier, die="ty")
+        connection.editor.answer(identifier)
+    connection.editor.until(is_told)
+    assert connection.findings(1) == ["3"]
+    connection.hover(8)
+    assert connection.editor.answer(8)["result"] == {"contents": "ruff"}
+    assert sum(map(is_told, connection.editor.messages)) == 1
+
+
+def test_a_program_that_cannot_be_started_leaves_the_rest_as_it_is(connect: Callable[..., Connection]) -> None:
+    connection = connect(Program("ty", ("/no/such/program",)), program("ruff"))
+    connection.open()
+    connection.hover(5)
+    assert connection.editor.answer(5)["result"] == {"contents": "ruff"}
+    connection.editor.until(is_told)
+
+
+def test_requests_of_a_server_are_declined_and_its_messages_shown(connect: Callable[..., Connection]) -> None:
+    connection = connect(program("ty"))
+    connection.open()
+    shown = connection.editor.until(lambda message: message.get("method") == "window/showMessage")
+    assert shown["params"]["message"] == "not supported"
+
+
+def test_a_file_that_is_closed_keeps_the_findings_of_linkwright(connect: Callable[..., Connection]) -> None:
+    connection = connect(program("ty"))
+    connection.open()
+    connection.findings(1)
+    connection.request(None, "textDocument/didClose", {"textDocument": {"uri": URI}})
+    assert connection.findings(0) == []
+    connection.hover(5, own={"contents": "own"})
+    assert connection.editor.answer(5)["result"] == {"contents": "own"}
+
+
+def test_the_end_of_the_editor_is_that_of_linkwright(connect: Callable[..., Connection]) -> None:
+    connection = connect()
+    connection.request(None, "exit", {})
+    wait_until(lambda: connection.own.is_closed)
