@@ -102,7 +102,7 @@ class _CMakeCursor:
 
     @cached_property
     def word(self) -> tuple[int, int]:
-        """The range of the whole word around the cursor."""
+        """The start and end offset of the whole word around the cursor."""
         start = self.offset - len(self.typed)
         found = _WHOLE_WORD.match(self.document.text, start)
         return (start, start) if found is None else found.span()
@@ -113,15 +113,15 @@ class _CMakeCursor:
         return self.document.file.parent
 
     def keyword(self, words: Iterable[str]) -> str:
-        """Return the last keyword, a word in capitals, or empty if there is none."""
+        """Return the last keyword in capitals, or an empty string if there is none."""
         return next((word for word in reversed([*words]) if word.isupper() and not word.startswith("$")), "")
 
     def targets(self) -> list[str]:
-        """Return the targets that the file builds."""
+        """Return the names of the targets that the file builds."""
         return [*dict.fromkeys(_TARGET.findall(self.document.text))]
 
     def packages(self, start: int) -> Iterator[Completion]:
-        """Yield the packages that the file does not find yet, the declared dependencies first."""
+        """Yield completions of packages that the file does not find yet, declared dependencies first."""
         found = set(_FIND_PACKAGE.findall(self.document.text[:start] + self.document.text[self.offset :]))
         declared = BUILD_DEPENDENCY.findall(text_of(self.folder / "package.xml"))
         for name in dict.fromkeys(dependency for dependency in declared if dependency not in found):
@@ -188,7 +188,7 @@ def _value_completions(names: Iterable[str], start: int, kind: ItemKind = ItemKi
 
 
 def _interfaces(folder: Path) -> list[str]:
-    """Return the files of messages, services and actions, relative to the package."""
+    """Return the paths of the message, service and action files, relative to the package."""
     files = (file for part in ("msg", "srv", "action") for file in sorted((folder / part).glob("*")))
     return [file.relative_to(folder).as_posix() for file in files if file.suffix in _INTERFACES]
 

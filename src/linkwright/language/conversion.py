@@ -45,7 +45,8 @@ def convert_to_xacro(project: Workspace, texts: Mapping[Path, str], file: Path, 
         text: its text.
 
     Raises:
-        UnprovedError: the file exists, or its expansion would differ from the URDF.
+        UnprovedError: the new file exists or is outside of the workspace, the URDF is invalid, or the expansion would
+            differ from it.
     """
     new = file.with_name(f"{file.name}.xacro")
     if new.exists() or new in texts:
@@ -79,7 +80,7 @@ def _escaped(text: str) -> str:
 
 
 def _comparable_elements(root: Element) -> list[tuple[object, ...]]:
-    """Return the elements with attributes and texts, without the xacro namespace declaration."""
+    """Return the tag, attributes and text of each element, without the xacro namespace declaration."""
     return [
         (
             element.tag,

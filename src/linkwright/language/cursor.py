@@ -32,7 +32,7 @@ class Cursor:
         syntax: the kind of position.
         offset: the character offset.
         tags: the names of the enclosing elements, from the root. Inside an attribute, the last is the element itself.
-        token: the tag at the cursor, or None in a text.
+        token: the tag at the cursor, or None outside of tags.
         attribute: the attribute whose name or value contains the cursor.
         typed: the part of the name, value or text before the cursor.
         elements: the start tags of `tags`.
@@ -64,7 +64,7 @@ class Cursor:
 
     @property
     def word(self) -> str:
-        """The name in an expression that is being typed at the cursor."""
+        """The part of a name in an expression before the cursor, or empty."""
         found = re.search(r"[A-Za-z_][\w.]*$", self.typed)
         return found[0] if found else ""
 

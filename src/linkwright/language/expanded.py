@@ -69,7 +69,7 @@ def expanded_text(
         arguments: the values of its arguments, by name.
 
     Raises:
-        LinkwrightError: the errors of the description.
+        LinkwrightError: the description cannot be expanded.
     """
     overlay = Overlay({str(path): text for path, text in texts.items()})
     expansion = expand(entry, arguments, packages=project.finder(entry), overlay=overlay)

@@ -52,6 +52,8 @@ _LONGEST_VALUE = 60
 def complete_expression(document: Document, cursor: Cursor, names: Sequence[NameDefinition]) -> Iterator[Completion]:
     """Yield the names for an expression: parameters, properties by use, then functions.
 
+    After the name of a mapping from a YAML file and a dot or bracket, yield the keys of the mapping instead.
+
     Args:
         document: the text.
         cursor: a cursor in ``${...}``.
@@ -107,7 +109,7 @@ def _parameters(cursor: Cursor) -> tuple[Parameter, ...]:
 
 
 def _word_counts(text: str) -> Mapping[str, int]:
-    """Return how often the expressions of a text contain each word."""
+    """Return the number of occurrences of each word in the expressions of a text."""
     found: dict[str, int] = {}
     for expression in _EXPRESSION.finditer(text):
         for word in _WORDS.findall(expression[1]):
@@ -118,7 +120,7 @@ def _word_counts(text: str) -> Mapping[str, int]:
 def _key_completions(
     document: Document, item: re.Match[str], cursor: Cursor, names: Sequence[NameDefinition]
 ) -> Iterator[Completion]:
-    """Yield the keys of a mapping that a property loads from a YAML file."""
+    """Yield completions of the keys of a mapping that a property loads from a YAML file."""
     value: Any = yaml_value(document, item[1], names)
     for key in _KEY.finditer(item[2]):
         value = value.get(key[1] or key[2]) if isinstance(value, Mapping) else None
@@ -128,7 +130,7 @@ def _key_completions(
 
 
 def complete_substitution(document: Document, cursor: Cursor, names: Sequence[NameDefinition]) -> Iterator[Completion]:
-    """Yield the commands of ``$(...)``, or their arguments.
+    """Yield completions of the commands of ``$(...)``, or of their arguments.
 
     Args:
         document: the text.
@@ -154,7 +156,7 @@ def complete_substitution(document: Document, cursor: Cursor, names: Sequence[Na
 
 
 def package_completions(document: Document, start: int) -> Iterator[Completion]:
-    """Yield the packages: the file's own first, then by the number of mentions in the text."""
+    """Yield completions of packages: the file's own first, then by the number of mentions."""
     found = document.finder.packages()
     folder = document.file.parent
 
@@ -171,6 +173,6 @@ def _short(text: str) -> str:
 
 
 def function_purpose(function: str) -> str:
-    """Return the first line about a function or constant of expressions."""
+    """Return the first docstring line of a function of expressions, or the value of a constant."""
     found = getattr(math, function, None) or getattr(builtins, function, None)
     return (getattr(found, "__doc__", None) or "").partition("\n")[0] if callable(found) else str(found)

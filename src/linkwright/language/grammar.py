@@ -121,7 +121,7 @@ def rule_at(root: ElementRule, tags: Sequence[str], elements: Sequence[Token] = 
     """Return the rule of an element.
 
     The content of xacro tags belongs to the element around them. The content of a macro or a call may belong to any
-    element, so its first tag that occurs anywhere in the language decides.
+    element, so the rule of its first tag is searched in the whole schema.
 
     Args:
         root: the rule of the root element.
@@ -155,7 +155,7 @@ def _rule_in_macro(root: ElementRule, tags: Sequence[str], tag: str) -> ElementR
 
 
 def _find_rule(root: ElementRule, tag: str) -> ElementRule | None:
-    """Return the rule of a tag nearest to the root, or None."""
+    """Return the rule with a tag that is nearest to the root, or None."""
     pending, seen = [root], {id(root)}
     for rule in pending:
         if rule.tag == tag:

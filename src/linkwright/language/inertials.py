@@ -35,8 +35,8 @@ def fill_in_inertia(
 ) -> tuple[Edit, ...]:
     """Return the edits that set the inertia of a link to the inertia of its shapes.
 
-    Nothing else changes in the expansions. The mass is the mass of the link or, if it has none, of water with the
-    same shapes, as in `linkwright inertia`.
+    The expansions stay equal otherwise. The mass is the mass of the link or, if it has none, the mass of water with
+    the same shapes, as in `linkwright inertia`.
 
     Args:
         project: the workspace.

@@ -39,7 +39,7 @@ def _classes() -> Mapping[str, Any]:
 
 
 def load_classes() -> None:
-    """Import the classes. The first import is slow."""
+    """Import the launch classes, and cache their arguments. The first import is slow."""
     for name in _classes():
         class_arguments(name)
 
@@ -56,7 +56,7 @@ def describe_class(name: str) -> str | None:
 
 @cache
 def class_arguments(name: str) -> Mapping[str, str]:
-    """Return the arguments of a class with their meanings, in Markdown, the usual ones first.
+    """Return the arguments of a launch class with their meanings in Markdown, common ones first.
 
     A meaning that is not documented is empty. The mapping is empty if launch has no such class.
     """

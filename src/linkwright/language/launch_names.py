@@ -53,7 +53,7 @@ class LaunchInclude:
 
     Attributes:
         target: the file, or None if it is unknown.
-        written: the last words of the path as written.
+        written: the path as written or, in Python, the last string of it.
         passed: the names of the arguments that are passed to it.
         is_known: whether `passed` is complete.
     """
@@ -241,7 +241,7 @@ def _included(launch: PythonLaunchText, call: Group, file: Path) -> LaunchInclud
 
 
 def _argument_groups(launch: PythonLaunchText, part: object) -> list[Group]:
-    """Return the brackets with the launch arguments in a call, or in a variable."""
+    """Return the bracket groups with launch arguments in an expression, or in the variable it names."""
     name = part.value if isinstance(part, Name) else part.callee if isinstance(part, Group) else ""
     bound = launch.python.bindings.get(name.partition(".")[0].strip()) if name else None
     parts = [part] if bound is None else bound.parts

@@ -1,6 +1,6 @@
 """Launch files in Python: the meaning of strings in calls such as ``Node(package="...")``.
 
-Nothing is run.
+The files are not run.
 """
 
 from __future__ import annotations
@@ -106,7 +106,7 @@ class PythonLaunchText:
         return tuple(arguments_in(self.document.text, self.document.file))
 
     def meaning_at(self, offset: int) -> _StringMeaning | None:
-        """Return the meaning of the string at an offset, or None outside strings."""
+        """Return the meaning of the string at an offset, or None outside of strings."""
         found = self.python.string_at(offset)
         return None if found is None else self._meaning_of(*found)
 
@@ -182,7 +182,7 @@ class PythonLaunchText:
         return NodeProgram(self.paths.text_of(package) or "", self.paths.text_of(executable) or "")
 
     def parameters(self, place: _StringMeaning) -> list[ParameterInfo]:
-        """Return the possible parameters of the nodes at a place."""
+        """Return the possible parameters of the nodes to which a string belongs."""
         found: dict[str, ParameterInfo] = {}
         for program in place.programs:
             names = (node_name(*program), program.executable)
@@ -246,7 +246,7 @@ class PythonLaunchText:
                 yield argument
 
     def path_through(self, place: _StringMeaning, end: int) -> str | None:
-        """Return the path up to the first slash after an offset in its last string."""
+        """Return the path of a string up to the first slash at or after an offset."""
         base = "" if place.base is None else place.base.text
         rest = place.text.value[end - place.text.start :].partition("/")[0]
         written = place.text.value[: end - place.text.start] + rest
@@ -387,7 +387,7 @@ def _explain_argument(launch: PythonLaunchText, place: _StringMeaning) -> str | 
 
 
 def _argument_completions(launch: PythonLaunchText, offset: int) -> Iterator[Completion]:
-    """Yield the arguments that the call around an offset does not have yet."""
+    """Yield completions of the arguments that the call around an offset does not have yet."""
     text = launch.document.text
     typed = _WORD_BEFORE.search(text, text.rfind("\n", 0, offset) + 1, offset)
     call = launch.python.call_at(offset)

@@ -54,7 +54,10 @@ def open_substitution(typed: str) -> Substitution | None:
 
 
 def substitution_around(text: str, offset: int) -> re.Match[str] | None:
-    """Return the innermost closed ``$(...)`` around an offset: its command and arguments."""
+    """Return the match of the innermost closed ``$(...)`` around an offset, or None.
+
+    Its groups are the command and the arguments.
+    """
     return next((found for found in _WHOLE.finditer(text) if found.start() <= offset <= found.end()), None)
 
 
@@ -89,7 +92,7 @@ def evaluate(text: str, file: Path, finder: PackageFinder, configurations: Mappi
 
 
 def path_words(text: str) -> Iterator[tuple[int, int]]:
-    """Yield the start and end of each word of a text, in which a ``$(...)`` is not split."""
+    """Yield the start and end of each word of a text. A ``$(...)`` is never split."""
     for found in _WORD.finditer(text):
         yield found.span()
 

@@ -268,7 +268,7 @@ def _known_parameters(launch: LaunchText, value: LaunchValue) -> tuple[Parameter
 
 
 def _offer_parameters(launch: LaunchText, value: LaunchValue) -> Iterator[Completion]:
-    """Yield the parameters of the node around a value."""
+    """Yield completions of the parameters of the node around a value."""
     known = _known_parameters(launch, value)
     for parameter in known:
         if parameter.name not in value.sibling_names and "*" not in parameter.name:

@@ -40,7 +40,7 @@ def file_references(
 
     Args:
         text: the text, which may be incomplete.
-        file: the file of the text, in whose folder relative paths begin.
+        file: the file of the text. Relative paths start at its folder.
         finder: finds packages.
         values: the values of the expressions in the text. A reference with expressions needs a single value.
     """

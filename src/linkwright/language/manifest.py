@@ -69,7 +69,7 @@ def _complete(document: Document, offset: int) -> Iterator[Completion]:
 
 
 def _single_children(text: str, offset: int) -> set[str]:
-    """Return the existing elements around an offset that may occur only once."""
+    """Return the tags of existing siblings at an offset that may occur only once."""
     around = []
     for element in Outline.of(text).elements_around(offset):
         end = element.end if element.closing is None else element.closing.start
@@ -94,9 +94,9 @@ def _text_completions(document: Document, tag: str, start: int) -> Iterator[Comp
 
 
 def _dependency_completions(document: Document, tag: str, start: int) -> Iterator[Completion]:
-    """Yield packages: first the used ones, then the usual ones of the tag, then the others.
+    """Yield completions of packages: used ones, then common ones of the tag, then the others.
 
-    Declared packages are left out.
+    Packages that the manifest declares are left out.
     """
     others = document.text[:start] + document.text[start:].partition("<")[2]
     seen = {name for other, name in _DECLARED.findall(others) if other in (tag, "depend", "name")}

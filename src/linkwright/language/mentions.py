@@ -137,7 +137,7 @@ def _kinds_of_keys(keys: Sequence[str], *, is_key: bool) -> tuple[NameKind, ...]
 
 
 def kinds_of_key(key: str) -> tuple[NameKind, ...]:
-    """Return the kinds of names that a parameter may hold, derived from its own name."""
+    """Return the kinds of names that a parameter may contain, derived from the parameter's name."""
     if _JOINTS.search(key):
         return (NameKind.JOINT,)
     return (NameKind.LINK,) if _FRAMES.search(key) else ()

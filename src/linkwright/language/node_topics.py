@@ -79,7 +79,7 @@ def topics_of(document: Document, programs: Iterable[NodeProgram]) -> list[NodeT
 
     Args:
         document: the launch file.
-        programs: the programs of the nodes; none for all that a launch file may have.
+        programs: the programs of the nodes.
 
     Raises:
         NotYetKnownError: the sources of the workspace were never read, and the document does not wait.

@@ -119,7 +119,10 @@ class OtherFiles:
         return files
 
     def _depends(self, file: Path, names: Names, mention: Mention) -> bool:
-        """Return whether a mention is in a package that depends on the own one, and so may mean its robots, too."""
+        """Return whether the package of a mention depends on the package of the renamed description.
+
+        Its files may then mean the renamed robots, too.
+        """
         package, own = enclosing_package(file.parent), enclosing_package(self._file.parent)
         if package is None or own is None or not any((kind, mention.name) in names for kind in mention.kinds):
             return False

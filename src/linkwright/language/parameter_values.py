@@ -35,14 +35,17 @@ _SENSOR_TOPICS = ("/scan", "/points")
 
 
 def sources_of(document: Document, section: Section) -> list[DeclaredParameter]:
-    """Return the parameters that the sources of a section's node declare, if it is unknown."""
+    """Return the parameters that the sources of a section's node declare.
+
+    The result is empty for patterns, known nodes, controller managers and declared controllers.
+    """
     if not section.may_be_controller or section.node in section.controllers:
         return []
     return declared_parameters(document, section.node)
 
 
 def kinds_of_parameter(key: str) -> tuple[NameKind, ...]:
-    """Return the kinds of names that a parameter may hold, derived from its own name."""
+    """Return the kinds of names that a parameter may contain, derived from the parameter's name."""
     last = key.rpartition(".")[2]
     return kinds_of_key(last)
 

@@ -26,7 +26,7 @@ class PluginClass:
     """A class that a package exports.
 
     Attributes:
-        name: the name by which it is loaded, such as ``diff_drive_controller/DiffDriveController``.
+        name: the lookup name of the class, such as ``diff_drive_controller/DiffDriveController``.
         type: the class in C++.
         base: the package of the base class, such as ``hardware_interface``.
         description: its description, or empty.

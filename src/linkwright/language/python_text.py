@@ -1,5 +1,6 @@
-"""The calls and strings of a Python text, which may be incomplete and is not run.
+"""The calls and strings of a Python text, which may be incomplete.
 
+The text is not run.
 Unclosed brackets end at the next statement.
 """
 

@@ -1,4 +1,4 @@
-"""Renaming of the name at a place in a file of any format."""
+"""Renaming of the name at an offset of a file in any format."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ class RenamableName:
 
 
 def renamable_name_at(project: Workspace, texts: Mapping[Path, str], file: Path, offset: int) -> RenamableName | None:
-    """Return the name at an offset of a file, or None if there is no renamable name.
+    """Return the renamable name at an offset of a file, or None if there is none.
 
     Args:
         project: the workspace.
@@ -207,7 +207,10 @@ def _rename_in_srdf(project: Workspace, texts: Mapping[Path, str], name: Occurre
 def _definition(
     project: Workspace, texts: Mapping[Path, str], robot: Path, name: Occurrence, value: str
 ) -> Occurrence | None:
-    """Return the definition of a link or joint that is written like a use, such as ``${prefix}wheel``; else None."""
+    """Return the definition of a link or joint whose source equals a use, or None.
+
+    The source of a name may contain expressions, such as ``${prefix}wheel``.
+    """
     found, _ = trials(project, texts, robot, is_partial=True, is_switched=False)
     for trial in found:
         for element in trial.expansion.document.root.elements(name.kind.value):

@@ -55,7 +55,7 @@ def occurrence_at(text: str, file: Path, offset: int) -> Occurrence | None:
 
 
 def xacro_name_at(text: str, file: Path, offset: int) -> Occurrence | None:
-    """Return the macro, parameter, property or argument at an offset of a model in xacro; None if there is none."""
+    """Return the macro, parameter, property or argument at an offset of an SDF xacro file, or None."""
     return _innermost((name for name in occurrences_in(text, file) if name.kind not in ROBOT_NAME_KINDS), offset)
 
 
@@ -86,7 +86,7 @@ def references(project: Workspace, texts: Mapping[Path, str], name: Occurrence) 
 
 
 def rename(project: Workspace, texts: Mapping[Path, str], name: Occurrence, new: str) -> Renaming:
-    """Return the proved edits that give a name another spelling.
+    """Return the proved edits that rename a name of a description.
 
     Args:
         project: the workspace.

@@ -47,7 +47,7 @@ _robots: WeakKeyDictionary[Workspace, dict[Path, _Robot]] = WeakKeyDictionary()
 
 
 def robot_names(document: Document) -> list[NameDefinition]:
-    """Return the links and joints of the robots that a file probably means, the likeliest first.
+    """Return the links and joints of the robots to which a file probably refers, likeliest first.
 
     Names with expressions are expanded, and located at the attribute with the expressions. A description that cannot
     be expanded provides its earlier names, the names in its valid parts, or the names without expressions.

@@ -74,9 +74,9 @@ def sdf_name_at(text: str, file: Path, offset: int) -> SdfName | None:
 def rename_in_sdf(
     project: Workspace, texts: Mapping[Path, str], name: SdfName, new: str
 ) -> tuple[set[Edit], list[Mention]]:
-    """Return the edits with which a link, joint, frame or model of an SDF text has a new name, and other mentions.
+    """Return the edits that rename a link, joint, frame or model of an SDF text, and uncertain mentions.
 
-    Other files may mean the name, such as a launch file that starts a model, but nothing proves it.
+    A mention in another file, such as a launch file that starts a model, may have another meaning.
 
     Args:
         project: the workspace.
@@ -125,7 +125,10 @@ def rename_in_sdf(
 
 
 def _check(project: Workspace, texts: Mapping[Path, str], file: Path, edits: set[Edit]) -> None:
-    """Check that as many values as before lead to elements, in the file and, if it is xacro, in its expansions."""
+    """Check that the edits keep the number of references to elements in the file.
+
+    For a xacro file, check its expansions, too.
+    """
     text = project.text(file, texts) or ""
     pairs = [(text, apply_edits(text, edits))]
     if file.name.endswith(".xacro"):
@@ -218,7 +221,7 @@ def _referred_elements(scope: SourceElement, value: str) -> Iterator[tuple[str, 
 
 
 def _path_from_top(element: SourceElement) -> tuple[str, ...] | None:
-    """Return the names from the outermost model to an element; None for names in a world."""
+    """Return the names from the outermost model to an element, or None for an element in a world."""
     names: list[str] = []
     current: SourceElement | None = element
     while current is not None and current.name != "sdf":
@@ -230,7 +233,7 @@ def _path_from_top(element: SourceElement) -> tuple[str, ...] | None:
 
 
 def _edits_of_includer(text: str, file: Path, model: Path, path: tuple[str, ...], new: str) -> Iterator[Edit]:
-    """Yield the edits of a file that includes a model: values that lead through the include to the name.
+    """Yield the edits of references to a name in a model from a file that includes the model.
 
     Args:
         text: the text of the file.

@@ -93,7 +93,7 @@ def _program(text: Text, offset: int, folder: Path) -> Iterator[Completion]:
 
 
 def _arguments(document: Document, offset: int) -> Iterator[Completion]:
-    """Yield the arguments of ``setup`` that are not given yet."""
+    """Yield completions of the arguments of ``setup`` that the call does not have yet."""
     call = python_text(document.text).call_at(offset)
     typed = _WORD_BEFORE.search(document.text, document.text.rfind("\n", 0, offset) + 1, offset)
     start = offset if typed is None else typed.start()

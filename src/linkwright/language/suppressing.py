@@ -63,7 +63,7 @@ def code_at(text: str, offset: int) -> tuple[str, int] | None:
 
 
 def _xml_comments(text: str, file: Path, code: str, offset: int) -> list[Edit]:
-    """Return the comments to try: on a new line, at the line end, and before the element."""
+    """Return the edits to try: a comment on a new line, at the line end, or before the element."""
     element = innermost_element(source_elements(text), offset)
     if element is None:
         return []
@@ -86,7 +86,7 @@ def _is_in_markup(text: str, offset: int) -> bool:
 
 
 def _line_comments(text: str, file: Path, code: str, offset: int) -> list[Edit]:
-    """Return the comments to try: on a new line above, and at the line end."""
+    """Return the edits to try: a comment on a new line above, or at the line end."""
     comment = f"# linkwright: ignore {code} ({REASON})"
     line, end = text.rfind("\n", 0, offset) + 1, _line_end(text, offset)
     written = text[line:end]

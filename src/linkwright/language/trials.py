@@ -174,7 +174,7 @@ def _element_around(project: Workspace, texts: Mapping[Path, str], span: Span, g
 
 
 def _switched(project: Workspace, texts: Mapping[Path, str], base: Trial, known: set[str]) -> Iterator[Trial]:
-    """Yield the other expansions that result from another value of a single argument."""
+    """Yield the new expansions that result from another value of a single argument."""
     begin = time.monotonic()
     for name, value in _values(project, texts, base.entry):
         if base.arguments.get(name) == value:

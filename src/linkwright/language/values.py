@@ -43,7 +43,7 @@ class ValuedText:
 
 
 def values_in(project: Workspace, texts: Mapping[Path, str], file: Path) -> list[ValuedText]:
-    """Return the texts with expressions in a file, in no particular order.
+    """Return the values of the texts with expressions in a file, in no particular order.
 
     Args:
         project: the workspace.
@@ -115,7 +115,7 @@ def describe_values(text: ValuedText, source: str) -> str:
 
 
 def _origin(evaluations: Sequence[tuple[Evaluation, Mapping[str, str]]]) -> str:
-    """Return the macro calls that lead to a value, and the arguments unless the defaults do."""
+    """Return the macro calls that lead to a value, and the arguments if the defaults do not."""
     calls = [call for call in dict.fromkeys(_call(evaluation.frame) for evaluation, _ in evaluations) if call]
     origin = f" {', '.join(calls[:_SHOWN_CALLS])}" + (", ..." if len(calls) > _SHOWN_CALLS else "")
     arguments = evaluations[0][1]

@@ -1,6 +1,6 @@
 """The content of the YAML files that properties load.
 
-It is found without an expansion, because a half-typed file cannot be expanded.
+The description is not expanded, because a file that is being typed often has errors.
 """
 
 from __future__ import annotations

@@ -164,7 +164,7 @@ def _value_completions(values: Iterable[str], start: int, detail: str = "") -> I
 
 
 def _default_completion(value: str | None, rule: AttributeRule | None, start: int) -> Iterator[Completion]:
-    """Yield the default of a value, unless the value equals the default."""
+    """Yield the default of a rule, unless the value equals it or the rule is a boolean."""
     if rule is not None and rule.default and rule.default != value and rule.type is not TRUTH:
         yield Completion(rule.default, ItemKind.VALUE, start, localized(phrase("default")))
 
@@ -258,7 +258,7 @@ def _name_completions(
     start: int,
     names: Sequence[NameDefinition],
 ) -> Iterator[Completion]:
-    """Yield the names of some kinds: expanded names and, in a macro, names as written."""
+    """Yield completions of names of some kinds: expanded names and, in a macro, names as written."""
     if not kinds:
         return
     expanded = [name for name in part_names(document) if name.kind in kinds]
