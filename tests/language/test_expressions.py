@@ -7,7 +7,13 @@ import ast
 from hypothesis import given
 from hypothesis import strategies as st
 
-from linkwright.language.expressions import decoded, expressions_in, inserted, is_part, parsed
+from linkwright.language.expressions import (
+    decode_entities,
+    expressions_in,
+    is_subexpression,
+    parse_expression,
+    substitute_name,
+)
 
 NUMBERS = st.sampled_from(["1", "2.5", "-3", "0.1"])
 SIGNS = st.sampled_from([" + ", " - ", "*", " / ", " ** ", " &lt; ", " and ", " or ", " == "])
@@ -28,13 +34,13 @@ USES = st.recursive(st.one_of(NUMBERS, st.just("name")), combined, max_leaves=4)
 
 
 def tree(text: str) -> str:
-    return ast.dump(ast.parse(decoded(text), mode="eval").body)
+    return ast.dump(ast.parse(decode_entities(text), mode="eval").body)
 
 
 @given(USES, VALUES)
 def test_an_inserted_expression_is_one_operand(use, value):
     start = use.index("name")
-    new = inserted(use, start, start + len("name"), value)
+    new = substitute_name(use, start, start + len("name"), value)
     assert new is not None
     assert tree(new) == tree(f"{use[:start]}({value}){use[start + len('name') :]}")
 
@@ -42,17 +48,17 @@ def test_an_inserted_expression_is_one_operand(use, value):
 @given(USES, VALUES)
 def test_what_was_inserted_is_a_part(use, value):
     start = use.index("name")
-    new = inserted(use, start, start + len("name"), value)
+    new = substitute_name(use, start, start + len("name"), value)
     assert new is not None
     begin = start + (new[start:] != value + use[start + len("name") :])
-    assert is_part(new, begin, begin + len(value))
+    assert is_subexpression(new, begin, begin + len(value))
 
 
 @given(st.text("${}()ab+'1 ", max_size=20))
 def test_no_text_is_too_much(text):
     for expression in expressions_in(text):
         assert text[expression.start : expression.start + 2] == "${"
-        assert text[slice(*expression.inside)] == expression.source
-    parsed(text)
-    is_part(text, 1, 3)
-    inserted(text, 1, 3, "a + b")
+        assert text[slice(*expression.inner_range)] == expression.source
+    parse_expression(text)
+    is_subexpression(text, 1, 3)
+    substitute_name(text, 1, 3, "a + b")

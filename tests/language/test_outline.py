@@ -41,4 +41,4 @@ def test_elements_of_any_text_lie_in_those_around_them(text: str):
 
 def test_elements_around_an_offset():
     text = "<a><b><c/></b></a>"
-    assert [element.tag.name for element in Outline.of(text).around(text.index("<c") + 1)] == ["a", "b", "c"]
+    assert [element.tag.name for element in Outline.of(text).elements_around(text.index("<c") + 1)] == ["a", "b", "c"]

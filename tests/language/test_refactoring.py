@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from linkwright.diagnostics import LinkwrightError
-from linkwright.language.proof import edited_texts
+from linkwright.language.proof import apply_edits_to_texts
 from linkwright.language.refactoring import Action, offers_at, refactor
 from linkwright.language.workspace import Workspace
 
@@ -36,7 +36,7 @@ class Description:
         offers = [*offers_at(self.text, self.file, start, start + len(place), names)]
         assert action in [offer.action for offer in offers]
         result = refactor(self.workspace, {}, action, self.file, start, start + len(place))
-        changed = edited_texts(self.workspace, {}, result.edits)[self.file]
+        changed = apply_edits_to_texts(self.workspace, {}, result.edits)[self.file]
         return changed.removeprefix(HEAD).removesuffix("</robot>\n")
 
     def refused(self, action: Action, place: str) -> str:

@@ -10,7 +10,7 @@ import pytest
 from linkwright.diagnostics import LinkwrightError
 from linkwright.language.file_renaming import rename_file
 from linkwright.language.includes import real
-from linkwright.language.rename_places import place_at, rename_place
+from linkwright.language.rename_places import renamable_name_at, rename_name
 from linkwright.language.renaming import Renaming
 from linkwright.language.workspace import Workspace
 from linkwright.xacro import expand
@@ -110,9 +110,9 @@ class Files:
         """Rename what follows a text in a file, and return the renaming with the new texts of all changed files."""
         path = self.folder / file
         text = path.read_text(encoding="utf-8")
-        place = place_at(self.workspace, {}, path, text.index(before) + len(before))
+        place = renamable_name_at(self.workspace, {}, path, text.index(before) + len(before))
         assert place is not None
-        renaming = rename_place(self.workspace, {}, place, new)
+        renaming = rename_name(self.workspace, {}, place, new)
         texts: dict[str, str] = {}
         for edit in sorted(renaming.edits, reverse=True):
             name = edit.file.relative_to(self.folder).as_posix()

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from linkwright.language.proof import edited
+from linkwright.language.proof import apply_edits
 from linkwright.language.suppressing import code_at, suppression
 
 XML, TEXT = "<!-- linkwright: ignore LW104 (reason) -->", "# linkwright: ignore LW104 (reason)"
@@ -39,7 +39,7 @@ XML, TEXT = "<!-- linkwright: ignore LW104 (reason) -->", "# linkwright: ignore 
 )
 def test_a_comment_suppresses_the_finding_and_changes_nothing_else(name, text, place, expected):
     edit = suppression(text, Path(name), "LW104", text.rindex(place))
-    assert (None if edit is None else edited(text, [edit])) == expected
+    assert (None if edit is None else apply_edits(text, [edit])) == expected
 
 
 def test_the_code_in_a_comment_is_known_at_its_place():

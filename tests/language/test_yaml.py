@@ -12,7 +12,7 @@ from linkwright.language.parameter_catalogue import node_names, node_parameters,
 from linkwright.language.parameter_files import PARAMETER_FILES
 from linkwright.language.rviz_files import RVIZ_FILES
 from linkwright.language.workspace import Workspace
-from linkwright.language.yaml_outline import Place, YamlOutline
+from linkwright.language.yaml_outline import YamlOutline, YamlPosition
 
 ROBOT = """<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">
   <xacro:macro name="wheel" params="side">
@@ -93,20 +93,20 @@ def typing(tmp_path: Path) -> Typing:
 @pytest.mark.parametrize(
     ("marked", "place", "path", "typed"),
     [
-        ("a:\n  b|", Place.KEY, ("a",), "b"),
-        ("a:\n  b:\n    c: 1\n  |", Place.KEY, ("a",), ""),
-        ("a:\n  b: fo|o", Place.VALUE, ("a", "b"), "fo"),
-        ("a:\n  b: [x,\n   y|]\n", Place.VALUE, ("a", "b"), "y"),
-        ("a:\n  - 'x|", Place.VALUE, ("a",), "x"),
-        ("a:\n- x: |", Place.VALUE, ("a", "x"), ""),
-        ("a: {b: 1, c|: 2}", Place.KEY, ("a",), "c"),
-        ("a: 1 # b|", Place.NOTHING, (), ""),
-        ("a: |\n  b", Place.VALUE, ("a",), ""),
+        ("a:\n  b|", YamlPosition.KEY, ("a",), "b"),
+        ("a:\n  b:\n    c: 1\n  |", YamlPosition.KEY, ("a",), ""),
+        ("a:\n  b: fo|o", YamlPosition.VALUE, ("a", "b"), "fo"),
+        ("a:\n  b: [x,\n   y|]\n", YamlPosition.VALUE, ("a", "b"), "y"),
+        ("a:\n  - 'x|", YamlPosition.VALUE, ("a",), "x"),
+        ("a:\n- x: |", YamlPosition.VALUE, ("a", "x"), ""),
+        ("a: {b: 1, c|: 2}", YamlPosition.KEY, ("a",), "c"),
+        ("a: 1 # b|", YamlPosition.NOTHING, (), ""),
+        ("a: |\n  b", YamlPosition.VALUE, ("a",), ""),
     ],
 )
 def test_the_place_of_a_cursor_is_found_by_indentation(marked, place, path, typed):
     cursor = YamlOutline(marked.replace("|", "", 1)).cursor(marked.index("|"))
-    assert (cursor.place, cursor.within.path, cursor.typed) == (place, path, typed)
+    assert (cursor.position, cursor.parent_entry.path, cursor.typed) == (place, path, typed)
 
 
 @pytest.mark.parametrize(

@@ -49,7 +49,7 @@ _COMMANDS = {
     "if": "begins commands for a condition",
     "foreach": "repeats commands",
 }
-_PACKAGES = frozenset({"find_package", "ament_target_dependencies", "ament_export_dependencies"})
+_PACKAGE_COMMANDS = frozenset({"find_package", "ament_target_dependencies", "ament_export_dependencies"})
 _KEYWORDS = {
     "install": ("DIRECTORY", "TARGETS", "PROGRAMS", "FILES", "DESTINATION"),
     "find_package": ("REQUIRED", "QUIET", "COMPONENTS"),
@@ -62,16 +62,16 @@ _SOURCES = (".cpp", ".cc", ".cxx", ".c")
 _OPENING = re.compile(r"(\w+)\s{0,9}\(")
 _CALL = re.compile(r"(?i)\b([a-z_]\w*)\s{0,9}\(([^()]*)\)?")
 _COMMENT = re.compile(r"#[^\n]*")
-_WORD = re.compile(r"[^\s\"();#]*$")
-_NAMED = re.compile(r"[^\s\"();#]+")
+_WORD_BEFORE_CURSOR = re.compile(r"[^\s\"();#]*$")
+_WHOLE_WORD = re.compile(r"[^\s\"();#]+")
 _TARGET = re.compile(r"(?i)\badd_(?:executable|library)\s{0,9}\(\s{0,99}([\w-]+)")
-_FOUND = re.compile(r"(?i)\bfind_package\s{0,9}\(\s{0,99}([\w-]+)")
+_FIND_PACKAGE = re.compile(r"(?i)\bfind_package\s{0,9}\(\s{0,99}([\w-]+)")
 _STATEMENT = re.compile(r"(?:^|\n)[ \t]*(\w*)$")
-_LOOKED_BACK = 20_000
+_MAX_CHARACTERS_BEFORE = 20_000
 
 
 @dataclass
-class _Build:
+class _CMakeCursor:
     """A build file, and a cursor position in it."""
 
     document: Document
@@ -80,7 +80,7 @@ class _Build:
     @cached_property
     def before(self) -> str:
         """The text before the cursor, with spaces instead of comments."""
-        begin = max(0, self.offset - _LOOKED_BACK)
+        begin = max(0, self.offset - _MAX_CHARACTERS_BEFORE)
         text = self.document.text[begin : self.offset]
         return _COMMENT.sub(lambda comment: " " * len(comment[0]), text)
 
@@ -97,14 +97,14 @@ class _Build:
     @cached_property
     def typed(self) -> str:
         """The word that ends at the cursor."""
-        found = _WORD.search(self.before)
+        found = _WORD_BEFORE_CURSOR.search(self.before)
         return "" if found is None else found[0]
 
     @cached_property
     def word(self) -> tuple[int, int]:
-        """The range of the whole word around the cursor."""
+        """The start and end offset of the whole word around the cursor."""
         start = self.offset - len(self.typed)
-        found = _NAMED.match(self.document.text, start)
+        found = _WHOLE_WORD.match(self.document.text, start)
         return (start, start) if found is None else found.span()
 
     @property
@@ -113,30 +113,30 @@ class _Build:
         return self.document.file.parent
 
     def keyword(self, words: Iterable[str]) -> str:
-        """Return the last keyword, a word in capitals, or empty if there is none."""
+        """Return the last keyword in capitals, or an empty string if there is none."""
         return next((word for word in reversed([*words]) if word.isupper() and not word.startswith("$")), "")
 
     def targets(self) -> list[str]:
-        """Return the targets that the file builds."""
+        """Return the names of the targets that the file builds."""
         return [*dict.fromkeys(_TARGET.findall(self.document.text))]
 
     def packages(self, start: int) -> Iterator[Completion]:
-        """Yield the packages that the file does not find yet, the declared dependencies first."""
-        found = set(_FOUND.findall(self.document.text[:start] + self.document.text[self.offset :]))
-        wanted = BUILD_DEPENDENCY.findall(text_of(self.folder / "package.xml"))
-        for name in dict.fromkeys(each for each in wanted if each not in found):
+        """Yield completions of packages that the file does not find yet, declared dependencies first."""
+        found = set(_FIND_PACKAGE.findall(self.document.text[:start] + self.document.text[self.offset :]))
+        declared = BUILD_DEPENDENCY.findall(text_of(self.folder / "package.xml"))
+        for name in dict.fromkeys(dependency for dependency in declared if dependency not in found):
             yield Completion(name, ItemKind.PACKAGE, start, "package.xml")
         yield from (item for item in offer_packages(self.document, start) if item.label not in found)
 
 
 def _complete(document: Document, offset: int) -> Iterator[Completion]:
     found: dict[str, Completion] = {}
-    for item in _offers(_Build(document, offset)):
+    for item in _completions(_CMakeCursor(document, offset)):
         found.setdefault(item.label, item)
     yield from found.values()
 
 
-def _offers(build: _Build) -> Iterator[Completion]:
+def _completions(build: _CMakeCursor) -> Iterator[Completion]:
     start = build.offset - len(build.typed)
     if build.call is None:
         if _STATEMENT.search(build.before):
@@ -148,43 +148,47 @@ def _offers(build: _Build) -> Iterator[Completion]:
     if command == "find_package" and not words:
         yield from build.packages(start)
     elif (command == "ament_target_dependencies" and words) or command == "ament_export_dependencies":
-        names = dict.fromkeys(_FOUND.findall(build.document.text))
-        yield from _values((name for name in names if name not in words), start, ItemKind.PACKAGE)
+        names = dict.fromkeys(_FIND_PACKAGE.findall(build.document.text))
+        yield from _value_completions((name for name in names if name not in words), start, ItemKind.PACKAGE)
     elif command == "install" and keyword in ("DIRECTORY", "FILES", "PROGRAMS"):
         yield from offer_files(build.folder, build.typed, build.offset)
     elif keyword.endswith("DESTINATION"):
-        yield from _values(_DESTINATIONS, start)
+        yield from _value_completions(_DESTINATIONS, start)
     elif command == "rosidl_generate_interfaces" and words and keyword != "DEPENDENCIES":
-        yield from _values((name for name in _interfaces(build.folder) if name not in words), start, ItemKind.FILE)
+        yield from _value_completions(
+            (name for name in _interfaces(build.folder) if name not in words), start, ItemKind.FILE
+        )
     elif command == "rosidl_generate_interfaces" and words:
         yield from build.packages(start)
     elif command == "pluginlib_export_plugin_description_file" and words:
         yield from offer_files(build.folder, build.typed, build.offset)
     elif command == "pluginlib_export_plugin_description_file":
-        yield from _values(("hardware_interface", "controller_interface", "nav2_core", "rviz_common"), start)
+        yield from _value_completions(("hardware_interface", "controller_interface", "nav2_core", "rviz_common"), start)
         yield from build.packages(start)
     elif command in ("add_executable", "add_library", "ament_auto_add_executable", "ament_auto_add_library"):
         if words:
             yield from offer_files(build.folder, build.typed, build.offset)
     elif command == "project" and not words:
         yield Completion(build.folder.name, ItemKind.PACKAGE, start)
-    elif command.startswith("target_") or (command == "install" and keyword == "TARGETS") or command in _OF_TARGETS:
-        yield from _values((name for name in build.targets() if name not in words), start)
-    yield from _values((word for word in _KEYWORDS.get(command, ()) if word not in words), start)
+    elif (
+        command.startswith("target_") or (command == "install" and keyword == "TARGETS") or command in _TARGET_COMMANDS
+    ):
+        yield from _value_completions((name for name in build.targets() if name not in words), start)
+    yield from _value_completions((word for word in _KEYWORDS.get(command, ()) if word not in words), start)
     if not build.typed or build.typed.startswith("$"):
         yield Completion("${PROJECT_NAME}", ItemKind.VALUE, start)
 
 
-_OF_TARGETS = frozenset({"ament_target_dependencies", "rclcpp_components_register_node", "ament_export_targets"})
+_TARGET_COMMANDS = frozenset({"ament_target_dependencies", "rclcpp_components_register_node", "ament_export_targets"})
 
 
-def _values(names: Iterable[str], start: int, kind: ItemKind = ItemKind.VALUE) -> Iterator[Completion]:
+def _value_completions(names: Iterable[str], start: int, kind: ItemKind = ItemKind.VALUE) -> Iterator[Completion]:
     for name in names:
         yield Completion(name, kind, start)
 
 
 def _interfaces(folder: Path) -> list[str]:
-    """Return the files of messages, services and actions, relative to the package."""
+    """Return the paths of the message, service and action files, relative to the package."""
     files = (file for part in ("msg", "srv", "action") for file in sorted((folder / part).glob("*")))
     return [file.relative_to(folder).as_posix() for file in files if file.suffix in _INTERFACES]
 
@@ -193,13 +197,13 @@ def _interfaces(folder: Path) -> list[str]:
 
 
 def _explain(document: Document, offset: int) -> Explanation | None:
-    build = _Build(document, offset)
+    build = _CMakeCursor(document, offset)
     start, end = build.word
     word = document.text[start:end]
     if build.call is None:
         purpose = _COMMANDS.get(word.lower())
         return None if purpose is None else Explanation(f"`{word}`: {purpose}", start, end)
-    text = explain_package(document, word) if build.call[0] in _PACKAGES and word.isidentifier() else None
+    text = explain_package(document, word) if build.call[0] in _PACKAGE_COMMANDS and word.isidentifier() else None
     path = _path(document, word)
     if text is None and path is not None:
         text = explain_file(path)
@@ -218,12 +222,12 @@ def _path(document: Document, word: str) -> Path | None:
 
 
 def _define(document: Document, offset: int) -> Iterator[Target]:
-    build = _Build(document, offset)
+    build = _CMakeCursor(document, offset)
     start, end = build.word
     word = document.text[start:end]
     if build.call is None or not word:
         return
-    if build.call[0] in _PACKAGES:
+    if build.call[0] in _PACKAGE_COMMANDS:
         yield from target_of_package(document, word)
     for found in _TARGET.finditer(document.text):
         if found[1] == word:
@@ -237,7 +241,7 @@ def _define(document: Document, offset: int) -> Iterator[Target]:
 def _links(document: Document) -> Iterator[FileReference]:
     text = _COMMENT.sub(lambda comment: " " * len(comment[0]), document.text)
     for call in _CALL.finditer(text):
-        for word in _NAMED.finditer(text, *call.span(2)):
+        for word in _WHOLE_WORD.finditer(text, *call.span(2)):
             path = _path(document, word[0])
             if path is not None and path.is_file():
                 yield FileReference(*word.span(), path)

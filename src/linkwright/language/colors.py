@@ -1,4 +1,4 @@
-"""The colours in an XML text: URDF's ``rgba``, and the colours of SDF materials and lights."""
+"""The colors in an XML text: URDF's ``rgba``, and the colors of SDF materials and lights."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ _NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
 _COLOR = re.compile(rf"\s*({_NUMBER})\s+({_NUMBER})\s+({_NUMBER})(?:\s+({_NUMBER}))?\s*")
 
 
-class WrittenColor(NamedTuple):
-    """A colour in a text.
+class ColorLiteral(NamedTuple):
+    """A color in a text.
 
     Attributes:
-        start: the character offset of the numbers.
+        start: the character offset of the first number.
         end: the offset after the last number.
         rgba: red, green, blue and alpha, from 0 to 1.
     """
@@ -27,28 +27,28 @@ class WrittenColor(NamedTuple):
     rgba: tuple[float, float, float, float]
 
 
-def colors_in(text: str) -> Iterator[WrittenColor]:
-    """Yield the colours that are written as plain numbers, in text order."""
+def colors_in(text: str) -> Iterator[ColorLiteral]:
+    """Yield the colors that consist of plain numbers from 0 to 1, in text order."""
     tag = ""
     for token in tokens(text):
         if token.kind is Kind.START:
             tag = token.name
             for attribute in token.attributes():
                 if attribute.name in ("rgba", "rgb"):
-                    yield from _color(attribute.value or "", attribute.value_start)
+                    yield from _parse_color(attribute.value or "", attribute.value_start)
         elif token.kind is Kind.TEXT and tag in _TAGS:
-            yield from _color(token.text, token.start)
+            yield from _parse_color(token.text, token.start)
 
 
-def written_color(rgba: tuple[float, float, float, float], *, with_alpha: bool) -> str:
-    """Return the numbers of a colour as they are written in a description."""
+def format_color(rgba: tuple[float, float, float, float], *, with_alpha: bool) -> str:
+    """Return the numbers of a color in the notation of descriptions, separated by spaces."""
     return " ".join(f"{value:.4g}" for value in rgba[: 4 if with_alpha else 3])
 
 
-def _color(value: str, start: int) -> Iterator[WrittenColor]:
-    found = _COLOR.fullmatch(value)
-    if found is None:
+def _parse_color(value: str, start: int) -> Iterator[ColorLiteral]:
+    match = _COLOR.fullmatch(value)
+    if match is None:
         return
-    red, green, blue, alpha = (float(number) for number in (*found.groups()[:3], found[4] or 1))
+    red, green, blue, alpha = (float(number) for number in (*match.groups()[:3], match[4] or 1))
     if all(0 <= part <= 1 for part in (red, green, blue, alpha)):
-        yield WrittenColor(start + found.start(1), start + found.end(4 if found[4] else 3), (red, green, blue, alpha))
+        yield ColorLiteral(start + match.start(1), start + match.end(4 if match[4] else 3), (red, green, blue, alpha))

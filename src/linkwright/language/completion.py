@@ -1,4 +1,4 @@
-"""Completions, and the names of a description in the order in which they are offered."""
+"""Completions, and functions that select and sort the names of a description for them."""
 
 from __future__ import annotations
 
@@ -46,8 +46,8 @@ class Completion:
     snippet: str = ""
 
 
-def of_kind(names: Sequence[NameDefinition], kind: NameKind) -> list[NameDefinition]:
-    """Return the definitions of a kind, one for each name."""
+def definitions_of_kind(names: Sequence[NameDefinition], kind: NameKind) -> list[NameDefinition]:
+    """Return the first definition of each name of a kind."""
     found: dict[str, NameDefinition] = {}
     for name in names:
         if name.kind is kind:
@@ -55,6 +55,6 @@ def of_kind(names: Sequence[NameDefinition], kind: NameKind) -> list[NameDefinit
     return list(found.values())
 
 
-def most_used(names: Iterable[NameDefinition], text: str) -> list[NameDefinition]:
-    """Return definitions, sorted by how often a text contains their names, the most used first."""
+def sorted_by_use(names: Iterable[NameDefinition], text: str) -> list[NameDefinition]:
+    """Return definitions in the order of how often a text contains their names, most often first."""
     return sorted(names, key=lambda name: -text.count(name.name))

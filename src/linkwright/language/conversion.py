@@ -9,7 +9,7 @@ from pathlib import Path
 from linkwright.diagnostics import LinkwrightError, display_path, phrase
 from linkwright.language.proof import UnprovedError
 from linkwright.language.workspace import Workspace
-from linkwright.language.written import written_elements
+from linkwright.language.written import source_elements
 from linkwright.lint.rules.xacro_tags import ADDRESS
 from linkwright.loading.deferred import lazy_pattern
 from linkwright.xacro import expand
@@ -31,7 +31,7 @@ def can_be_converted(text: str, file: Path) -> bool:
     """Return whether a file is plain URDF, without xacro."""
     if not file.name.endswith(".urdf"):
         return False
-    root = next(iter(written_elements(text)), None)
+    root = next(iter(source_elements(text)), None)
     return root is not None and root.name == "robot" and "xmlns:xacro" not in root.tag.text
 
 
@@ -45,29 +45,30 @@ def convert_to_xacro(project: Workspace, texts: Mapping[Path, str], file: Path, 
         text: its text.
 
     Raises:
-        UnprovedError: the file exists, or its expansion would differ from the URDF.
+        UnprovedError: the new file exists or is outside of the workspace, the URDF is invalid, or the expansion would
+            differ from it.
     """
     new = file.with_name(f"{file.name}.xacro")
     if new.exists() or new in texts:
         raise UnprovedError(phrase("'{file}' already exists", file=display_path(str(new))))
     if not project.contains(new):
         raise UnprovedError(phrase("'{file}' is outside of the workspace", file=display_path(str(new))))
-    root = next(iter(written_elements(text)), None)
+    root = next(iter(source_elements(text)), None)
     if root is None:
         raise UnprovedError(phrase("the file has no element"))
-    at = root.tag.name_start + len(root.name)
+    insertion_offset = root.tag.name_start + len(root.name)
     name = next((attribute for attribute in root.tag.attributes() if attribute.name == "name"), None)
-    at = at if name is None else name.end
-    written = f'{_escaped(text[:at])} xmlns:xacro="{ADDRESS}"{_escaped(text[at:])}'
+    insertion_offset = insertion_offset if name is None else name.end
+    xacro_text = f'{_escaped(text[:insertion_offset])} xmlns:xacro="{ADDRESS}"{_escaped(text[insertion_offset:])}'
     try:
-        overlay = Overlay({str(new): written})
+        overlay = Overlay({str(new): xacro_text})
         expansion = str(expand(new, {}, packages=project.finder(file), overlay=overlay))
-        first, second = (_normal(parse(one, file.name).root) for one in (text, expansion))
+        first, second = (_comparable_elements(parse(source, file.name).root) for source in (text, expansion))
     except LinkwrightError as error:
         raise UnprovedError(error.diagnostics[0].message, error.diagnostics[0].span) from None
     if first != second:
         raise UnprovedError(phrase("the robot of '{file}' would change", file=file.name))
-    return NewFile(new, written)
+    return NewFile(new, xacro_text)
 
 
 def _escaped(text: str) -> str:
@@ -78,8 +79,8 @@ def _escaped(text: str) -> str:
     )
 
 
-def _normal(root: Element) -> list[tuple[object, ...]]:
-    """Return the elements with attributes and texts, without the xacro namespace declaration."""
+def _comparable_elements(root: Element) -> list[tuple[object, ...]]:
+    """Return the tag, attributes and text of each element, without the xacro namespace declaration."""
     return [
         (
             element.tag,

@@ -13,7 +13,7 @@ _SUBSTITUTION = re.compile(r"\$\(\s*(\w*)(?:\s+([^()\s]*))?$")
 _NAME = re.compile(r"[A-Za-z_][\w.]*")
 
 
-class Spot(Enum):
+class CursorSyntax(Enum):
     """The kinds of cursor positions that an editor distinguishes."""
 
     TAG = "tag"
@@ -29,16 +29,16 @@ class Cursor:
     """A cursor position in a text, with its context.
 
     Attributes:
-        spot: the kind of position.
+        syntax: the kind of position.
         offset: the character offset.
         tags: the names of the enclosing elements, from the root. Inside an attribute, the last is the element itself.
-        token: the tag at the cursor, or None in a text.
+        token: the tag at the cursor, or None outside of tags.
         attribute: the attribute whose name or value contains the cursor.
         typed: the part of the name, value or text before the cursor.
         elements: the start tags of `tags`.
     """
 
-    spot: Spot
+    syntax: CursorSyntax
     offset: int
     tags: tuple[str, ...]
     token: Token | None = None
@@ -47,7 +47,7 @@ class Cursor:
     elements: tuple[Token, ...] = ()
 
     @property
-    def in_expression(self) -> bool:
+    def is_in_expression(self) -> bool:
         """Whether the cursor is inside ``${...}``."""
         return _EXPRESSION.search(self.typed) is not None
 
@@ -64,7 +64,7 @@ class Cursor:
 
     @property
     def word(self) -> str:
-        """The name in an expression that is being typed at the cursor."""
+        """The part of a name in an expression before the cursor, or empty."""
         found = re.search(r"[A-Za-z_][\w.]*$", self.typed)
         return found[0] if found else ""
 
@@ -74,14 +74,14 @@ def cursor_at(text: str, offset: int) -> Cursor:
     tags: list[str] = []
     elements: list[Token] = []
     for token in tokens(text):
-        inside = token.start < offset < token.end or (offset == token.end and not token.is_closed)
-        if inside and token.kind is Kind.END:
+        is_inside = token.start < offset < token.end or (offset == token.end and not token.is_closed)
+        if is_inside and token.kind is Kind.END:
             typed = text[token.start + 2 : offset]
-            return Cursor(Spot.CLOSING_TAG, offset, tuple(tags), token, None, typed, tuple(elements))
-        if inside and token.kind is Kind.START:
+            return Cursor(CursorSyntax.CLOSING_TAG, offset, tuple(tags), token, None, typed, tuple(elements))
+        if is_inside and token.kind is Kind.START:
             return _in_tag(text, offset, token, (*tags, token.name), (*elements, token))
-        if inside and token.kind is not Kind.TEXT:
-            return Cursor(Spot.ELSEWHERE, offset, tuple(tags))
+        if is_inside and token.kind is not Kind.TEXT:
+            return Cursor(CursorSyntax.ELSEWHERE, offset, tuple(tags))
         if offset <= token.start or (token.kind is Kind.TEXT and offset <= token.end):
             break
         if token.kind is Kind.START and token.name and not token.is_empty_element:
@@ -92,20 +92,22 @@ def cursor_at(text: str, offset: int) -> Cursor:
                 pass
             del elements[len(tags) :]
     begin = max(text.rfind(">", 0, offset), text.rfind("<", 0, offset)) + 1
-    return Cursor(Spot.TEXT, offset, tuple(tags), typed=text[begin:offset], elements=tuple(elements))
+    return Cursor(CursorSyntax.TEXT, offset, tuple(tags), typed=text[begin:offset], elements=tuple(elements))
 
 
 def _in_tag(text: str, offset: int, token: Token, tags: tuple[str, ...], elements: tuple[Token, ...]) -> Cursor:
     if offset <= token.name_start + len(token.name):
         typed = text[token.name_start : offset]
-        return Cursor(Spot.TAG, offset, tags[:-1], token, typed=typed, elements=elements[:-1])
+        return Cursor(CursorSyntax.TAG, offset, tags[:-1], token, typed=typed, elements=elements[:-1])
     for attribute in token.attributes():
         if attribute.start <= offset <= attribute.start + len(attribute.name):
-            return Cursor(Spot.ATTRIBUTE, offset, tags, token, attribute, text[attribute.start : offset], elements)
+            return Cursor(
+                CursorSyntax.ATTRIBUTE, offset, tags, token, attribute, text[attribute.start : offset], elements
+            )
         if attribute.value is not None and attribute.value_start <= offset <= attribute.value_end:
             typed = text[attribute.value_start : offset]
-            return Cursor(Spot.VALUE, offset, tags, token, attribute, typed, elements)
-    return Cursor(Spot.ATTRIBUTE, offset, tags, token, elements=elements)
+            return Cursor(CursorSyntax.VALUE, offset, tags, token, attribute, typed, elements)
+    return Cursor(CursorSyntax.ATTRIBUTE, offset, tags, token, elements=elements)
 
 
 def name_at(text: str, offset: int) -> tuple[str, int] | None:

@@ -33,7 +33,7 @@ _TAGS = {
     "joint": NameKind.JOINT,
     "material": NameKind.MATERIAL,
 }
-_COLOUR = lazy_pattern(r"""(?:(?!</material).)*?<color\b[^>]*?\brgba\s*=\s*["']([^"']*)["']""", re.DOTALL)
+_COLOR = lazy_pattern(r"""(?:(?!</material).)*?<color\b[^>]*?\brgba\s*=\s*["']([^"']*)["']""", re.DOTALL)
 _DETAILS = {NameKind.MACRO: "params", NameKind.PROPERTY: "value", NameKind.ARGUMENT: "default", NameKind.JOINT: "type"}
 
 
@@ -71,15 +71,15 @@ def definitions_in(text: str, file: Path) -> Iterator[NameDefinition]:
         kind = _TAGS.get(token.name) if token.kind is Kind.START else None
         if kind is None:
             continue
-        given: dict[str, TokenAttribute] = {attribute.name: attribute for attribute in token.attributes()}
-        name = given.get("name")
+        attributes: dict[str, TokenAttribute] = {attribute.name: attribute for attribute in token.attributes()}
+        name = attributes.get("name")
         if name is not None and name.value and not (kind is NameKind.MATERIAL and token.is_empty_element):
-            detail, scope = given.get(_DETAILS.get(kind, "")), given.get("scope")
+            detail, scope = attributes.get(_DETAILS.get(kind, "")), attributes.get("scope")
             owner = "" if not macros or (scope is not None and scope.value) else macros[-1]
-            written = (detail.value or "") if detail else ""
+            detail_text = (detail.value or "") if detail else ""
             if kind is NameKind.MATERIAL:
-                colour = _COLOUR.match(text, token.end)
-                written = colour[1] if colour else ""
-            yield NameDefinition(kind, name.value, file, name.value_start, written, owner)
+                color = _COLOR.match(text, token.end)
+                detail_text = color[1] if color else ""
+            yield NameDefinition(kind, name.value, file, name.value_start, detail_text, owner)
         if kind is NameKind.MACRO and not token.is_empty_element:
             macros.append("" if name is None else name.value or "")

@@ -44,11 +44,11 @@ class ExpandedText:
     text: str
     elements: tuple[ExpandedElement, ...]
 
-    def at(self, offset: int) -> ExpandedElement | None:
+    def element_at(self, offset: int) -> ExpandedElement | None:
         """Return the last element whose start tag begins at or before an offset, or None."""
         return next((element for element in reversed(self.elements) if element.start <= offset), None)
 
-    def of(self, file: Path, offset: int) -> list[ExpandedElement]:
+    def elements_from(self, file: Path, offset: int) -> list[ExpandedElement]:
         """Return the elements whose source is the start tag around an offset of a file."""
         return [
             element
@@ -69,18 +69,18 @@ def expanded_text(
         arguments: the values of its arguments, by name.
 
     Raises:
-        LinkwrightError: the errors of the description.
+        LinkwrightError: the description cannot be expanded.
     """
     overlay = Overlay({str(path): text for path, text in texts.items()})
     expansion = expand(entry, arguments, packages=project.finder(entry), overlay=overlay)
     text = str(expansion)
-    written = parse(text, str(entry)).root
+    expanded_root = parse(text, str(entry)).root
     elements = []
-    for shown, element in zip(written.walk(), expansion.document.root.walk(), strict=True):
-        place = _tag_range(shown)
+    for expanded_element, element in zip(expanded_root.walk(), expansion.document.root.walk(), strict=True):
+        expanded_range = _tag_range(expanded_element)
         source = _tag_range(element)
-        if place is not None and source is not None and element.source is not None:
-            elements.append(ExpandedElement(*place, real(element.source.name), *source))
+        if expanded_range is not None and source is not None and element.source is not None:
+            elements.append(ExpandedElement(*expanded_range, real(element.source.name), *source))
     return ExpandedText(text, tuple(elements))
 
 

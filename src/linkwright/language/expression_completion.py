@@ -8,7 +8,7 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from linkwright.language.completion import Completion, ItemKind, of_kind
+from linkwright.language.completion import Completion, ItemKind, definitions_of_kind
 from linkwright.language.cursor import Cursor
 from linkwright.language.definitions import NameDefinition, NameKind
 from linkwright.language.format import Document
@@ -41,7 +41,7 @@ _COMMANDS = {
     "dirname": "the folder of this file",
     "eval": "the value of an expression",
 }
-_USUAL = ("pi", "radians", "sin", "cos", "sqrt", "abs", "max", "min")
+_COMMON_FUNCTIONS = ("pi", "radians", "sin", "cos", "sqrt", "abs", "max", "min")
 _WORDS = re.compile(r"[A-Za-z_]\w*")
 _EXPRESSION = re.compile(r"\$\{([^{}]*)\}")
 _ITEM = re.compile(r"""([A-Za-z_]\w*)((?:\[\s*["'][^"'\]]*["']\s*\]|\.[A-Za-z_]\w*)*)(?:\[\s*["']|\.)([\w-]*)$""")
@@ -52,6 +52,8 @@ _LONGEST_VALUE = 60
 def complete_expression(document: Document, cursor: Cursor, names: Sequence[NameDefinition]) -> Iterator[Completion]:
     """Yield the names for an expression: parameters, properties by use, then functions.
 
+    After the name of a mapping from a YAML file and a dot or bracket, yield the keys of the mapping instead.
+
     Args:
         document: the text.
         cursor: a cursor in ``${...}``.
@@ -59,28 +61,32 @@ def complete_expression(document: Document, cursor: Cursor, names: Sequence[Name
     """
     item = _ITEM.search(cursor.typed)
     if item is not None and item[1] not in ("xacro", "math", "python"):
-        yield from _items(document, item, cursor, names)
+        yield from _key_completions(document, item, cursor, names)
         return
     begin = cursor.offset - len(cursor.word)
-    uses = _uses(document.text)
+    uses = _word_counts(document.text)
     for parameter in parameters_in_scope(cursor):
         detail = "" if parameter.default is None else f"= {parameter.default}"
         yield Completion(parameter.name, ItemKind.PROPERTY, begin, detail, f"**parameter {parameter.name}**")
     macro = cursor.macro
-    own = "" if macro is None else next((each.value or "" for each in macro.attributes() if each.name == "name"), "")
-    properties = of_kind([name for name in names if not name.owner or name.owner == own], NameKind.PROPERTY)
+    macro_name = (
+        "" if macro is None else next((each.value or "" for each in macro.attributes() if each.name == "name"), "")
+    )
+    properties = definitions_of_kind(
+        [name for name in names if not name.owner or name.owner == macro_name], NameKind.PROPERTY
+    )
 
     def rank(name: NameDefinition) -> tuple[bool, int, bool]:
         is_near = name.file == document.file
-        return not (is_near and name.owner == own and bool(own)), -uses.get(name.name, 0), not is_near
+        return not (is_near and name.owner == macro_name and bool(macro_name)), -uses.get(name.name, 0), not is_near
 
     for name in sorted(properties, key=rank):
         described = f"**property {name.name}** = `{name.detail}`, {name.file.name}"
         yield Completion(name.name, ItemKind.PROPERTY, begin, _short(name.detail), described)
     for function, purpose in XACRO_FUNCTIONS.items():
         yield Completion(function, ItemKind.FUNCTION, begin, purpose)
-    for function in sorted(FUNCTIONS, key=lambda name: (name not in _USUAL, -uses.get(name, 0))):
-        yield Completion(function, ItemKind.FUNCTION, begin, purpose_of(function))
+    for function in sorted(FUNCTIONS, key=lambda name: (name not in _COMMON_FUNCTIONS, -uses.get(name, 0))):
+        yield Completion(function, ItemKind.FUNCTION, begin, function_purpose(function))
 
 
 def parameters_in_scope(cursor: Cursor) -> list[Parameter]:
@@ -95,15 +101,15 @@ def blocks_in_scope(cursor: Cursor) -> list[Parameter]:
 
 def _parameters(cursor: Cursor) -> tuple[Parameter, ...]:
     macro = cursor.macro
-    written = () if macro is None else (each.value or "" for each in macro.attributes() if each.name == "params")
+    params_values = () if macro is None else (each.value or "" for each in macro.attributes() if each.name == "params")
     try:
-        return tuple(parse_parameters(next(iter(written), "")))
+        return tuple(parse_parameters(next(iter(params_values), "")))
     except Fault:  # it is being typed
         return ()
 
 
-def _uses(text: str) -> Mapping[str, int]:
-    """Return how often the expressions of a text contain each word."""
+def _word_counts(text: str) -> Mapping[str, int]:
+    """Return the number of occurrences of each word in the expressions of a text."""
     found: dict[str, int] = {}
     for expression in _EXPRESSION.finditer(text):
         for word in _WORDS.findall(expression[1]):
@@ -111,10 +117,10 @@ def _uses(text: str) -> Mapping[str, int]:
     return found
 
 
-def _items(
+def _key_completions(
     document: Document, item: re.Match[str], cursor: Cursor, names: Sequence[NameDefinition]
 ) -> Iterator[Completion]:
-    """Yield the keys of a mapping that a property loads from a YAML file."""
+    """Yield completions of the keys of a mapping that a property loads from a YAML file."""
     value: Any = yaml_value(document, item[1], names)
     for key in _KEY.finditer(item[2]):
         value = value.get(key[1] or key[2]) if isinstance(value, Mapping) else None
@@ -124,7 +130,7 @@ def _items(
 
 
 def complete_substitution(document: Document, cursor: Cursor, names: Sequence[NameDefinition]) -> Iterator[Completion]:
-    """Yield the commands of ``$(...)``, or their arguments.
+    """Yield completions of the commands of ``$(...)``, or of their arguments.
 
     Args:
         document: the text.
@@ -142,15 +148,15 @@ def complete_substitution(document: Document, cursor: Cursor, names: Sequence[Na
         return
     begin = cursor.offset - len(argument)
     if command == "arg":
-        for definition in of_kind(names, NameKind.ARGUMENT):
+        for definition in definitions_of_kind(names, NameKind.ARGUMENT):
             described = f"**argument {definition.name}** = `{definition.detail}`, {definition.file.name}"
             yield Completion(definition.name, ItemKind.NAME, begin, _short(definition.detail), described)
     elif command == "find":
-        yield from packages(document, begin)
+        yield from package_completions(document, begin)
 
 
-def packages(document: Document, start: int) -> Iterator[Completion]:
-    """Yield the packages: the file's own first, then by the number of mentions in the text."""
+def package_completions(document: Document, start: int) -> Iterator[Completion]:
+    """Yield completions of packages: the file's own first, then by the number of mentions."""
     found = document.finder.packages()
     folder = document.file.parent
 
@@ -166,7 +172,7 @@ def _short(text: str) -> str:
     return line if len(line) <= _LONGEST_VALUE else f"{line[: _LONGEST_VALUE - 3]}..."
 
 
-def purpose_of(function: str) -> str:
-    """Return the first line about a function or constant of expressions."""
+def function_purpose(function: str) -> str:
+    """Return the first docstring line of a function of expressions, or the value of a constant."""
     found = getattr(math, function, None) or getattr(builtins, function, None)
     return (getattr(found, "__doc__", None) or "").partition("\n")[0] if callable(found) else str(found)

@@ -16,7 +16,7 @@ _SUBSTITUTION = lazy_pattern(r"\$\([^()]*\)")
 _CHARACTERS = {"&lt;": "<", "&gt;": ">", "&quot;": '"', "&apos;": "'", "&amp;": "&"}
 
 
-class WrittenExpression(NamedTuple):
+class SourceExpression(NamedTuple):
     """An expression in ``${...}``.
 
     Attributes:
@@ -30,17 +30,17 @@ class WrittenExpression(NamedTuple):
     source: str
 
     @property
-    def inside(self) -> tuple[int, int]:
+    def inner_range(self) -> tuple[int, int]:
         """The offsets of the text between the braces."""
         return self.end - 1 - len(self.source), self.end - 1
 
 
-def decoded(text: str) -> str:
-    """Replace each XML entity by its character, padded with spaces to the length of the entity."""
+def decode_entities(text: str) -> str:
+    """Replace each XML entity with its character, padded with spaces to the length of the entity."""
     return _ENTITY.sub(lambda entity: _CHARACTERS[entity[0]].ljust(len(entity[0])), text)
 
 
-def expressions_in(text: str) -> Iterator[WrittenExpression]:
+def expressions_in(text: str) -> Iterator[SourceExpression]:
     """Yield the ``${...}`` of an attribute's value or of character data.
 
     Yields nothing if an expression is incomplete.
@@ -51,27 +51,29 @@ def expressions_in(text: str) -> Iterator[WrittenExpression]:
     if "$" not in text:
         return
     try:
-        parts = tokenize(decoded(text))
+        parts = tokenize(decode_entities(text))
     except Fault:  # it is being typed
         return
     for part in parts:
         if part.kind is TokenKind.EXPRESSION:
-            yield WrittenExpression(part.start, part.end, text[part.end - 1 - len(part.text) : part.end - 1])
+            yield SourceExpression(part.start, part.end, text[part.end - 1 - len(part.text) : part.end - 1])
 
 
-def parsed(source: str) -> ast.expr | None:
+def parse_expression(source: str) -> ast.expr | None:
     """Return the syntax tree of an expression as written, or None if it is not valid.
 
     Offsets in the tree refer to the source without leading spaces. A ``$(...)`` counts as a name.
     """
-    body = _SUBSTITUTION.sub(lambda command: "_" * len(command[0]), re.sub(r"[\n\r\t]", " ", decoded(source)).strip())
+    body = _SUBSTITUTION.sub(
+        lambda command: "_" * len(command[0]), re.sub(r"[\n\r\t]", " ", decode_entities(source)).strip()
+    )
     try:
         return ast.parse(body, mode="eval").body
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         return None
 
 
-def is_part(source: str, start: int, end: int) -> bool:
+def is_subexpression(source: str, start: int, end: int) -> bool:
     """Return whether a range of an expression is a self-contained subexpression.
 
     Such a subexpression uses no variable that the expression binds.
@@ -81,11 +83,11 @@ def is_part(source: str, start: int, end: int) -> bool:
         start: the offset of the first character of the range.
         end: the offset after its last character.
     """
-    inner = parsed(source[start:end])
+    inner = parse_expression(source[start:end])
     if inner is None or isinstance(inner, (ast.Starred, ast.NamedExpr)):
         return False
-    outer = parsed(f"{source[:start]}({source[start:end]}){source[end:]}")
-    whole = parsed(source)
+    outer = parse_expression(f"{source[:start]}({source[start:end]}){source[end:]}")
+    whole = parse_expression(source)
     if outer is None or whole is None or ast.dump(outer) != ast.dump(whole):
         return False
     bound = {node.arg for node in ast.walk(whole) if isinstance(node, ast.arg)}
@@ -93,7 +95,7 @@ def is_part(source: str, start: int, end: int) -> bool:
     return bound.isdisjoint(node.id for node in ast.walk(inner) if isinstance(node, ast.Name))
 
 
-def inserted(source: str, start: int, end: int, new: str) -> str | None:
+def substitute_name(source: str, start: int, end: int, new: str) -> str | None:
     """Replace a name in an expression by another expression.
 
     The other expression is put in parentheses where precedence requires them.
@@ -108,7 +110,7 @@ def inserted(source: str, start: int, end: int, new: str) -> str | None:
         The new expression, or None if one of them is not valid.
     """
     enclosed, bare = f"{source[:start]}({new}){source[end:]}", f"{source[:start]}{new}{source[end:]}"
-    first, second = parsed(enclosed), parsed(bare)
+    first, second = parse_expression(enclosed), parse_expression(bare)
     if first is None:
         return None
     return bare if second is not None and ast.dump(first) == ast.dump(second) else enclosed

@@ -60,11 +60,11 @@ def _interface(tag: str, meaning: str) -> ElementRule:
 
 _COMMAND = _interface("command_interface", "a command that controllers write and the hardware follows")
 _STATE = _interface("state_interface", "a state that the hardware measures and controllers read")
-_MEASURED = replace(_STATE, children=_STATE.children[:1])
+_SENSOR_STATE = replace(_STATE, children=_STATE.children[:1])
 _COMPONENT_PARAMETER = _parameter("a parameter of the component for the hardware plugin")
 
 
-def _in_transmission(tag: str, name: AttributeRule, meaning: str) -> ElementRule:
+def _transmission_part(tag: str, name: AttributeRule, meaning: str) -> ElementRule:
     return ElementRule(
         tag,
         meaning,
@@ -118,7 +118,7 @@ ROS2_CONTROL = ElementRule(
             (_COMMAND, _STATE, _COMPONENT_PARAMETER, _LIMITS),
             many=True,
         ),
-        ElementRule("sensor", "a sensor with its states", (_NAME,), (_MEASURED, _COMPONENT_PARAMETER), many=True),
+        ElementRule("sensor", "a sensor with its states", (_NAME,), (_SENSOR_STATE, _COMPONENT_PARAMETER), many=True),
         ElementRule(
             "gpio",
             "inputs and outputs that belong to no joint",
@@ -132,8 +132,8 @@ ROS2_CONTROL = ElementRule(
             (_NAME,),
             (
                 _TRANSMISSION_PLUGIN,
-                _in_transmission("actuator", _NAME, "an actuator of the transmission"),
-                _in_transmission("joint", _JOINT, "a joint of the transmission"),
+                _transmission_part("actuator", _NAME, "an actuator of the transmission"),
+                _transmission_part("joint", _JOINT, "a joint of the transmission"),
                 _parameter("a parameter of the transmission"),
             ),
             many=True,
@@ -142,26 +142,26 @@ ROS2_CONTROL = ElementRule(
     many=True,
 )
 
-_OLD_INTERFACE = value("hardwareInterface", TEXT, "the interface, such as hardware_interface/PositionJointInterface")
+_ROS1_INTERFACE = value("hardwareInterface", TEXT, "the interface, such as hardware_interface/PositionJointInterface")
 TRANSMISSION = ElementRule(
     "transmission",
     "the gears between an actuator and a joint, for ROS 1",
     (_NAME,),
     (
         value("type", TEXT, "the class, such as transmission_interface/SimpleTransmission"),
-        ElementRule("joint", "the joint", (_JOINT,), (_OLD_INTERFACE,), many=True),
+        ElementRule("joint", "the joint", (_JOINT,), (_ROS1_INTERFACE,), many=True),
         ElementRule(
             "actuator",
             "the actuator",
             (_NAME,),
-            (value("mechanicalReduction", NUMBER, "the ratio of the speeds of actuator and joint"), _OLD_INTERFACE),
+            (value("mechanicalReduction", NUMBER, "the ratio of the speeds of actuator and joint"), _ROS1_INTERFACE),
             many=True,
         ),
     ),
     many=True,
 )
 
-_OF_LINK = (
+_LINK_SETTINGS = (
     value("material", TEXT, "a material of Gazebo classic, such as Gazebo/Orange"),
     value("mu1", NUMBER, "the coefficient of friction in the first direction"),
     value("mu2", NUMBER, "the coefficient of friction across the first direction"),
@@ -177,7 +177,7 @@ _OF_LINK = (
     value("dampingFactor", NUMBER, "the share of the velocity that is lost in each step"),
     value("laserRetro", NUMBER, "the intensity with which the link reflects lasers"),
 )
-_OF_JOINT = (
+_JOINT_SETTINGS = (
     value("preserveFixedJoint", TRUTH, "whether the fixed joint stays a joint instead of joining both links"),
     value("disableFixedJointLumping", TRUTH, "whether both links stay apart, with a revolute joint that cannot move"),
     value("implicitSpringDamper", TRUTH, "whether the damping of the joint is computed implicitly"),
@@ -188,7 +188,7 @@ _OF_JOINT = (
     value("stopErp", NUMBER, "the share of an error at the limits that a step corrects"),
     value("fudgeFactor", NUMBER, "scales the force that moves the joint away from its limits"),
 )
-_OF_MODEL = ("static", "self_collide", "allow_auto_disable", "pose", "enable_wind")
+_MODEL_TAGS = ("static", "self_collide", "allow_auto_disable", "pose", "enable_wind")
 
 GAZEBO = ElementRule(
     "gazebo",
@@ -197,9 +197,9 @@ GAZEBO = ElementRule(
     (
         *(LINK.child_rules[tag] for tag in ("sensor", "visual", "collision", "light", "velocity_decay")),
         MODEL.child_rules["plugin"],
-        *_OF_LINK,
-        *_OF_JOINT,
-        *(MODEL.child_rules[tag] for tag in _OF_MODEL if tag in MODEL.child_rules),
+        *_LINK_SETTINGS,
+        *_JOINT_SETTINGS,
+        *(MODEL.child_rules[tag] for tag in _MODEL_TAGS if tag in MODEL.child_rules),
     ),
     many=True,
 )

@@ -11,12 +11,12 @@ from pathlib import Path
 
 from linkwright.diagnostics import phrase
 from linkwright.language.definitions import NameKind
-from linkwright.language.expressions import expressions_in, is_part
+from linkwright.language.expressions import expressions_in, is_subexpression
 from linkwright.language.grammar import PREFIX
 from linkwright.language.occurrences import occurrences_in
 from linkwright.language.proof import Edit, ExpansionProof, UnprovedError
 from linkwright.language.workspace import Workspace
-from linkwright.language.written import MACRO, WrittenElement, innermost, written_elements
+from linkwright.language.written import MACRO, SourceElement, innermost_element, source_elements
 from linkwright.loading.deferred import lazy_pattern
 from linkwright.xacro.expressions.symbols import MATHEMATICS
 from linkwright.xmltree.patches import indentation, line_ending
@@ -25,11 +25,11 @@ from linkwright.xmltree.tokens import Kind, TokenAttribute, tokens
 _NUMBER = lazy_pattern(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 _COMPONENTS = {"xyz": ("x", "y", "z"), "rpy": ("roll", "pitch", "yaw"), "size": ("x", "y", "z")}
 """The attributes that contain several numbers, and the names of these numbers."""
-_NAMING = frozenset({(MACRO, "params"), ("xacro:include", "ns"), ("xacro:property", "scope")})
+_UNEVALUATED_ATTRIBUTES = frozenset({(MACRO, "params"), ("xacro:include", "ns"), ("xacro:property", "scope")})
 """The attributes whose value xacro does not evaluate as a text."""
-_DEFINING = frozenset({"xacro:macro", "xacro:property", "xacro:arg", "xacro:insert_block"})
+_UNEVALUATED_NAMES = frozenset({"xacro:macro", "xacro:property", "xacro:arg", "xacro:insert_block"})
 """The elements whose ``name`` xacro does not evaluate as a text."""
-_GROUPS = ("math", "python", "xacro")
+_NAMESPACES = ("math", "python", "xacro")
 """The namespaces of functions in xacro expressions."""
 
 
@@ -46,7 +46,7 @@ class ValueSelection:
         component: the name of the number, such as ``x``, or empty if it is not one of several.
     """
 
-    element: WrittenElement
+    element: SourceElement
     attribute: str
     start: int
     end: int
@@ -65,8 +65,8 @@ def selected_value(text: str, start: int, end: int) -> ValueSelection | None:
     Returns:
         The value, or None if it cannot become a property.
     """
-    elements = written_elements(text)
-    element = innermost(elements, start)
+    elements = source_elements(text)
+    element = innermost_element(elements, start)
     if element is None or element.top is None:
         return None
     if start < element.tag.end:
@@ -81,15 +81,15 @@ def selected_value(text: str, start: int, end: int) -> ValueSelection | None:
     return None
 
 
-def _is_evaluated(element: WrittenElement, attribute: TokenAttribute) -> bool:
+def _is_evaluated(element: SourceElement, attribute: TokenAttribute) -> bool:
     key = attribute.name
-    if (element.name, key) in _NAMING or key.startswith("xmlns") or not attribute.quote:
+    if (element.name, key) in _UNEVALUATED_ATTRIBUTES or key.startswith("xmlns") or not attribute.quote:
         return False
-    return key != "name" or element.name not in _DEFINING
+    return key != "name" or element.name not in _UNEVALUATED_NAMES
 
 
 def _selection(
-    element: WrittenElement, attribute: str, value: str, at: int, selected: tuple[int, int]
+    element: SourceElement, attribute: str, value: str, value_start: int, selected: tuple[int, int]
 ) -> ValueSelection | None:
     """Return the selected part of a value, without the spaces at its ends, or None.
 
@@ -97,10 +97,10 @@ def _selection(
         element: the element.
         attribute: the name of the attribute, or empty for the text of the element.
         value: the value.
-        at: the offset of the value in the file.
+        value_start: the offset of the value in the file.
         selected: the start and end offset of the selection in the file.
     """
-    start, end = selected[0] - at, selected[1] - at
+    start, end = selected[0] - value_start, selected[1] - value_start
     if start == end:
         number = next((match for match in _NUMBER.finditer(value) if match.start() <= start <= match.end()), None)
         if number is None:
@@ -108,20 +108,30 @@ def _selection(
         start, end = number.span()
     if not 0 <= start < end <= len(value):
         return None
-    chosen = value[start:end]
-    start, end = start + len(chosen) - len(chosen.lstrip()), end - len(chosen) + len(chosen.rstrip())
+    selected_text = value[start:end]
+    start, end = (
+        start + len(selected_text) - len(selected_text.lstrip()),
+        end - len(selected_text) + len(selected_text.rstrip()),
+    )
     if start >= end:
         return None
-    around = next((one for one in expressions_in(value) if one.inside[0] <= start and end <= one.inside[1]), None)
-    if around is not None:
-        low = around.inside[0]
-        is_valid = is_part(around.source, start - low, end - low)
+    enclosing = next(
+        (one for one in expressions_in(value) if one.inner_range[0] <= start and end <= one.inner_range[1]), None
+    )
+    if enclosing is not None:
+        low = enclosing.inner_range[0]
+        is_valid = is_subexpression(enclosing.source, start - low, end - low)
     else:
         is_valid = _is_plain_part(value, start, end)
     if not is_valid:
         return None
     return ValueSelection(
-        element, attribute, at + start, at + end, around is not None, _component(attribute, value, start, end)
+        element,
+        attribute,
+        value_start + start,
+        value_start + end,
+        enclosing is not None,
+        _component(attribute, value, start, end),
     )
 
 
@@ -129,13 +139,13 @@ def _is_plain_part(value: str, start: int, end: int) -> bool:
     """Return whether a range of a value cuts through no expression, substitution or number."""
     if "$" in value and any(one.start < edge < one.end for edge in (start, end) for one in expressions_in(value)):
         return False
-    cut = value[start:end]
-    if cut.count("$(") != cut.count(")") or cut.count("${") != cut.count("}") or "$$" in value:
+    part = value[start:end]
+    if part.count("$(") != part.count(")") or part.count("${") != part.count("}") or "$$" in value:
         return False
     if re.search(r"\$\([^()]*$", value[:start]):
         return False
-    ends_in_number = re.search(r"[\w.]$", value[:start]) and re.match(r"[\d.+-]", cut)
-    return not ends_in_number and not (re.search(r"[\w.]$", cut) and re.match(r"[\d.]", value[end:]))
+    ends_in_number = re.search(r"[\w.]$", value[:start]) and re.match(r"[\d.+-]", part)
+    return not ends_in_number and not (re.search(r"[\w.]$", part) and re.match(r"[\d.]", value[end:]))
 
 
 def _component(attribute: str, value: str, start: int, end: int) -> str:
@@ -178,7 +188,7 @@ def extract_property(
     )
     proof = ExpansionProof(project, texts, file)
     error: UnprovedError | None = None
-    for place in _places(text, element, is_local=is_local):
+    for place in _definition_offsets(text, element, is_local=is_local):
         edits = (insertion_before(file, text, place, definition), use)
         try:
             proof.check_equal(edits)
@@ -193,12 +203,12 @@ def _quoted(content: str, quote: str) -> str:
     return content.replace(quote, "&quot;" if quote == '"' else "&apos;")
 
 
-def _places(text: str, element: WrittenElement, *, is_local: bool) -> Iterator[int]:
+def _definition_offsets(text: str, element: SourceElement, *, is_local: bool) -> Iterator[int]:
     """Yield the offsets at which a definition can be inserted, the best first.
 
     A comment directly above an element belongs to it, so a definition is inserted above the comment.
     """
-    places: list[WrittenElement] = []
+    places: list[SourceElement] = []
     macro, top = element.macro, element.top
     if top is not None and not (is_local and macro is not None):
         places.append(top)
@@ -233,23 +243,23 @@ def insertion_before(file: Path, text: str, start: int, new: str) -> Edit:
     return Edit(file, start, start, new + separator)
 
 
-def unique_name(project: Workspace, texts: Mapping[Path, str], file: Path, wish: str) -> str:
+def unique_name(project: Workspace, texts: Mapping[Path, str], file: Path, preferred: str) -> str:
     """Return a name for a property or macro that no file of the description contains.
 
     Args:
         project: the workspace.
         texts: the texts of the open files.
         file: the file.
-        wish: the preferred name.
+        preferred: the preferred name.
     """
-    base = re.sub(r"\W+", "_", wish).strip("_") or "value"
+    base = re.sub(r"\W+", "_", preferred).strip("_") or "value"
     if base[0].isdigit():
         base = f"_{base}"
-    taken = {*keyword.kwlist, *dir(builtins), *MATHEMATICS, *_GROUPS}
+    used_names = {*keyword.kwlist, *dir(builtins), *MATHEMATICS, *_NAMESPACES}
     for other in project.index.related(file, texts):
-        taken.update(re.findall(r"\w+", project.text(other, texts) or ""))
+        used_names.update(re.findall(r"\w+", project.text(other, texts) or ""))
     name, count = base, 1
-    while name in taken:
+    while name in used_names:
         count += 1
         name = f"{base}_{count}"
     return name

@@ -21,7 +21,7 @@ from linkwright.packages.share_layout import source_of
 
 _OTHER_FILES = (".py", ".yaml", ".yml", ".rviz", "CMakeLists.txt")
 _BUILD_FILES = ("CMakeLists.txt", "setup.py")
-_SHARED = re.compile(
+_SHARE_PATH = re.compile(
     r"(?:package://|model://|\$\((?:find|find-pkg-share)\s+)(?P<package>[\w-]+)(?:\s*\))?/(?P<path>[\w./-]+)"
 )
 _WORD = re.compile(r"(?<![\w./$-])[\w.-]+(?:/[\w.-]+)*")
@@ -56,7 +56,7 @@ def rename_file(project: Workspace, texts: Mapping[Path, str], old: Path, new: P
         text = project.text(file, texts)
         if text is None or len(text) > _MAX_TEXT or old.name not in text or not project.contains(file):
             continue
-        certain = _references(project, texts, file, text, old, new)
+        certain = _reference_edits(project, texts, file, text, old, new)
         edits += certain
         mentions = re.finditer(rf"(?<![\w.-]){re.escape(old.name)}(?![\w-])", text)
         starts = (mention.start() for mention in mentions)
@@ -68,24 +68,24 @@ def rename_file(project: Workspace, texts: Mapping[Path, str], old: Path, new: P
     return FileRenaming(tuple(sorted(edits)), tuple(unchanged))
 
 
-def _references(
+def _reference_edits(
     project: Workspace, texts: Mapping[Path, str], file: Path, text: str, old: Path, new: Path
 ) -> list[Edit]:
     """Return the edits of the references to the old file in a text."""
     edits: dict[int, Edit] = {}
-    for link in (*_links(project, texts, file, text), *_paths(project, file, text)):
+    for link in (*_format_references(project, texts, file, text), *_path_references(project, file, text)):
         if real(link.file) == old:
-            edit = _edit(file, text, link.start, link.end, old, new)
+            edit = _reference_edit(file, text, link.start, link.end, old, new)
             if edit is not None:
                 edits[edit.end] = edit
     return [*edits.values()]
 
 
-def _links(project: Workspace, texts: Mapping[Path, str], file: Path, text: str) -> Iterator[FileReference]:
+def _format_references(project: Workspace, texts: Mapping[Path, str], file: Path, text: str) -> Iterator[FileReference]:
     """Yield the references in a file that its format defines."""
-    known = format_of(file)
-    if known is not None:
-        yield from known.links(Document(project, texts, file, text))
+    format_ = format_of(file)
+    if format_ is not None:
+        yield from format_.links(Document(project, texts, file, text))
     if file.name.endswith((*XML_FILES, ".xml")):
         try:
             values = values_in(project, texts, file)
@@ -94,9 +94,9 @@ def _links(project: Workspace, texts: Mapping[Path, str], file: Path, text: str)
         yield from file_references(text, file, project.finder(file), values)
 
 
-def _paths(project: Workspace, file: Path, text: str) -> Iterator[FileReference]:
+def _path_references(project: Workspace, file: Path, text: str) -> Iterator[FileReference]:
     """Yield the references into share folders, and the paths in build files."""
-    for found in _SHARED.finditer(text):
+    for found in _SHARE_PATH.finditer(text):
         share = project.finder(file).find(found["package"])
         if share is not None:
             yield FileReference(found.start("path"), found.end("path"), Path(source_of(str(share / found["path"]))))
@@ -107,7 +107,7 @@ def _paths(project: Workspace, file: Path, text: str) -> Iterator[FileReference]
                 yield FileReference(*found.span(), path)
 
 
-def _edit(file: Path, text: str, start: int, end: int, old: Path, new: Path) -> Edit | None:
+def _reference_edit(file: Path, text: str, start: int, end: int, old: Path, new: Path) -> Edit | None:
     """Return the edit of a reference to a renamed file, or None if it cannot be edited.
 
     The edit replaces the last names, which the reference shares with the old path. The new path must be below the

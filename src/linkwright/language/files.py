@@ -21,8 +21,4 @@ PATTERNS: Mapping[str, tuple[str, ...]] = {
     "interface": ("*.msg", "*.srv", "*.action"),
     "cmake": ("CMakeLists.txt",),
 }
-"""Patterns of file names, by the language of the text. One with a slash is a pattern of the path.
-
-The server answers in all of these files. Those with the name of a build file alone get findings, links and fixes of
-their package.
-"""
+"""Patterns of file names, by the language of the text. A pattern with a slash matches the path."""

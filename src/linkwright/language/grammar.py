@@ -121,7 +121,7 @@ def rule_at(root: ElementRule, tags: Sequence[str], elements: Sequence[Token] = 
     """Return the rule of an element.
 
     The content of xacro tags belongs to the element around them. The content of a macro or a call may belong to any
-    element, so its first tag that occurs anywhere in the language decides.
+    element, so the rule of its first tag is searched in the whole schema.
 
     Args:
         root: the rule of the root element.
@@ -133,9 +133,9 @@ def rule_at(root: ElementRule, tags: Sequence[str], elements: Sequence[Token] = 
         if tag.startswith(PREFIX):
             continue
         if current is None:
-            current = root if tag == root.tag else _anywhere(root, tag)
+            current = root if tag == root.tag else _find_rule(root, tag)
         else:
-            current = current.child_rules.get(tag) or _in_macro(root, tags, tag)
+            current = current.child_rules.get(tag) or _rule_in_macro(root, tags, tag)
         if current is None:
             return None
         if tag == "plugin" and "filename" in current.attribute_rules and number < len(elements):
@@ -144,18 +144,18 @@ def rule_at(root: ElementRule, tags: Sequence[str], elements: Sequence[Token] = 
 
 
 def _rule_of_plugin(element: Token) -> ElementRule | None:
-    given = {attribute.name: attribute.value or "" for attribute in element.attributes()}
-    plugin = plugin_of(given.get("filename", ""), given.get("name", ""))
+    attributes = {attribute.name: attribute.value or "" for attribute in element.attributes()}
+    plugin = plugin_of(attributes.get("filename", ""), attributes.get("name", ""))
     return None if plugin is None else plugin.rule
 
 
-def _in_macro(root: ElementRule, tags: Sequence[str], tag: str) -> ElementRule | None:
+def _rule_in_macro(root: ElementRule, tags: Sequence[str], tag: str) -> ElementRule | None:
     is_call = any(other.startswith(PREFIX) and other not in XACRO for other in tags)
-    return _anywhere(root, tag) if is_call or "xacro:macro" in tags else None
+    return _find_rule(root, tag) if is_call or "xacro:macro" in tags else None
 
 
-def _anywhere(root: ElementRule, tag: str) -> ElementRule | None:
-    """Return the rule of a tag nearest to the root, or None."""
+def _find_rule(root: ElementRule, tag: str) -> ElementRule | None:
+    """Return the rule with a tag that is nearest to the root, or None."""
     pending, seen = [root], {id(root)}
     for rule in pending:
         if rule.tag == tag:

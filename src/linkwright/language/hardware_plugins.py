@@ -64,7 +64,7 @@ class HardwareParameter:
 
 
 def hardware_plugins(document: Document) -> dict[str, str]:
-    """Return the purposes of hardware plugins by type, the workspace's own plugins first."""
+    """Return the purposes of hardware plugins by type, the plugins that packages export first."""
     found = {plugin.name: plugin.description for plugin in plugin_classes(document, BASE)}
     found |= {name: about for name, (about, _) in _KNOWN.items() if name not in found}
     return found | {name: "" for name in sorted(extensions("linkwright.hardware")) if name not in found}
@@ -76,7 +76,7 @@ def hardware_class(document: Document, name: str) -> PluginClass | None:
     return next((plugin for plugin in plugins if name in (plugin.name, plugin.type)), None)
 
 
-def hardware_parameters(document: Document, name: str, apart: int = -1) -> dict[str, HardwareParameter]:
+def hardware_parameters(document: Document, name: str, excluded_offset: int = -1) -> dict[str, HardwareParameter]:
     """Return the parameters of a hardware plugin, by name.
 
     They are the known parameters, the parameters that the plugin's sources read, and those that the text sets.
@@ -84,36 +84,40 @@ def hardware_parameters(document: Document, name: str, apart: int = -1) -> dict[
     Args:
         document: a description.
         name: the type of the plugin, as ``package/Class``.
-        apart: the offset of a parameter in the text that is ignored.
+        excluded_offset: the offset of a parameter in the text that is ignored.
     """
     known = _KNOWN.get(name, ("", {}))[1]
     found = {parameter: HardwareParameter(parameter, meaning) for parameter, meaning in known.items()}
     plugin = hardware_class(document, name)
-    for parameter in () if plugin is None else _read_in(plugin.package, document):
+    for parameter in () if plugin is None else _parameters_in_sources(plugin.package, document):
         found.setdefault(parameter.name, parameter)
-    for written in _given(document.text, name, apart):
-        found.setdefault(written, HardwareParameter(written))
+    for parameter_name in _parameters_in_text(document.text, name, excluded_offset):
+        found.setdefault(parameter_name, HardwareParameter(parameter_name))
     return found
 
 
-def _read_in(folder: Path, document: Document) -> Iterator[HardwareParameter]:
+def _parameters_in_sources(folder: Path, document: Document) -> Iterator[HardwareParameter]:
     for file in walk(folder, _SOURCES)[0][:_MAX_FILES]:
         text = document.other(file)
         for use in _READ.finditer(text) if len(text) <= _MAX_TEXT else ():
             yield HardwareParameter(use[1], f"`{file.name}`", Target(file, *use.span(1)))
 
 
-def _given(text: str, plugin: str, apart: int) -> Iterator[str]:
+def _parameters_in_text(text: str, plugin: str, excluded_offset: int) -> Iterator[str]:
     """Yield the parameters that a text sets for a plugin."""
-    inside, is_plugin, tag = False, False, ""
+    is_inside_hardware, is_plugin, tag = False, False, ""
     for token in tokens(text):
         if token.kind is Kind.START:
-            inside, tag = inside or token.name == "hardware", token.name
-            if inside and is_plugin and tag == "param":
-                named = next((each for each in token.attributes() if each.name == "name"), None)
-                if named is not None and named.value and named.value_start != apart:
-                    yield named.value
-        elif token.kind is Kind.TEXT and inside and tag == "plugin":
+            is_inside_hardware, tag = is_inside_hardware or token.name == "hardware", token.name
+            if is_inside_hardware and is_plugin and tag == "param":
+                name_attribute = next((attribute for attribute in token.attributes() if attribute.name == "name"), None)
+                if (
+                    name_attribute is not None
+                    and name_attribute.value
+                    and name_attribute.value_start != excluded_offset
+                ):
+                    yield name_attribute.value
+        elif token.kind is Kind.TEXT and is_inside_hardware and tag == "plugin":
             is_plugin = token.text.strip() == plugin
         elif token.kind is Kind.END:
-            inside, tag = inside and token.name != "hardware", ""
+            is_inside_hardware, tag = is_inside_hardware and token.name != "hardware", ""

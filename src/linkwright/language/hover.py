@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from linkwright.diagnostics import Phrase
-from linkwright.language.cursor import Spot, cursor_at, name_at
+from linkwright.language.cursor import CursorSyntax, cursor_at, name_at
 from linkwright.language.definitions import NameDefinition, NameKind
 from linkwright.language.grammar import PREFIX, XACRO
 
@@ -29,17 +29,17 @@ class Explanation:
 def definitions_at(text: str, offset: int, names: Sequence[NameDefinition]) -> list[NameDefinition]:
     """Return the definitions of the macro call, or of the name in a value, at an offset."""
     cursor = cursor_at(text, offset)
-    if cursor.spot in (Spot.TAG, Spot.CLOSING_TAG) and cursor.token is not None:
+    if cursor.syntax in (CursorSyntax.TAG, CursorSyntax.CLOSING_TAG) and cursor.token is not None:
         tag = cursor.token.name
         if tag.startswith(PREFIX) and tag not in XACRO:
             wanted = tag.removeprefix(PREFIX).rpartition(".")[2]
             return [name for name in names if name.kind is NameKind.MACRO and name.name == wanted]
         return []
-    if cursor.spot is not Spot.VALUE or cursor.token is None or cursor.attribute is None:
+    if cursor.syntax is not CursorSyntax.VALUE or cursor.token is None or cursor.attribute is None:
         return []
-    if cursor.in_expression or cursor.substitution is not None:
+    if cursor.is_in_expression or cursor.substitution is not None:
         word = name_at(text, offset)
-        kind = NameKind.PROPERTY if cursor.in_expression else NameKind.ARGUMENT
+        kind = NameKind.PROPERTY if cursor.is_in_expression else NameKind.ARGUMENT
         wanted = "" if word is None else word[0]
         return [name for name in names if name.kind is kind and name.name in (wanted, wanted.partition(".")[0])]
     value = cursor.attribute.value
@@ -50,7 +50,7 @@ def definitions_at(text: str, offset: int, names: Sequence[NameDefinition]) -> l
     return []
 
 
-def described_name(name: NameDefinition) -> str:
+def describe_name(name: NameDefinition) -> str:
     """Return a definition with its value or parameters, in Markdown."""
     detail = f" = `{name.detail}`" if name.detail and name.kind is not NameKind.MACRO else ""
     parameters = f"\n\n`{name.detail}`" if name.kind is NameKind.MACRO and name.detail else ""

@@ -107,7 +107,7 @@ def robots_of(project: Workspace, texts: Mapping[Path, str], file: Path) -> Iter
     overlay = Overlay({str(path): text for path, text in texts.items()})
     entries, is_found = project.index.entries(file, texts), False
     for entry in entries:
-        for arguments, _ in project.calls(entry):
+        for arguments, _ in project.argument_calls(entry):
             try:
                 expansion = expand(entry, arguments, packages=project.finder(entry), overlay=overlay)
             except LinkwrightError:

@@ -54,10 +54,10 @@ class IncludeIndex:
         seen, pending = {file}, [file]
         while pending:
             current = pending.pop()
-            above = self._above(current, includers, computed=computed)
-            if not above:
+            direct_includers = self._includers_of(current, includers, computed=computed)
+            if not direct_includers:
                 found[current] = None
-            for other in above:
+            for other in direct_includers:
                 if other not in seen:
                     seen.add(other)
                     pending.append(other)
@@ -71,7 +71,7 @@ class IncludeIndex:
         """
         files = dict.fromkeys((*self.files, *(file for file in texts if file.name.endswith(DESCRIPTIONS))))
         includers = self._includers(texts)
-        return [file for file in files if not self._above(file, includers)]
+        return [file for file in files if not self._includers_of(file, includers)]
 
     def related(self, file: Path, texts: Mapping[Path, str], *, computed: bool = False) -> list[Path]:
         """Return a file, the files that it includes, the descriptions that include it, and their other files.
@@ -106,7 +106,7 @@ class IncludeIndex:
                 found.setdefault(inclusion.name, []).append((file, inclusion))
         return found
 
-    def _above(
+    def _includers_of(
         self, file: Path, includers: Mapping[str, list[tuple[Path, Inclusion]]], *, computed: bool = False
     ) -> list[Path]:
         """Return the other files that include a file."""

@@ -13,16 +13,16 @@ from linkwright.language.grammar import PREFIX
 from linkwright.language.includes import real
 from linkwright.language.proof import Edit, ExpansionProof, UnprovedError
 from linkwright.language.workspace import Workspace
-from linkwright.language.written import WrittenElement, innermost, written_elements
+from linkwright.language.written import SourceElement, innermost_element, source_elements
 from linkwright.urdf import Link, Robot, read
 from linkwright.xacro import expand
 from linkwright.xmltree import Element, Overlay
 
 
-def link_with_shapes_at(text: str, offset: int) -> WrittenElement | None:
+def link_with_shapes_at(text: str, offset: int) -> SourceElement | None:
     """Return the link around an offset if it has shapes without expressions, or None."""
-    element = innermost(written_elements(text), offset)
-    link = None if element is None else next((one for one in element.around() if one.name == "link"), None)
+    element = innermost_element(source_elements(text), offset)
+    link = None if element is None else next((one for one in element.ancestors_and_self() if one.name == "link"), None)
     if link is None or any(child.name.startswith(PREFIX) for child in link.children):
         return None
     shapes = [child for child in link.children if child.name in ("visual", "collision")]
@@ -31,12 +31,12 @@ def link_with_shapes_at(text: str, offset: int) -> WrittenElement | None:
 
 
 def fill_in_inertia(
-    project: Workspace, texts: Mapping[Path, str], file: Path, text: str, link: WrittenElement
+    project: Workspace, texts: Mapping[Path, str], file: Path, text: str, link: SourceElement
 ) -> tuple[Edit, ...]:
     """Return the edits that set the inertia of a link to the inertia of its shapes.
 
-    Nothing else changes in the expansions. The mass is the mass of the link or, if it has none, of water with the
-    same shapes, as in `linkwright inertia`.
+    The expansions stay equal otherwise. The mass is the mass of the link or, if it has none, the mass of water with
+    the same shapes, as in `linkwright inertia`.
 
     Args:
         project: the workspace.
@@ -71,11 +71,11 @@ def fill_in_inertia(
 
 
 def _expanded_link(
-    project: Workspace, texts: Mapping[Path, str], file: Path, link: WrittenElement
+    project: Workspace, texts: Mapping[Path, str], file: Path, link: SourceElement
 ) -> tuple[Robot, Path, Link]:
     overlay = Overlay({str(path): text for path, text in texts.items()})
     for entry in project.index.entries(file, texts):
-        for arguments, _ in project.calls(entry):
+        for arguments, _ in project.argument_calls(entry):
             try:
                 expansion = expand(entry, arguments, packages=project.finder(entry), overlay=overlay)
             except LinkwrightError:

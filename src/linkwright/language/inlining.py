@@ -9,12 +9,12 @@ from typing import NamedTuple
 
 from linkwright.diagnostics import display_path, phrase
 from linkwright.language.definitions import NameKind
-from linkwright.language.expressions import WrittenExpression, decoded, expressions_in, inserted
+from linkwright.language.expressions import SourceExpression, decode_entities, expressions_in, substitute_name
 from linkwright.language.occurrences import Occurrence
 from linkwright.language.proof import Edit, ExpansionProof, UnprovedError
 from linkwright.language.renaming import occurrence_at, references
 from linkwright.language.workspace import Workspace
-from linkwright.language.written import WrittenElement, innermost, written_elements
+from linkwright.language.written import SourceElement, innermost_element, source_elements
 from linkwright.loading.deferred import lazy_pattern
 from linkwright.xacro.expressions.scope import literal
 from linkwright.xmltree.patches import whole_lines
@@ -69,7 +69,7 @@ def inline_property(project: Workspace, texts: Mapping[Path, str], name: Occurre
         )
     definition = definitions[0]
     source = project.text(definition.file, texts) or ""
-    element = innermost(written_elements(source), definition.start)
+    element = innermost_element(source_elements(source), definition.start)
     value = None if element is None else _value(element)
     if element is None or value is None:
         raise UnprovedError(phrase("'{name}' is not defined by a value alone", name=name.name))
@@ -89,7 +89,7 @@ def inline_property(project: Workspace, texts: Mapping[Path, str], name: Occurre
     raise error
 
 
-def _value(element: WrittenElement) -> str | None:
+def _value(element: SourceElement) -> str | None:
     """Return the value in a property's definition, or None if the definition has more parts."""
     attributes = {attribute.name: attribute.value for attribute in element.tag.attributes()}
     if element.name != _PROPERTY or element.children or element.end < 0 or not {*attributes} <= _ATTRIBUTES:
@@ -144,17 +144,15 @@ def _pieces(text: str) -> Iterator[_Piece]:
             yield _Piece(token.start, token.text, "")
 
 
-def _expression_around(piece: _Piece, use: Occurrence) -> WrittenExpression | None:
+def _expression_around(piece: _Piece, use: Occurrence) -> SourceExpression | None:
     at = use.start - piece.start
     return next((one for one in expressions_in(piece.text) if one.start < at < one.end), None)
 
 
-def _replaced(
-    around: WrittenExpression, piece: _Piece, names: Sequence[Occurrence], value: str, *, is_raw: bool
-) -> str:
+def _replaced(around: SourceExpression, piece: _Piece, names: Sequence[Occurrence], value: str, *, is_raw: bool) -> str:
     """Return the replacement of an expression that uses the property."""
     quotes = {"'": "&apos;", '"': "&quot;"}
-    source, low = around.source, piece.start + around.inside[0]
+    source, low = around.source, piece.start + around.inner_range[0]
     if source.strip() == names[0].name and (is_raw or _as_expression(value, piece.quote) is None):
         return value.replace(piece.quote, quotes[piece.quote]) if piece.quote else value
     new = _as_expression(value, piece.quote)
@@ -163,7 +161,7 @@ def _replaced(
     if piece.quote:
         new = new.replace(piece.quote, quotes[piece.quote])
     for use in sorted(names, key=lambda one: one.start, reverse=True):
-        replaced = inserted(source, use.start - low, use.end - low, new)
+        replaced = substitute_name(source, use.start - low, use.end - low, new)
         if replaced is None:
             raise UnprovedError(phrase("an expression cannot contain the value '{value}'", value=value))
         source = replaced
@@ -182,7 +180,7 @@ def _as_expression(value: str, quote: str) -> str | None:
         return parts[0].source.strip()
     if not _LITERAL.fullmatch(value):
         return None
-    python = literal(decoded(value))
+    python = literal(decode_entities(value))
     if isinstance(python, bool):
         return str(python)
     if isinstance(python, (int, float)):

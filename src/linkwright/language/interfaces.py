@@ -26,15 +26,15 @@ _FIELD = re.compile(
     re.MULTILINE,
 )
 _SEPARATOR = re.compile(r"^---[ \t]*\r?$", re.MULTILINE)
-_USUAL = ("float64", "int32", "string", "bool", "uint8", "float32", "int64", "uint32")
-_USUAL_TYPES = (
+_COMMON_PRIMITIVES = ("float64", "int32", "string", "bool", "uint8", "float32", "int64", "uint32")
+_COMMON_TYPES = (
     *("std_msgs/Header", "builtin_interfaces/Time", "builtin_interfaces/Duration"),
     *("geometry_msgs/PoseStamped", "geometry_msgs/Pose", "geometry_msgs/Point", "geometry_msgs/Twist"),
     *("geometry_msgs/Vector3", "geometry_msgs/Quaternion", "geometry_msgs/Transform", "nav_msgs/Path"),
     *("sensor_msgs/Image", "sensor_msgs/PointCloud2", "sensor_msgs/LaserScan"),
 )
-_MAX_NEIGHBOURS = 100
-_USUAL_PACKAGES = ("std_msgs", "geometry_msgs", "sensor_msgs", "builtin_interfaces", "nav_msgs")
+_MAX_NEIGHBORS = 100
+_COMMON_PACKAGES = ("std_msgs", "geometry_msgs", "sensor_msgs", "builtin_interfaces", "nav_msgs")
 
 
 def is_interface_file(path: Path) -> bool:
@@ -62,9 +62,9 @@ def _own_package(document: Document) -> str:
     return "" if found is None else found[0]
 
 
-def _message(document: Document, written: str) -> _Message | None:
+def _find_message(document: Document, type_name: str) -> _Message | None:
     """Return the message type ``Name`` or ``package/Name`` of a field, or None if it is unknown."""
-    package, slash, name = written.rpartition("/")
+    package, slash, name = type_name.rpartition("/")
     if not slash and name == "Header":
         package = "std_msgs"
     package = package.removesuffix("/msg") or _own_package(document)
@@ -100,38 +100,40 @@ def _complete(document: Document, offset: int) -> Iterator[Completion]:
 def _offer_types(document: Document, typed: str, start: int) -> Iterator[Completion]:
     own = _own_package(document)
     package, slash, _ = typed.partition("/")
-    likely = [*dict.fromkeys((*_used_types(document, start), *_USUAL_TYPES))]
+    likely = [*dict.fromkeys((*_used_types(document, start), *_COMMON_TYPES))]
     if slash:
         names = [f"{package}/{name}" for name in _names_in(document, package)]
         ranks = {name: number for number, name in enumerate(likely)}
         for name in sorted(names, key=lambda name: (ranks.get(name, len(ranks)), name)):
             yield Completion(name, ItemKind.NAME, start)
         return
-    for primitive in (*_USUAL, *(name for name in PRIMITIVES if name not in _USUAL)):
+    for primitive in (*_COMMON_PRIMITIVES, *(name for name in PRIMITIVES if name not in _COMMON_PRIMITIVES)):
         yield Completion(primitive, ItemKind.VALUE, start, PRIMITIVES[primitive].idl_name)
     for name in _names_in(document, own):
         if name != document.file.stem or document.file.suffix != ".msg":
             yield Completion(name, ItemKind.NAME, start, own)
     for name in likely:
         yield Completion(name, ItemKind.NAME, start)
-    for package in dict.fromkeys((*_USUAL_PACKAGES, *sorted({*catalogue.packages(), *document.finder.packages()}))):
+    for package in dict.fromkeys((*_COMMON_PACKAGES, *sorted({*catalogue.packages(), *document.finder.packages()}))):
         for name in _names_in(document, package) if package != own else ():
             if f"{package}/{name}" not in likely:
                 yield Completion(f"{package}/{name}", ItemKind.NAME, start)
 
 
-def _used_types(document: Document, apart: int) -> list[str]:
+def _used_types(document: Document, excluded_offset: int) -> list[str]:
     """Return the types from other packages that the package uses, the most used first.
 
     Args:
         document: the text.
-        apart: the offset of a type in the text that is not counted.
+        excluded_offset: the offset of a type in the text that is not counted.
     """
     found: Counter[str] = Counter()
-    files = sorted(document.file.parent.glob(f"*{document.file.suffix}"))[:_MAX_NEIGHBOURS]
+    files = sorted(document.file.parent.glob(f"*{document.file.suffix}"))[:_MAX_NEIGHBORS]
     for file in dict.fromkeys((document.file, *files)):
         text = document.text if file == document.file else document.other(file)
-        lines = (line for line in _FIELD.finditer(text) if file != document.file or line.start("type") != apart)
+        lines = (
+            line for line in _FIELD.finditer(text) if file != document.file or line.start("type") != excluded_offset
+        )
         found.update(line["type"] for line in lines if line["type"] and line["name"] and "/" in line["type"])
     return [name for name, _ in found.most_common()]
 
@@ -150,18 +152,18 @@ def _explain(document: Document, offset: int) -> Explanation | None:
     line = _line_at(document.text, offset)
     if line is None or line["type"] is None or not line.start() <= offset <= line.end():
         return None
-    written = line["type"]
-    in_name = line["name"] and line.start("name") <= offset <= line.end("name")
-    if not in_name and not line.start("type") <= offset <= line.end("type"):
+    type_name = line["type"]
+    is_in_name = line["name"] and line.start("name") <= offset <= line.end("name")
+    if not is_in_name and not line.start("type") <= offset <= line.end("type"):
         return None
-    start, end = line.span("name" if in_name else "type")
-    if written in PRIMITIVES:
-        return Explanation(_described(written), start, end)
-    message = _message(document, written)
-    return None if message is None else Explanation(f"**{written}**\n\n```\n{message.text.strip()}\n```", start, end)
+    start, end = line.span("name" if is_in_name else "type")
+    if type_name in PRIMITIVES:
+        return Explanation(_primitive_description(type_name), start, end)
+    message = _find_message(document, type_name)
+    return None if message is None else Explanation(f"**{type_name}**\n\n```\n{message.text.strip()}\n```", start, end)
 
 
-def _described(name: str) -> str:
+def _primitive_description(name: str) -> str:
     primitive = PRIMITIVES[name]
     if primitive.is_integer:
         text = phrase("`{name}`: an integer from {low} to {high}", name=name, low=primitive.low, high=primitive.high)
@@ -175,7 +177,7 @@ def _described(name: str) -> str:
 def _define(document: Document, offset: int) -> Iterator[Target]:
     line = _line_at(document.text, offset)
     if line is not None and line["type"] is not None and offset <= line.end("type"):
-        message = None if line["type"] in PRIMITIVES else _message(document, line["type"])
+        message = None if line["type"] in PRIMITIVES else _find_message(document, line["type"])
         if message is not None:
             yield message.target
 

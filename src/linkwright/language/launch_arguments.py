@@ -18,7 +18,7 @@ _YAML_KEY = re.compile(
 )
 _LEVELS = ("info", "debug", "warn", "error", "fatal")
 _CAPITAL, _SMALL = re.compile(r"""["'](?:True|False)["']"""), re.compile(r"""["'](?:true|false)["']""")
-_MOST_TEXT = 1_000_000
+_MAX_TEXT = 1_000_000
 _LOOKED_BACK = 200
 """The number of statements before a declaration that are searched for its loop."""
 
@@ -55,7 +55,7 @@ class LaunchArgument:
         """Whether the default is true or false."""
         return (self.default or "").strip("'\"").lower() in ("true", "false")
 
-    def described(self) -> str:
+    def describe(self) -> str:
         """Return the argument in Markdown: name, default, choices and description."""
         default = "" if self.default is None else f" = `{self.default or repr(self.default)}`"
         lines = [f"**{self.name}**{default}, {self.file.name}"]
@@ -88,7 +88,7 @@ def likely_values(argument: LaunchArgument | None, name: str, text: str) -> tupl
 
 def arguments_in(text: str, file: Path) -> list[LaunchArgument]:
     """Return the arguments that a launch file declares, in text order, each name once."""
-    if len(text) > _MOST_TEXT:
+    if len(text) > _MAX_TEXT:
         return []
     if file.name.endswith(".py"):
         found = _in_python(text, file)
@@ -111,7 +111,7 @@ def _in_xml(text: str, file: Path) -> Iterator[LaunchArgument]:
                 pending[1].extend(item.value or "" for item in token.attributes() if item.name == "value")
             elif token.name in ("arg", "bool_arg", "let") and "include" not in inside:
                 if pending is not None:
-                    yield from _of_tag(*pending, file)
+                    yield from _argument_of_tag(*pending, file)
                 pending = token, []
             if not token.is_empty_element:
                 inside.append(token.name)
@@ -119,15 +119,15 @@ def _in_xml(text: str, file: Path) -> Iterator[LaunchArgument]:
             while inside.pop() != token.name:
                 pass
     if pending is not None:
-        yield from _of_tag(*pending, file)
+        yield from _argument_of_tag(*pending, file)
 
 
-def _of_tag(token: Token, choices: list[str], file: Path) -> Iterator[LaunchArgument]:
-    given = {attribute.name: attribute for attribute in token.attributes()}
-    name = given.get("name")
+def _argument_of_tag(token: Token, choices: list[str], file: Path) -> Iterator[LaunchArgument]:
+    attributes = {attribute.name: attribute for attribute in token.attributes()}
+    name = attributes.get("name")
     if name is not None and name.value:
-        value = given.get("value" if token.name == "let" else "default")
-        description = given.get("description")
+        value = attributes.get("value" if token.name == "let" else "default")
+        description = attributes.get("description")
         yield LaunchArgument(
             name.value,
             file,
@@ -145,25 +145,27 @@ def _in_python(text: str, file: Path) -> Iterator[LaunchArgument]:
         name = call.argument("name", 0)
         literal = _literal(name)
         default, description = call.argument("default_value"), call.argument("description")
-        written = None if default is None else _written(_resolved(python, default), text)
-        told = "".join(part.value for part in description.parts if isinstance(part, Text)) if description else ""
+        default_text = None if default is None else _source_of(_resolved(python, default), text)
+        description_text = (
+            "".join(part.value for part in description.parts if isinstance(part, Text)) if description else ""
+        )
         if literal is not None and literal.value:
             choices = _literals(call.argument("choices")) if call.function == _DECLARATIONS[0] else ("true", "false")
-            yield LaunchArgument(literal.value, file, literal.start, written, told, choices)
+            yield LaunchArgument(literal.value, file, literal.start, default_text, description_text, choices)
         elif name is not None and len(name.parts) == 1 and isinstance(name.parts[0], Name):
-            for entry, values in _repeated(python, call, name.parts[0].value):
+            for entry, values in _loop_values(python, call, name.parts[0].value):
                 computed = default is not None and bool(values)
                 yield LaunchArgument(
                     entry.value,
                     file,
                     entry.start,
-                    values[0] if computed else written,
-                    told or "".join(values[1:2]),
+                    values[0] if computed else default_text,
+                    description_text or "".join(values[1:2]),
                 )
 
 
-def _repeated(python: PythonText, call: Group, name: str) -> Iterator[tuple[Text, list[str]]]:
-    """Yield each string that a loop around a call assigns to a name, with its other strings.
+def _loop_values(python: PythonText, call: Group, name: str) -> Iterator[tuple[Text, list[str]]]:
+    """Yield each string that a loop around a call assigns to a name, with the strings of its entry.
 
     The loop iterates over a list of strings, or over a dictionary whose values are strings or pairs of strings.
     """
@@ -192,7 +194,7 @@ def _entries(python: PythonText, values: Part) -> Iterator[tuple[Text, list[str]
         entry = _literal(item)
         if entry is not None:
             texts = [part for part in item.after_colon if part is not entry]
-            inner = [_literal(each) for group in texts if isinstance(group, Group) for each in group.items]
+            inner = [_literal(inner_item) for group in texts if isinstance(group, Group) for inner_item in group.items]
             found = [part for part in texts if isinstance(part, Text)] or [part for part in inner if part is not None]
             yield entry, [part.value for part in found]
 
@@ -223,7 +225,7 @@ def _resolved(python: PythonText, item: Item) -> Item:
     return item
 
 
-def _written(item: Item, text: str) -> str:
+def _source_of(item: Item, text: str) -> str:
     """Return the content of a string literal, or the source text of any other expression."""
     only = item.parts[0] if len(item.parts) == 1 else None
     if isinstance(only, Text):
@@ -238,18 +240,18 @@ def _written(item: Item, text: str) -> str:
 
 def _in_yaml(text: str, file: Path) -> Iterator[LaunchArgument]:
     for entry in _YAML_ARGUMENT.finditer(text):
-        given: dict[str, re.Match[str]] = {}
-        at = entry.end() + 1
-        while (line := _YAML_KEY.match(text, at)) and len(line["indent"]) > len(entry["indent"]):
-            given.setdefault(line["key"], line)
-            at = line.end() + 1
-        name = given.get("name")
+        values_by_key: dict[str, re.Match[str]] = {}
+        offset = entry.end() + 1
+        while (line := _YAML_KEY.match(text, offset)) and len(line["indent"]) > len(entry["indent"]):
+            values_by_key.setdefault(line["key"], line)
+            offset = line.end() + 1
+        name = values_by_key.get("name")
         if name is None or not name["value"].strip("'\""):
             continue
         quoted = name["value"][:1] in ("'", '"')
         is_argument = "let" not in entry[0]
-        default = given.get("default" if is_argument else "value")
-        description = given["description"]["value"].strip("'\"") if "description" in given else ""
+        default = values_by_key.get("default" if is_argument else "value")
+        description = values_by_key["description"]["value"].strip("'\"") if "description" in values_by_key else ""
         yield LaunchArgument(
             name["value"].strip("'\""),
             file,

@@ -21,7 +21,7 @@ _MODULES = (
     "linkwright.launch.ros",
 )
 _ARGUMENT = re.compile(r"^    (\w+): (.*(?:\n        .*)*)", re.MULTILINE)
-_USUAL = (
+_COMMON_ARGUMENTS = (
     *("package", "executable", "plugin", "name", "namespace", "output", "parameters", "remappings", "arguments"),
     *("launch_arguments", "default_value", "description", "condition"),
 )
@@ -39,12 +39,12 @@ def _classes() -> Mapping[str, Any]:
 
 
 def load_classes() -> None:
-    """Import the classes. The first import is slow."""
+    """Import the launch classes, and cache their arguments. The first import is slow."""
     for name in _classes():
         class_arguments(name)
 
 
-def described_class(name: str) -> str | None:
+def describe_class(name: str) -> str | None:
     """Return the purpose and arguments of a launch class in Markdown, or None."""
     cls = _classes().get(name)
     if cls is None:
@@ -56,7 +56,7 @@ def described_class(name: str) -> str | None:
 
 @cache
 def class_arguments(name: str) -> Mapping[str, str]:
-    """Return the arguments of a class with their meanings, in Markdown, the usual ones first.
+    """Return the arguments of a launch class with their meanings in Markdown, common ones first.
 
     A meaning that is not documented is empty. The mapping is empty if launch has no such class.
     """
@@ -82,7 +82,7 @@ def first_argument(name: str) -> str | None:
 
 
 def _rank(argument: str) -> int:
-    return _USUAL.index(argument) if argument in _USUAL else len(_USUAL)
+    return _COMMON_ARGUMENTS.index(argument) if argument in _COMMON_ARGUMENTS else len(_COMMON_ARGUMENTS)
 
 
 def _parameters(cls: Any) -> list[str]:

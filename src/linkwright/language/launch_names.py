@@ -53,7 +53,7 @@ class LaunchInclude:
 
     Attributes:
         target: the file, or None if it is unknown.
-        written: the last words of the path as written.
+        written: the path as written or, in Python, the last string of it.
         passed: the names of the arguments that are passed to it.
         is_known: whether `passed` is complete.
     """
@@ -117,18 +117,18 @@ def _in_xml(document: Document) -> LaunchNames:
             includes.pop()
         if token.kind is not Kind.START or not token.name:
             continue
-        given = {attribute.name: attribute for attribute in token.attributes() if attribute.value}
-        for attribute in given.values():
+        attributes = {attribute.name: attribute for attribute in token.attributes() if attribute.value}
+        for attribute in attributes.values():
             found.names += _uses(attribute.value or "", attribute.value_start, file)
-        around = next((include for include in reversed(includes) if include is not None), None)
-        name = given.get("name")
+        outer_include = next((include for include in reversed(includes) if include is not None), None)
+        name = attributes.get("name")
         if token.name in ("arg", "bool_arg", "let") and name is not None and name.value:
-            place = LaunchName(file, name.value_start, name.value, is_declared=True)
+            name_use = LaunchName(file, name.value_start, name.value, is_declared=True)
             if "$" not in name.value:
-                (found.names if around is None else around.passed).append(place)
+                (found.names if outer_include is None else outer_include.passed).append(name_use)
         include = None
-        if token.name == "include" and "file" in given:
-            written = given["file"].value or ""
+        if token.name == "include" and "file" in attributes:
+            written = attributes["file"].value or ""
             include = LaunchInclude(_target(launch.path_of(written)), written)
             found.includes.append(include)
         if not token.is_empty_element:
@@ -174,14 +174,14 @@ def _in_python(document: Document) -> LaunchNames:
     found, file = LaunchNames(), document.file
     launch = PythonLaunchText(document)
     python = launch.python
-    places: dict[int, LaunchName] = {}
+    names_by_offset: dict[int, LaunchName] = {}
 
     def add(text: Text | None, *, is_declared: bool = False) -> None:
         if text is not None and text.value and not text.is_format:
-            places.setdefault(text.start, LaunchName(file, text.start, text.value, is_declared))
+            names_by_offset.setdefault(text.start, LaunchName(file, text.start, text.value, is_declared))
 
     for argument in arguments_in(document.text, file):
-        places[argument.start] = LaunchName(file, argument.start, argument.name, is_declared=True)
+        names_by_offset[argument.start] = LaunchName(file, argument.start, argument.name, is_declared=True)
     for call in python.calls:
         if call.function in _DECLARING:
             add(_first_text(call.argument("name", 0)), is_declared=True)
@@ -198,13 +198,13 @@ def _in_python(document: Document) -> LaunchNames:
         passed.update(name.start for name in include.passed)
         found.includes.append(include)
     for text, item in python.strings:
-        if text.start in places or text.start in passed or not text.value.isidentifier():
+        if text.start in names_by_offset or text.start in passed or not text.value.isidentifier():
             continue
         if _is_subscript(item):
             add(text)
         else:
             found.texts.append(LaunchName(file, text.start, text.value))
-    found.names = [*places.values()]
+    found.names = [*names_by_offset.values()]
     return found
 
 
@@ -227,11 +227,11 @@ def _included(launch: PythonLaunchText, call: Group, file: Path) -> LaunchInclud
     source = call.argument("launch_description_source", 0)
     words = [] if source is None else [*_texts_in(source)]
     include = LaunchInclude(_target(launch.included_file(call)), words[-1].value if words else "")
-    given = call.argument("launch_arguments")
-    if given is not None:
+    arguments = call.argument("launch_arguments")
+    if arguments is not None:
         include.is_known = False
-        for part in given.parts:
-            for group in _bound(launch, part):
+        for part in arguments.parts:
+            for group in _argument_groups(launch, part):
                 is_dict = group.function == "dict" and bool(group.callee)
                 if is_dict or not group.callee:
                     include.is_known = True
@@ -240,8 +240,8 @@ def _included(launch: PythonLaunchText, call: Group, file: Path) -> LaunchInclud
     return include
 
 
-def _bound(launch: PythonLaunchText, part: object) -> list[Group]:
-    """Return the brackets with the launch arguments in a call, or in a variable."""
+def _argument_groups(launch: PythonLaunchText, part: object) -> list[Group]:
+    """Return the bracket groups with launch arguments in an expression, or in the variable it names."""
     name = part.value if isinstance(part, Name) else part.callee if isinstance(part, Group) else ""
     bound = launch.python.bindings.get(name.partition(".")[0].strip()) if name else None
     parts = [part] if bound is None else bound.parts

@@ -1,6 +1,6 @@
 """Launch files in Python: the meaning of strings in calls such as ``Node(package="...")``.
 
-Nothing is run.
+The files are not run.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from linkwright.language.cursor import name_at
 from linkwright.language.format import Document, Format, Symbol, SymbolKind, Target
 from linkwright.language.hover import Explanation
 from linkwright.language.launch_arguments import LaunchArgument, arguments_in, likely_values
-from linkwright.language.launch_classes import class_arguments, described_class, first_argument, load_classes
+from linkwright.language.launch_classes import class_arguments, describe_class, first_argument, load_classes
 from linkwright.language.links import FileReference
 from linkwright.language.node_topics import (
     NodeProgram,
@@ -41,7 +41,7 @@ from linkwright.language.offers import (
     target_of_program,
 )
 from linkwright.language.parameter_catalogue import ParameterInfo, node_parameters
-from linkwright.language.parameter_completion import described
+from linkwright.language.parameter_completion import describe_parameter_info
 from linkwright.language.python_paths import JOINS, PACKAGE_FUNCTIONS, PythonPaths, Value
 from linkwright.language.python_text import Group, Item, Name, Text, python_text
 from linkwright.language.source_parameters import parameters_in_sources
@@ -66,7 +66,7 @@ def is_python_launch_file(path: Path) -> bool:
 
 
 @dataclass(frozen=True, slots=True)
-class _Place:
+class _StringMeaning:
     """The meaning of a string in a launch file.
 
     Attributes:
@@ -105,31 +105,31 @@ class PythonLaunchText:
         """The arguments that the file declares."""
         return tuple(arguments_in(self.document.text, self.document.file))
 
-    def place_at(self, offset: int) -> _Place | None:
-        """Return the meaning of the string at an offset, or None outside strings."""
+    def meaning_at(self, offset: int) -> _StringMeaning | None:
+        """Return the meaning of the string at an offset, or None outside of strings."""
         found = self.python.string_at(offset)
-        return None if found is None else self._place(*found)
+        return None if found is None else self._meaning_of(*found)
 
-    def _place(self, text: Text, item: Item) -> _Place:
+    def _meaning_of(self, text: Text, item: Item) -> _StringMeaning:
         group, keyword = item.group, item.keyword
         index = group.items.index(item)
         if keyword in _PACKAGE_KEYWORDS or (group.function in PACKAGE_FUNCTIONS and index == 0):
-            return _Place("package", text)
+            return _StringMeaning("package", text)
         if group.function == "MoveItConfigsBuilder" and keyword == "package_name":
-            return _Place("package", text)
+            return _StringMeaning("package", text)
         if keyword in _PROGRAM_KEYWORDS or keyword in ("plugin", "node_plugin"):
             given = next((other for other in group.items if other.keyword in _PACKAGE_KEYWORDS), None)
             kind = "program" if keyword in _PROGRAM_KEYWORDS else "component"
-            return _Place(kind, text, package=self.paths.text_of(given))
+            return _StringMeaning(kind, text, package=self.paths.text_of(given))
         if group.function in CONFIGURATIONS and (index == 0 or keyword == "variable_name"):
-            return _Place("configuration", text, arguments=self.arguments)
+            return _StringMeaning("configuration", text, arguments=self.arguments)
         if keyword == "output":
-            return _Place("output", text, choices=_OUTPUTS)
+            return _StringMeaning("output", text, choices=_OUTPUTS)
         if keyword == "default_value":
             name = self.paths.text_of(group.argument("name", 0)) or ""
             choices = self._choices(group) or likely_values(None, name, self.document.text)
-            return _Place("choice", text, base=self.paths.before(text, item), choices=choices)
-        of_node = self._of_node(text, item)
+            return _StringMeaning("choice", text, base=self.paths.before(text, item), choices=choices)
+        of_node = self._meaning_in_node(text, item)
         if of_node is not None:
             return of_node
         included = self._included_arguments(text, item)
@@ -137,15 +137,15 @@ class PythonLaunchText:
             return included
         if group.function == "DeclareLaunchArgument" and (index == 0 or keyword == "name"):
             own = tuple(argument for argument in self.arguments if argument.start == text.start)
-            return _Place("argument", text, arguments=own)
-        return _Place("path", text, base=self.paths.before(text, item))
+            return _StringMeaning("argument", text, arguments=own)
+        return _StringMeaning("path", text, base=self.paths.before(text, item))
 
-    def _of_node(self, text: Text, item: Item) -> _Place | None:
+    def _meaning_in_node(self, text: Text, item: Item) -> _StringMeaning | None:
         """Return the meaning of a name in a remapping or in the parameters of a node, or None."""
         group, outer = item.group, item.group.parent
         if outer is None or group.callee or not item.parts or item.parts[0] is not text:
             return None
-        if group.opening == "(" and _keyword_around(outer, _REMAPPINGS) and len(group.items) <= _PAIR:
+        if group.opening == "(" and _is_in_list_named(outer, _REMAPPINGS) and len(group.items) <= _PAIR:
             pairs = [each.parts[0] for each in outer.group.items if each is not outer and each.parts]
             firsts = (pair.items[0].parts[:1] for pair in pairs if isinstance(pair, Group) and pair.items)
             given = frozenset(part.value for parts in firsts for part in parts if isinstance(part, Text))
@@ -153,12 +153,12 @@ class PythonLaunchText:
             first = group.items[0].parts[0] if group.items[0].parts else None
             if item is not group.items[0]:  # the new name
                 old = first.value if isinstance(first, Text) else ""
-                return _Place("topic", text, choices=_new_names(old), programs=programs)
-            return _Place("topic", text, programs=programs, given=given)
-        if group.opening == "{" and _keyword_around(outer, _PARAMETERS):
+                return _StringMeaning("topic", text, choices=_new_names(old), programs=programs)
+            return _StringMeaning("topic", text, programs=programs, given=given)
+        if group.opening == "{" and _is_in_list_named(outer, _PARAMETERS):
             names = (each.parts[0] for each in group.items if each is not item and each.parts)
             given = frozenset(part.value for part in names if isinstance(part, Text))
-            return _Place("parameter", text, programs=self._programs(outer, "parameters"), given=given)
+            return _StringMeaning("parameter", text, programs=self._programs(outer, "parameters"), given=given)
         return None
 
     def _programs(self, item: Item, keyword: str) -> tuple[NodeProgram, ...]:
@@ -181,8 +181,8 @@ class PythonLaunchText:
         )
         return NodeProgram(self.paths.text_of(package) or "", self.paths.text_of(executable) or "")
 
-    def parameters(self, place: _Place) -> list[ParameterInfo]:
-        """Return the possible parameters of the nodes at a place."""
+    def parameters(self, place: _StringMeaning) -> list[ParameterInfo]:
+        """Return the possible parameters of the nodes to which a string belongs."""
         found: dict[str, ParameterInfo] = {}
         for program in place.programs:
             names = (node_name(*program), program.executable)
@@ -192,11 +192,11 @@ class PythonLaunchText:
         found.setdefault("use_sim_time", ParameterInfo("use_sim_time", "bool", False))
         return list(found.values())
 
-    def used_names(self, apart: Text) -> list[str]:
+    def undeclared_names(self, excluded: Text) -> list[str]:
         """Return the names of configurations that the file uses but does not declare."""
         calls = self.python.calls_of(*CONFIGURATIONS)
         parts = (part for call in calls for item in call.items[:1] for part in item.parts[:1])
-        names = dict.fromkeys(part.value for part in parts if isinstance(part, Text) and part is not apart)
+        names = dict.fromkeys(part.value for part in parts if isinstance(part, Text) and part is not excluded)
         declared = {argument.name for argument in self.arguments}
         return [name for name in names if name and name not in declared]
 
@@ -206,7 +206,7 @@ class PythonLaunchText:
         inner = part.items if isinstance(part, Group) else []
         return tuple(each.value for item in inner for each in item.parts[:1] if isinstance(each, Text))
 
-    def _included_arguments(self, text: Text, item: Item) -> _Place | None:
+    def _included_arguments(self, text: Text, item: Item) -> _StringMeaning | None:
         """Return the meaning of a key or value in the launch arguments of an include, or None."""
         include = _include_around(item)
         if include is None:
@@ -218,13 +218,13 @@ class PythonLaunchText:
         first = group.items[0].parts[:1] if is_pair else item.parts[:1]
         name = first[0].value if first and isinstance(first[0], Text) else ""
         if first and first[0] is text:
-            return _Place("argument", text, arguments=declared) if is_pair or group.opening == "{" else None
+            return _StringMeaning("argument", text, arguments=declared) if is_pair or group.opening == "{" else None
         if not is_pair and group.opening != "{":
             return None
         argument = next((each for each in declared if each.name == name), None)
         choices = () if argument is None else likely_values(argument, name, self.document.text)
         known = () if argument is None else (argument,)
-        return _Place("choice", text, None, known, self.paths.before(text, item), choices)
+        return _StringMeaning("choice", text, None, known, self.paths.before(text, item), choices)
 
     def included_file(self, include: Group) -> Path | None:
         """Return the file that an ``IncludeLaunchDescription`` includes, if it is known and exists."""
@@ -245,15 +245,15 @@ class PythonLaunchText:
             if argument.is_argument:
                 yield argument
 
-    def path_until(self, place: _Place, end: int) -> str | None:
-        """Return the path up to the first slash after an offset in its last string."""
+    def path_through(self, place: _StringMeaning, end: int) -> str | None:
+        """Return the path of a string up to the first slash at or after an offset."""
         base = "" if place.base is None else place.base.text
         rest = place.text.value[end - place.text.start :].partition("/")[0]
         written = place.text.value[: end - place.text.start] + rest
         return base.rstrip("/") + "/" + written.lstrip("/") if base.endswith("/") else base + written
 
 
-def _keyword_around(item: Item, wanted: re.Pattern[str]) -> bool:
+def _is_in_list_named(item: Item, wanted: re.Pattern[str]) -> bool:
     """Return whether an item is in a list for an argument or variable with a matching name."""
     around: Item | None = item
     for _ in range(_DEEPEST_LIST):
@@ -294,9 +294,9 @@ def _include_around(item: Item) -> Group | None:
 
 def _complete(document: Document, offset: int) -> Iterator[Completion]:
     launch = PythonLaunchText(document)
-    place = launch.place_at(offset)
+    place = launch.meaning_at(offset)
     if place is None:
-        yield from _keywords(launch, offset)
+        yield from _argument_completions(launch, offset)
         return
     start = place.text.start
     if place.kind == "package":
@@ -309,9 +309,9 @@ def _complete(document: Document, offset: int) -> Iterator[Completion]:
         for argument in place.arguments:
             if place.text.start != argument.start or argument.file != document.file:
                 detail = argument.default or ""
-                yield Completion(argument.name, ItemKind.NAME, start, detail, argument.described())
+                yield Completion(argument.name, ItemKind.NAME, start, detail, argument.describe())
         if place.kind == "configuration":
-            for name in launch.used_names(place.text):
+            for name in launch.undeclared_names(place.text):
                 yield Completion(name, ItemKind.NAME, start)
     elif place.kind == "parameter":
         for parameter in launch.parameters(place):
@@ -322,10 +322,10 @@ def _complete(document: Document, offset: int) -> Iterator[Completion]:
         yield from offer_topics(document, place.programs, document.text[start:offset], start, place.given)
     else:
         yield from offer_values(place.choices, start)
-        yield from _offer_path(launch, place, offset)
+        yield from _path_completions(launch, place, offset)
 
 
-def _offer_path(launch: PythonLaunchText, place: _Place, offset: int) -> Iterator[Completion]:
+def _path_completions(launch: PythonLaunchText, place: _StringMeaning, offset: int) -> Iterator[Completion]:
     typed = place.text.value[: offset - place.text.start]
     if typed.startswith(_URI):
         name, slash, rest = typed[len(_URI) :].partition("/")
@@ -347,27 +347,27 @@ def _offer_path(launch: PythonLaunchText, place: _Place, offset: int) -> Iterato
 
 def _explain(document: Document, offset: int) -> Explanation | None:
     launch = PythonLaunchText(document)
-    place = launch.place_at(offset)
+    place = launch.meaning_at(offset)
     if place is None:
         return _explain_name(launch, offset)
     text = _explanation(launch, place, offset) or _explain_argument(launch, place)
     return Explanation(text, place.text.start, place.text.end) if text else None
 
 
-def _explanation(launch: PythonLaunchText, place: _Place, offset: int) -> str | None:
+def _explanation(launch: PythonLaunchText, place: _StringMeaning, offset: int) -> str | None:
     value = place.text.value
     if place.kind == "package":
         return explain_package(launch.document, value)
     if place.kind == "program":
         return explain_program(launch.document, place.package, value)
     if place.kind in ("configuration", "argument"):
-        return "\n\n".join(argument.described() for argument in place.arguments if argument.name == value)
+        return "\n\n".join(argument.describe() for argument in place.arguments if argument.name == value)
     if place.kind == "topic":
         return explain_topic(launch.document, place.programs, value)
     if place.kind == "parameter":
         parameter = next((each for each in launch.parameters(place) if each.matches(value)), None)
-        return None if parameter is None else described(parameter, value)
-    path = launch.path_until(place, offset)
+        return None if parameter is None else describe_parameter_info(parameter, value)
+    path = launch.path_through(place, offset)
     file = None if path is None else launch.file_of(path)
     if file is not None and (place.base is not None or "/" in value):
         return explain_file(file)
@@ -375,10 +375,10 @@ def _explanation(launch: PythonLaunchText, place: _Place, offset: int) -> str | 
     return explain_file(Path(path or "")) if is_path else None
 
 
-def _explain_argument(launch: PythonLaunchText, place: _Place) -> str | None:
+def _explain_argument(launch: PythonLaunchText, place: _StringMeaning) -> str | None:
     """Explain the argument of an included file or launch class that has a string as its value."""
     if place.kind == "choice" and place.arguments:
-        return place.arguments[0].described()
+        return place.arguments[0].describe()
     found = launch.python.string_at(place.text.start)
     if found is None or not found[1].keyword:
         return None
@@ -386,8 +386,8 @@ def _explain_argument(launch: PythonLaunchText, place: _Place) -> str | None:
     return f"`{found[1].keyword}`: {meaning}" if meaning else None
 
 
-def _keywords(launch: PythonLaunchText, offset: int) -> Iterator[Completion]:
-    """Yield the arguments that the call around an offset does not have yet."""
+def _argument_completions(launch: PythonLaunchText, offset: int) -> Iterator[Completion]:
+    """Yield completions of the arguments that the call around an offset does not have yet."""
     text = launch.document.text
     typed = _WORD_BEFORE.search(text, text.rfind("\n", 0, offset) + 1, offset)
     call = launch.python.call_at(offset)
@@ -417,7 +417,7 @@ def _explain_name(launch: PythonLaunchText, offset: int) -> Explanation | None:
         return None
     name, start = found
     call = launch.python.call_at(offset)
-    text = described_class(name.rpartition(".")[2])
+    text = describe_class(name.rpartition(".")[2])
     if text is None and call is not None and any(item.keyword == name for item in call.items):
         meaning = class_arguments(call.function).get(name)
         text = f"`{name}`: {meaning}" if meaning else None
@@ -429,7 +429,7 @@ def _explain_name(launch: PythonLaunchText, offset: int) -> Explanation | None:
 
 def _define(document: Document, offset: int) -> Iterator[Target]:
     launch = PythonLaunchText(document)
-    place = launch.place_at(offset)
+    place = launch.meaning_at(offset)
     if place is None:
         return
     value = place.text.value
@@ -446,7 +446,7 @@ def _define(document: Document, offset: int) -> Iterator[Target]:
             if argument.name == value:
                 yield Target(argument.file, argument.start, argument.end)
     else:
-        path = launch.path_until(place, place.text.end)
+        path = launch.path_through(place, place.text.end)
         yield from target_of_file(None if path is None else launch.file_of(path))
 
 

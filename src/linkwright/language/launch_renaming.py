@@ -81,7 +81,7 @@ class _Search:
 
     def __init__(self, project: Workspace, texts: Mapping[Path, str], old: str, new: str) -> None:
         self._project, self._texts, self._old, self._new = project, texts, old, new
-        self._known: dict[Path, LaunchNames] = {}
+        self._names_by_file: dict[Path, LaunchNames] = {}
         self._result = LaunchRenaming()
 
     def run(self, owner: Path) -> LaunchRenaming:
@@ -95,9 +95,9 @@ class _Search:
                 continue
             shared[file] = None
             for include in self._names(file).includes:
-                pending += self._below(file, include)
+                pending += self._sharing_files(file, include)
             for other, include in includers.get(file, ()):
-                key = self._passed(include)
+                key = self._passed_name(include)
                 if key is not None:
                     self._edit(key)
                 elif not include.is_known:
@@ -120,9 +120,9 @@ class _Search:
             ]
         return self._result
 
-    def _below(self, file: Path, include: LaunchInclude) -> Iterator[Path]:
+    def _sharing_files(self, file: Path, include: LaunchInclude) -> Iterator[Path]:
         """Yield the file of an include if it shares the argument."""
-        if self._passed(include) is not None:
+        if self._passed_name(include) is not None:
             return
         if include.target is None:
             if include.written:
@@ -141,7 +141,9 @@ class _Search:
             return False
         seen.add(file)
         return self._mentions(file) or any(
-            include.target is not None and self._passed(include) is None and self._mentions_below(include.target, seen)
+            include.target is not None
+            and self._passed_name(include) is None
+            and self._mentions_below(include.target, seen)
             for include in self._names(file).includes
         )
 
@@ -157,14 +159,14 @@ class _Search:
         beside = (
             include.target
             for include in self._names(file).includes
-            if include.target is not None and self._passed(include) is None
+            if include.target is not None and self._passed_name(include) is None
         )
         return any(self._mentions_below(target, {*seen}) for target in beside if target not in seen) or any(
-            self._passed(include) is None and include.is_known and self._mentions_above(other, includers, seen)
+            self._passed_name(include) is None and include.is_known and self._mentions_above(other, includers, seen)
             for other, include in includers.get(file, ())
         )
 
-    def _passed(self, include: LaunchInclude) -> LaunchName | None:
+    def _passed_name(self, include: LaunchInclude) -> LaunchName | None:
         return next((name for name in include.passed if name.name == self._old), None)
 
     def _edit(self, name: LaunchName) -> None:
@@ -188,10 +190,10 @@ class _Search:
         return found
 
     def _names(self, file: Path) -> LaunchNames:
-        if file not in self._known:
+        if file not in self._names_by_file:
             text = self._project.text(file, self._texts) or ""
             is_launch = is_launch_file(file)
-            self._known[file] = (
+            self._names_by_file[file] = (
                 launch_names(Document(self._project, self._texts, file, text)) if is_launch else LaunchNames()
             )
-        return self._known[file]
+        return self._names_by_file[file]

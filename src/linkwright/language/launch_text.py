@@ -54,11 +54,14 @@ def open_substitution(typed: str) -> Substitution | None:
 
 
 def substitution_around(text: str, offset: int) -> re.Match[str] | None:
-    """Return the innermost closed ``$(...)`` around an offset: its command and arguments."""
+    """Return the match of the innermost closed ``$(...)`` around an offset, or None.
+
+    Its groups are the command and the arguments.
+    """
     return next((found for found in _WHOLE.finditer(text) if found.start() <= offset <= found.end()), None)
 
 
-def evaluated(text: str, file: Path, finder: PackageFinder, configurations: Mapping[str, str | None]) -> str | None:
+def evaluate(text: str, file: Path, finder: PackageFinder, configurations: Mapping[str, str | None]) -> str | None:
     """Evaluate the substitutions in a text, or return None if one is unknown.
 
     Args:
@@ -89,7 +92,7 @@ def evaluated(text: str, file: Path, finder: PackageFinder, configurations: Mapp
 
 
 def path_words(text: str) -> Iterator[tuple[int, int]]:
-    """Yield the start and end of each word of a text, in which a ``$(...)`` is not split."""
+    """Yield the start and end of each word of a text. A ``$(...)`` is never split."""
     for found in _WORD.finditer(text):
         yield found.span()
 
@@ -118,8 +121,20 @@ def _purpose(method: Callable[..., Any]) -> str:
     return (getattr(owner, "__doc__", None) or "").partition("\n")[0].replace("``", "`")
 
 
-_USUAL = ("var", "find-pkg-share", "env", "dirname", "eval", "command", "find-exec", "exec-in-pkg", "path-join")
+_COMMON_SUBSTITUTIONS = (
+    "var",
+    "find-pkg-share",
+    "env",
+    "dirname",
+    "eval",
+    "command",
+    "find-exec",
+    "exec-in-pkg",
+    "path-join",
+)
 
 
 def _rank(entry: tuple[str, object]) -> tuple[int, str]:
-    return (_USUAL.index(entry[0]) if entry[0] in _USUAL else len(_USUAL)), entry[0]
+    return (
+        _COMMON_SUBSTITUTIONS.index(entry[0]) if entry[0] in _COMMON_SUBSTITUTIONS else len(_COMMON_SUBSTITUTIONS)
+    ), entry[0]

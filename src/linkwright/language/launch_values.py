@@ -16,7 +16,7 @@ from linkwright.language.hover import Explanation
 from linkwright.language.launch_arguments import LaunchArgument, arguments_in, likely_values
 from linkwright.language.launch_schema import LAUNCH, choices_of
 from linkwright.language.launch_text import (
-    evaluated,
+    evaluate,
     open_substitution,
     path_words,
     substitution_around,
@@ -71,9 +71,9 @@ class LaunchValue:
         text: the whole value.
         start: the offset of the value.
         offset: the offset of the cursor.
-        given: the attributes of the element.
-        parent: the attributes of the parent element.
-        siblings: the names of the other children of the parent or, for remappings, the names that they replace.
+        attributes: the attributes of the element.
+        parent_attributes: the attributes of the parent element.
+        sibling_names: the names of the other children of the parent or, for remappings, the names that they replace.
     """
 
     tags: tuple[str, ...]
@@ -81,9 +81,9 @@ class LaunchValue:
     text: str
     start: int
     offset: int
-    given: Mapping[str, str]
-    parent: Mapping[str, str]
-    siblings: frozenset[str] = frozenset()
+    attributes: Mapping[str, str]
+    parent_attributes: Mapping[str, str]
+    sibling_names: frozenset[str] = frozenset()
 
     @property
     def typed(self) -> str:
@@ -113,19 +113,19 @@ class LaunchText:
         """The default of each declared argument by name, for ``$(var NAME)``, or None."""
         return {argument.name: argument.default for argument in self.arguments}
 
-    def used_names(self, apart: int) -> list[str]:
+    def undeclared_names(self, excluded_offset: int) -> list[str]:
         """Return the names in ``$(var NAME)`` that are not declared, except at an offset."""
-        found = (use for use in _USE.finditer(self.document.text) if use.start(1) != apart)
+        found = (use for use in _USE.finditer(self.document.text) if use.start(1) != excluded_offset)
         return [name for name in dict.fromkeys(use[1] for use in found) if name not in self.configurations]
 
     def path_of(self, written: str) -> Path | None:
         """Resolve a path in the launch file, or return None if it is empty or unknown."""
-        text = evaluated(written, self.document.file, self.document.finder, self.configurations)
+        text = evaluate(written, self.document.file, self.document.finder, self.configurations)
         return None if not text or "\0" in text else self.document.file.parent / text
 
     def included_arguments(self, value: LaunchValue) -> list[LaunchArgument]:
         """Return the arguments of the launch file that is included around a value."""
-        written = value.parent.get("file", "")
+        written = value.parent_attributes.get("file", "")
         path = self.path_of(written) if written else None
         if path is None or not path.is_file():
             return []
@@ -135,14 +135,14 @@ class LaunchText:
 
     def package_of(self, value: LaunchValue) -> str | None:
         """Return the package of the element that has a value."""
-        written = value.given.get("pkg", "")
-        return evaluated(written, self.document.file, self.document.finder, self.configurations) if written else None
+        written = value.attributes.get("pkg", "")
+        return evaluate(written, self.document.file, self.document.finder, self.configurations) if written else None
 
     def program_of(self, value: LaunchValue) -> NodeProgram:
         """Return the program of the node around a value."""
-        package = value.parent.get("pkg", "")
-        known = evaluated(package, self.document.file, self.document.finder, self.configurations) if package else ""
-        return NodeProgram(known or "", value.parent.get("exec", ""))
+        package = value.parent_attributes.get("pkg", "")
+        known = evaluate(package, self.document.file, self.document.finder, self.configurations) if package else ""
+        return NodeProgram(known or "", value.parent_attributes.get("exec", ""))
 
 
 # --- completion -----------------------------------------------------------------------------------------------
@@ -152,7 +152,7 @@ def complete_value(launch: LaunchText, value: LaunchValue) -> Iterator[Completio
     """Yield the completions in a value of a launch file."""
     substitution = open_substitution(value.typed)
     if substitution is None:
-        yield from _values(launch, value)
+        yield from _plain_completions(launch, value)
         return
     start = value.offset - len(substitution.typed)
     if not substitution.arguments:
@@ -162,7 +162,7 @@ def complete_value(launch: LaunchText, value: LaunchValue) -> Iterator[Completio
         yield from offer_packages(launch.document, start)
     elif substitution.command in _VARIABLES and len(substitution.arguments) == 1:
         yield from _offer_arguments(launch.arguments, start)
-        for name in launch.used_names(start):
+        for name in launch.undeclared_names(start):
             yield Completion(name, ItemKind.NAME, start)
     elif substitution.command == "exec-in-pkg" and len(substitution.arguments) > 1:
         yield from offer_packages(launch.document, start)
@@ -193,10 +193,10 @@ def _offer_command(launch: LaunchText, value: LaunchValue) -> Iterator[Completio
 def _offer_arguments(arguments: Iterable[LaunchArgument], start: int) -> Iterator[Completion]:
     for argument in arguments:
         detail = "" if argument.default is None else argument.default
-        yield Completion(argument.name, ItemKind.NAME, start, detail, argument.described())
+        yield Completion(argument.name, ItemKind.NAME, start, detail, argument.describe())
 
 
-def _values(launch: LaunchText, value: LaunchValue) -> Iterator[Completion]:
+def _plain_completions(launch: LaunchText, value: LaunchValue) -> Iterator[Completion]:
     document, offset, name, start = launch.document, value.offset, value.name, value.start
     rule = rule_at(LAUNCH, value.tags)
     attribute = None if rule is None else rule.attribute_rules.get(name)
@@ -211,7 +211,7 @@ def _values(launch: LaunchText, value: LaunchValue) -> Iterator[Completion]:
         yield from offer_components(document, launch.package_of(value), start)
     elif value.is_included and name == "name":
         found = launch.included_arguments(value) or launch.arguments
-        yield from _offer_arguments((each for each in found if each.name not in value.siblings), start)
+        yield from _offer_arguments((each for each in found if each.name not in value.sibling_names), start)
     elif name in ("if", "unless"):
         yield from _offer_variables(launch, start, [each for each in launch.arguments if each.is_condition])
         yield from offer_values(("true", "false"), start)
@@ -219,7 +219,9 @@ def _values(launch: LaunchText, value: LaunchValue) -> Iterator[Completion]:
         yield from offer_values(choices_of(attribute), start)
     elif name in ("value", "default"):
         if value.is_included:
-            yield from _offer_variables(launch, start, _named(launch.arguments, value.given.get("name", "")))
+            yield from _offer_variables(
+                launch, start, _arguments_named(launch.arguments, value.attributes.get("name", ""))
+            )
         yield from offer_values(_choices(launch, value), start)
     elif value.tags[-1] in ("param", "set_parameter") and name == "name":
         yield from _offer_parameters(launch, value)
@@ -249,27 +251,27 @@ def _new_and_old_names(launch: LaunchText, value: LaunchValue) -> Iterator[Compl
     """Yield the names for a remapping: topics of the node, or other forms of the old name."""
     if value.name == "from":
         programs = [launch.program_of(value)]
-        yield from offer_topics(launch.document, programs, value.typed, value.start, value.siblings)
+        yield from offer_topics(launch.document, programs, value.typed, value.start, value.sibling_names)
         return
-    name = plain_name(value.given.get("from", ""))
+    name = plain_name(value.attributes.get("from", ""))
     for label in dict.fromkeys((name, f"/{name}", name.rpartition("/")[2])) if name else ():
-        if label != value.given.get("from"):
+        if label != value.attributes.get("from"):
             yield Completion(label, ItemKind.NAME, value.start)
 
 
 def _known_parameters(launch: LaunchText, value: LaunchValue) -> tuple[ParameterInfo, ...]:
     """Return the known parameters of the node around a value."""
     program = launch.program_of(value)
-    names = (node_name(*program), program.executable, value.parent.get("name", ""))
+    names = (node_name(*program), program.executable, value.parent_attributes.get("name", ""))
     known = next((found for name in names if (found := node_parameters(name))), ())
     return known or parameters_in_sources(launch.document, program)
 
 
 def _offer_parameters(launch: LaunchText, value: LaunchValue) -> Iterator[Completion]:
-    """Yield the parameters of the node around a value."""
+    """Yield completions of the parameters of the node around a value."""
     known = _known_parameters(launch, value)
     for parameter in known:
-        if parameter.name not in value.siblings and "*" not in parameter.name:
+        if parameter.name not in value.sibling_names and "*" not in parameter.name:
             detail = f"{parameter.type} {parameter.written_default}".strip()
             yield Completion(parameter.name, ItemKind.NAME, value.start, detail, parameter.description)
     if not any(parameter.name == "use_sim_time" for parameter in known):
@@ -278,14 +280,14 @@ def _offer_parameters(launch: LaunchText, value: LaunchValue) -> Iterator[Comple
 
 def _choices(launch: LaunchText, value: LaunchValue) -> tuple[str, ...]:
     """Return the likely values of an argument: its choices, or both values of a condition."""
-    name = value.given.get("name", "")
+    name = value.attributes.get("name", "")
     if not value.is_included:
-        return likely_values(None, name, launch.document.text) if value.name == "default" else _truths(name)
+        return likely_values(None, name, launch.document.text) if value.name == "default" else _boolean_choices(name)
     argument = next((each for each in launch.included_arguments(value) if each.name == name), None)
     return () if argument is None else likely_values(argument, name, launch.document.text)
 
 
-def _truths(name: str) -> tuple[str, ...]:
+def _boolean_choices(name: str) -> tuple[str, ...]:
     return ("true", "false") if name.startswith(("use_", "enable", "is_", "publish_")) else ()
 
 
@@ -302,7 +304,7 @@ def _offer_path(launch: LaunchText, word: str, offset: int, *, launch_files: boo
 
 
 @dataclass(frozen=True, slots=True)
-class _Place:
+class _ValueMeaning:
     """The object that a position in a launch file refers to.
 
     Attributes:
@@ -324,64 +326,64 @@ class _Place:
     program: NodeProgram | None = None
 
 
-def _place_at(launch: LaunchText, value: LaunchValue) -> _Place | None:
+def _meaning_at(launch: LaunchText, value: LaunchValue) -> _ValueMeaning | None:
     around = substitution_around(value.text, value.offset - value.start)
-    place = None if around is None else _in_substitution(launch, around, value.offset - value.start)
+    place = None if around is None else _meaning_in_substitution(launch, around, value.offset - value.start)
     if place is not None:
         return replace(place, start=value.start + place.start, end=value.start + place.end)
-    return _of_attribute(launch, value)
+    return _meaning_of_attribute(launch, value)
 
 
-def _in_substitution(launch: LaunchText, around: re.Match[str], offset: int) -> _Place | None:
+def _meaning_in_substitution(launch: LaunchText, around: re.Match[str], offset: int) -> _ValueMeaning | None:
     command, arguments = around[1], (around[2] or "").strip("'\" ")
     if offset <= around.end(1):
-        return _Place("substitution", command, *around.span(1)) if command in substitution_names() else None
+        return _ValueMeaning("substitution", command, *around.span(1)) if command in substitution_names() else None
     name = arguments.partition(" ")[0]
     start = around.start(2) + (around[2] or "").find(name) if around[2] else around.end(1)
     place = start, start + len(name)
     if command in _PACKAGES:
-        return _Place("package", name, *place)
+        return _ValueMeaning("package", name, *place)
     if command in _VARIABLES:
-        return _Place("argument", name, *place, arguments=_named(launch.arguments, name))
+        return _ValueMeaning("argument", name, *place, arguments=_arguments_named(launch.arguments, name))
     if command == "exec-in-pkg" and " " in arguments:
-        return _Place("program", name, *place, package=arguments.split()[-1])
+        return _ValueMeaning("program", name, *place, package=arguments.split()[-1])
     return None
 
 
-def _named(arguments: Iterable[LaunchArgument], name: str) -> tuple[LaunchArgument, ...]:
+def _arguments_named(arguments: Iterable[LaunchArgument], name: str) -> tuple[LaunchArgument, ...]:
     return tuple(argument for argument in arguments if argument.name == name)
 
 
-def _of_attribute(launch: LaunchText, value: LaunchValue) -> _Place | None:
+def _meaning_of_attribute(launch: LaunchText, value: LaunchValue) -> _ValueMeaning | None:
     name, begin = value.name, value.start
     whole = begin, begin + len(value.text)
     if value.tags[-1] == "remap" and name in ("from", "to"):
-        return _Place("topic", value.given.get("from", ""), *whole, program=launch.program_of(value))
+        return _ValueMeaning("topic", value.attributes.get("from", ""), *whole, program=launch.program_of(value))
     kinds = {"pkg": "package", "exec": "program", "plugin": "component"}
     if name in kinds:
-        return _Place(kinds[name], value.text, *whole, package=launch.package_of(value))
+        return _ValueMeaning(kinds[name], value.text, *whole, package=launch.package_of(value))
     if name == "name" and value.tags[-1] in _INTO_ARGUMENTS:
         found = launch.included_arguments(value) if value.is_included else launch.arguments
-        return _Place("argument", value.text, *whole, arguments=_named(found, value.text))
+        return _ValueMeaning("argument", value.text, *whole, arguments=_arguments_named(found, value.text))
     for start, end in path_words(value.text):
         word = value.text[start:end]
         if begin + start <= value.offset <= begin + end and ("/" in word or name in _PATHS):
             path = launch.path_of(word)
             if path is not None and (path.exists() or name in _PATHS):
-                return _Place("file", str(path), begin + start, begin + end)
+                return _ValueMeaning("file", str(path), begin + start, begin + end)
     return None
 
 
 def explain_value(launch: LaunchText, value: LaunchValue) -> Explanation | None:
     """Explain the object at the cursor in a value, or else the attribute, or return None."""
-    place = _place_at(launch, value)
+    place = _meaning_at(launch, value)
     text = None if place is None else _explanation(launch.document, place)
     if place is not None and text:
         return Explanation(text, place.start, place.end)
     end = value.start + len(value.text)
     if value.tags[-1] in ("param", "set_parameter") and value.name in ("name", "value"):
         known = _known_parameters(launch, value)
-        parameter = next((each for each in known if each.matches(value.given.get("name", ""))), None)
+        parameter = next((each for each in known if each.matches(value.attributes.get("name", ""))), None)
         if parameter is not None:
             default = f" = `{parameter.written_default}`" if parameter.written_default else ""
             head = f"**{parameter.name}**: {parameter.type}{default}"
@@ -391,13 +393,13 @@ def explain_value(launch: LaunchText, value: LaunchValue) -> Explanation | None:
     return None if attribute is None else Explanation(describe_attribute(attribute), value.start, end)
 
 
-def _explanation(document: Document, place: _Place) -> str | None:
+def _explanation(document: Document, place: _ValueMeaning) -> str | None:
     if place.kind == "package":
         return explain_package(document, place.name)
     if place.kind == "program":
         return explain_program(document, place.package, place.name)
     if place.kind == "argument":
-        return "\n\n".join(argument.described() for argument in place.arguments)
+        return "\n\n".join(argument.describe() for argument in place.arguments)
     if place.kind == "file":
         return explain_file(Path(place.name))
     if place.kind == "topic" and place.program is not None:
@@ -409,7 +411,7 @@ def _explanation(document: Document, place: _Place) -> str | None:
 
 def define_value(launch: LaunchText, value: LaunchValue) -> Iterator[Target]:
     """Yield the definitions of the object at the cursor in a value."""
-    document, place = launch.document, _place_at(launch, value)
+    document, place = launch.document, _meaning_at(launch, value)
     if place is None:
         return
     if place.kind == "package":

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from linkwright.language.completion import Completion
-from linkwright.language.cursor import Spot, cursor_at
+from linkwright.language.cursor import CursorSyntax, cursor_at
 from linkwright.language.format import Document, Format, Symbol, SymbolKind, Target
 from linkwright.language.grammar import is_launch_file
 from linkwright.language.hover import Explanation
@@ -25,35 +25,35 @@ from linkwright.language.xml_hover import explain_at
 from linkwright.xmltree.tokens import Kind, Token, tokens
 
 
-def _given(token: Token) -> dict[str, str]:
+def _attribute_values(token: Token) -> dict[str, str]:
     return {attribute.name: attribute.value or "" for attribute in token.attributes()}
 
 
 def _value_at(text: str, offset: int) -> LaunchValue | None:
     """Return the value of an attribute at an offset, or None if there is none."""
     cursor = cursor_at(text, offset)
-    if cursor.spot is not Spot.VALUE or cursor.attribute is None or cursor.token is None:
+    if cursor.syntax is not CursorSyntax.VALUE or cursor.attribute is None or cursor.token is None:
         return None
     token = cursor.token
     parent = _parent_of(text, token)
     siblings = [] if parent is None else parent.children
     key = "from" if token.name == "remap" else "name"
-    others = (_given(child.tag).get(key, "") for child in siblings if child.tag.start != token.start)
+    others = (_attribute_values(child.tag).get(key, "") for child in siblings if child.tag.start != token.start)
     return LaunchValue(
         cursor.tags,
         cursor.attribute.name,
         cursor.attribute.value or "",
         cursor.attribute.value_start,
         offset,
-        _given(token),
-        {} if parent is None else _given(parent.tag),
+        _attribute_values(token),
+        {} if parent is None else _attribute_values(parent.tag),
         frozenset(others),
     )
 
 
 def _parent_of(text: str, token: Token) -> OutlineElement | None:
     """Return the element that contains a start tag, or None if there is none."""
-    around = [element for element in Outline.of(text).around(token.start) if element.tag.start < token.start]
+    around = [element for element in Outline.of(text).elements_around(token.start) if element.tag.start < token.start]
     return next((element for element in reversed(around) if element.end > token.start), None)
 
 
@@ -108,12 +108,12 @@ def _symbols(document: Document) -> Iterator[Symbol]:
 
 
 def _symbol(element: OutlineElement, depth: int) -> Symbol:
-    given = _given(element.tag)
-    named = next((given[name] for name in _NAMING if given.get(name)), "")
+    attributes = _attribute_values(element.tag)
+    identifier = next((attributes[name] for name in _NAMING if attributes.get(name)), "")
     kind = _KINDS.get(element.tag.name, SymbolKind.OBJECT)
     children = tuple(_symbol(child, depth + 1) for child in element.children) if depth < _DEEPEST else ()
-    name = f"{element.tag.name} {named}".strip()
-    return Symbol(name, kind, element.tag.start, element.end, children, given.get("pkg", ""))
+    name = f"{element.tag.name} {identifier}".strip()
+    return Symbol(name, kind, element.tag.start, element.end, children, attributes.get("pkg", ""))
 
 
 LAUNCH_XML = Format(is_launch_file, _complete, _explain, _define, _links, _symbols, prepare=substitution_names)

@@ -20,7 +20,7 @@ from linkwright.language.launch_values import (
     links_in,
 )
 from linkwright.language.links import FileReference
-from linkwright.language.yaml_outline import Place, YamlCursor, YamlEntry, YamlOutline
+from linkwright.language.yaml_outline import YamlCursor, YamlEntry, YamlOutline, YamlPosition
 from linkwright.schema import describe_attribute, describe_element
 
 _CHILDREN = "children"
@@ -39,7 +39,7 @@ def _tags(entry: YamlEntry) -> tuple[str, ...]:
     return tuple(key for key in entry.path if key != _CHILDREN)
 
 
-def _given(entry: YamlEntry | None) -> Mapping[str, str]:
+def _attribute_values(entry: YamlEntry | None) -> Mapping[str, str]:
     return {} if entry is None else {child.key: child.scalar for child in entry.children if child.key and child.value}
 
 
@@ -53,21 +53,21 @@ def _element_around(entry: YamlEntry) -> YamlEntry | None:
 
 def _value_of(cursor: YamlCursor) -> LaunchValue | None:
     """Return the value at a cursor, or None outside values."""
-    entry = cursor.within
+    entry = cursor.parent_entry
     element = entry.parent
-    if cursor.place is not Place.VALUE or not entry.key or element is None or _is_new_item(cursor):
+    if cursor.position is not YamlPosition.VALUE or not entry.key or element is None or _is_new_item(cursor):
         return None
     tags = _tags(entry)
     if len(tags) < 2:
         return None
-    text = entry.scalar if entry.scalar.startswith(cursor.typed) and not cursor.in_list else cursor.typed
+    text = entry.scalar if entry.scalar.startswith(cursor.typed) and not cursor.is_in_list else cursor.typed
     owner = element.parent if element.is_item and element.parent is not None else element
     others = owner.children if element.is_item else []
     key = "from" if tags[-2] == "remap" else "name"
     names = (name.scalar for item in others if item is not element and (name := item.child(key)) is not None)
-    parent = _given(_element_around(owner))
+    parent = _attribute_values(_element_around(owner))
     return LaunchValue(
-        tags[:-1], tags[-1], text, cursor.start, cursor.offset, _given(element), parent, frozenset(names)
+        tags[:-1], tags[-1], text, cursor.start, cursor.offset, _attribute_values(element), parent, frozenset(names)
     )
 
 
@@ -76,17 +76,21 @@ def _complete(document: Document, offset: int) -> Iterator[Completion]:
     value = _value_of(cursor)
     if value is not None:
         yield from complete_value(LaunchText(document), value)
-    elif cursor.place is Place.KEY or _is_new_item(cursor):
+    elif cursor.position is YamlPosition.KEY or _is_new_item(cursor):
         yield from _keys(cursor)
 
 
 def _is_new_item(cursor: YamlCursor) -> bool:
     """Return whether the cursor is at the first key of a new item in a list of elements."""
-    return cursor.place is Place.VALUE and cursor.in_list and rule_at(LAUNCH, _tags(cursor.within)) is not None
+    return (
+        cursor.position is YamlPosition.VALUE
+        and cursor.is_in_list
+        and rule_at(LAUNCH, _tags(cursor.parent_entry)) is not None
+    )
 
 
 def _keys(cursor: YamlCursor) -> Iterator[Completion]:
-    within = cursor.within
+    within = cursor.parent_entry
     tags = _tags(within)
     if not tags:
         yield Completion(LAUNCH.tag, ItemKind.ELEMENT, cursor.start, "", describe_element(LAUNCH))
@@ -94,16 +98,16 @@ def _keys(cursor: YamlCursor) -> Iterator[Completion]:
     rule = rule_at(LAUNCH, tags)
     if rule is None:
         return
-    given = {child.key for child in within.children if child is not cursor.entry}
+    present = {child.key for child in within.children if child is not cursor.entry}
     owner = within.parent if within.is_item and within.parent is not None else within
     is_action_list = owner.key in _LISTS and (within.is_item or _is_new_item(cursor))
     for attribute in () if is_action_list or not within.parent else rule.attributes:
-        if attribute.name not in given:
+        if attribute.name not in present:
             snippet = "" if cursor.entry is not None else f'{attribute.name}: "$1"$0'
             described = describe_attribute(attribute)
             yield Completion(attribute.name, ItemKind.ATTRIBUTE, cursor.start, attribute.type.name, described, snippet)
     for child in rule.child_rules.values():
-        if child.tag not in given and child.tag != rule.tag:
+        if child.tag not in present and child.tag != rule.tag:
             snippet = "" if cursor.entry is not None else f"{child.tag}:$0"
             yield Completion(child.tag, ItemKind.ELEMENT, cursor.start, "", describe_element(child), snippet)
 
@@ -118,7 +122,7 @@ def _explain(document: Document, offset: int) -> Explanation | None:
     if value is not None:
         return explain_value(LaunchText(document), value)
     entry = cursor.entry
-    if cursor.place is not Place.KEY or entry is None:
+    if cursor.position is not YamlPosition.KEY or entry is None:
         return None
     tags = _tags(entry)
     rule, parent = rule_at(LAUNCH, tags), rule_at(LAUNCH, tags[:-1])
@@ -152,11 +156,17 @@ def _actions(entry: YamlEntry, depth: int) -> Iterator[Symbol]:
         if child.is_item:
             yield from _actions(child, depth + 1)
         elif child.children:
-            given = _given(child)
-            named = next((given[name] for name in _NAMING if given.get(name)), "")
-            kind = SymbolKind.NODE if "exec" in given or "plugin" in given else _KINDS.get(child.key, SymbolKind.OBJECT)
+            attributes = _attribute_values(child)
+            identifier = next((attributes[name] for name in _NAMING if attributes.get(name)), "")
+            kind = (
+                SymbolKind.NODE
+                if "exec" in attributes or "plugin" in attributes
+                else _KINDS.get(child.key, SymbolKind.OBJECT)
+            )
             inner = tuple(_actions(child, depth + 1))
-            yield Symbol(f"{child.key} {named}".strip(), kind, child.start, child.end, inner, given.get("pkg", ""))
+            yield Symbol(
+                f"{child.key} {identifier}".strip(), kind, child.start, child.end, inner, attributes.get("pkg", "")
+            )
 
 
 _KINDS = {

@@ -16,7 +16,7 @@ _PATH_ATTRIBUTES = ("filename", "file", "uri", "path", "url")
 _PATH_TAGS = ("uri", "albedo_map", "normal_map", "filename", "parameters", "mesh")
 _SCHEME = re.compile(r"^(?:package|model|file)://")
 _FIND = re.compile(r"\$\(find(?:-pkg-share)?\s+([^()\s]+)\)")
-_LOADED = re.compile(r"load_yaml\(\s*(['\"])(?P<path>[^'\"]+)\1")
+_LOAD_YAML = re.compile(r"load_yaml\(\s*(['\"])(?P<path>[^'\"]+)\1")
 
 
 class FileReference(NamedTuple):
@@ -40,7 +40,7 @@ def file_references(
 
     Args:
         text: the text, which may be incomplete.
-        file: the file of the text, in whose folder relative paths begin.
+        file: the file of the text. Relative paths start at its folder.
         finder: finds packages.
         values: the values of the expressions in the text. A reference with expressions needs a single value.
     """
@@ -52,14 +52,14 @@ def file_references(
             for attribute in token.attributes():
                 is_path = attribute.name in _PATH_ATTRIBUTES
                 value = attribute.value or ""
-                yield from _found(value, attribute.value_start, file, finder, known, is_path=is_path)
+                yield from _reference_in(value, attribute.value_start, file, finder, known, is_path=is_path)
         elif token.kind is Kind.TEXT and token.text.strip():
             value = token.text.strip()
             start = token.start + token.text.index(value)
-            yield from _found(value, start, file, finder, known, is_path=tag in _PATH_TAGS)
+            yield from _reference_in(value, start, file, finder, known, is_path=tag in _PATH_TAGS)
 
 
-def _found(
+def _reference_in(
     value: str,
     start: int,
     file: Path,
@@ -68,13 +68,13 @@ def _found(
     *,
     is_path: bool,
 ) -> Iterator[FileReference]:
-    loaded = _LOADED.search(value)
+    loaded = _LOAD_YAML.search(value)
     begin, end = loaded.span("path") if loaded else (0, len(value))
-    written = value[begin:end]
-    if not (is_path or loaded or _SCHEME.match(written) or _FIND.match(written)):
+    path_text = value[begin:end]
+    if not (is_path or loaded or _SCHEME.match(path_text) or _FIND.match(path_text)):
         return
     values = known.get((start, start + len(value)), ())
-    address = _FIND.sub(lambda found: str(finder.find(found[1]) or found[0]), written)
+    address = _FIND.sub(lambda found: str(finder.find(found[1]) or found[0]), path_text)
     if "$" in address and not loaded and len(values) == 1:
         address = values[0].strip("'\"")
     target = None if "$" in address else _target(address, file, finder)

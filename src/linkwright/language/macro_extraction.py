@@ -14,14 +14,14 @@ from linkwright.language.grammar import PREFIX
 from linkwright.language.occurrences import Occurrence, occurrences_in
 from linkwright.language.proof import Edit, ExpansionProof, UnprovedError
 from linkwright.language.workspace import Workspace
-from linkwright.language.written import WrittenElement, written_elements
+from linkwright.language.written import SourceElement, source_elements
 from linkwright.xmltree.patches import indentation, line_ending
 from linkwright.xmltree.tokens import Kind, tokens
 
 _STEP = "  "
 
 
-def selected_elements(text: str, start: int, end: int) -> list[WrittenElement]:
+def selected_elements(text: str, start: int, end: int) -> list[SourceElement]:
     """Return the sibling elements that make up a selection.
 
     Returns an empty list if the selection contains other text, a part of an element, the root, or a definition or
@@ -36,7 +36,7 @@ def selected_elements(text: str, start: int, end: int) -> list[WrittenElement]:
     start, end = start + len(chosen) - len(chosen.lstrip()), end - len(chosen) + len(chosen.rstrip())
     if start >= end:
         return []
-    inside = [one for one in written_elements(text) if start <= one.start < end]
+    inside = [one for one in source_elements(text) if start <= one.start < end]
     if not inside or any(one.end < 0 or one.end > end for one in inside):
         return []
     first = inside[0]
@@ -58,12 +58,12 @@ def _is_blank(text: str) -> bool:
     )
 
 
-def _is_movable(element: WrittenElement) -> bool:
+def _is_movable(element: SourceElement) -> bool:
     return element.name not in ("xacro:macro", "xacro:arg", "xacro:include", "xacro:property")
 
 
 def extract_macro(
-    project: Workspace, texts: Mapping[Path, str], file: Path, text: str, siblings: Sequence[WrittenElement]
+    project: Workspace, texts: Mapping[Path, str], file: Path, text: str, siblings: Sequence[SourceElement]
 ) -> tuple[Edit, ...]:
     """Return the proved edits that move elements to a macro with parameters.
 
@@ -111,10 +111,10 @@ def _joined(first: Edit, second: Edit) -> tuple[Edit, ...]:
     return first, second
 
 
-def _macro_name(element: WrittenElement) -> str:
+def _macro_name(element: SourceElement) -> str:
     """Return a macro name made of the element's tag and the nearest name around it."""
     tag = element.name.removeprefix(PREFIX)
-    for one in element.around():
+    for one in element.ancestors_and_self():
         literal = re.sub(r"\$\{[^}]*\}|\$\([^)]*\)", "", one.value("name")).strip("_- ")
         if literal and one.parent is not None:
             return literal if literal.endswith(tag) else f"{literal}_{tag}"

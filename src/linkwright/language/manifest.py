@@ -7,12 +7,12 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from linkwright.language.completion import Completion, ItemKind
-from linkwright.language.cursor import Cursor, Spot, cursor_at
+from linkwright.language.cursor import Cursor, CursorSyntax, cursor_at
 from linkwright.language.format import Document, Format, Symbol, SymbolKind, Target
 from linkwright.language.grammar import rule_at
 from linkwright.language.hover import Explanation
 from linkwright.language.links import FileReference
-from linkwright.language.manifest_schema import DEPENDING, PACKAGE
+from linkwright.language.manifest_schema import DEPENDENCY_TAGS, PACKAGE
 from linkwright.language.offers import explain_package, offer_packages, offer_values, target_of_package
 from linkwright.language.outline import Outline
 from linkwright.language.programs import used_packages
@@ -21,7 +21,7 @@ from linkwright.language.xml_hover import explain_at
 from linkwright.packages.creation.licenses import known_licenses
 from linkwright.packages.manifest import MANIFEST
 
-_USUAL_LICENSES = ("Apache-2.0", "BSD-3-Clause", "MIT")
+_COMMON_LICENSES = ("Apache-2.0", "BSD-3-Clause", "MIT")
 _TEXTS = {
     "build_type": ("ament_cmake", "ament_python", "cmake"),
     "member_of_group": ("rosidl_interface_packages",),
@@ -29,7 +29,7 @@ _TEXTS = {
     "version": ("0.1.0",),
 }
 _ATTRIBUTES = {"format": ("3", "2"), "type": ("website", "bugtracker", "repository")}
-_USUAL = {
+_COMMON_DEPENDENCIES = {
     "buildtool_depend": ("ament_cmake", "ament_cmake_python", "ament_cmake_auto", "rosidl_default_generators"),
     "test_depend": (
         *("ament_lint_auto", "ament_lint_common", "ament_copyright", "ament_flake8", "ament_pep257"),
@@ -54,24 +54,24 @@ def is_manifest(path: Path) -> bool:
 def _complete(document: Document, offset: int) -> Iterator[Completion]:
     cursor = cursor_at(document.text, offset)
     typed = cursor.typed.lstrip()
-    if cursor.spot is Spot.TEXT and cursor.tags and "\n" not in typed:
-        found = [*_texts(document, cursor.tags[-1], offset - len(typed))]
+    if cursor.syntax is CursorSyntax.TEXT and cursor.tags and "\n" not in typed:
+        found = [*_text_completions(document, cursor.tags[-1], offset - len(typed))]
         if found:
             yield from found
             return
-    if cursor.spot is Spot.VALUE and cursor.attribute is not None:
+    if cursor.syntax is CursorSyntax.VALUE and cursor.attribute is not None:
         yield from offer_values(_ATTRIBUTES.get(cursor.attribute.name, ()), offset - len(cursor.typed))
         return
-    given = _single_children(document.text, offset)
+    present = _single_children(document.text, offset)
     for item in complete(document, offset):
-        if item.kind is not ItemKind.ELEMENT or item.label not in given:
+        if item.kind is not ItemKind.ELEMENT or item.label not in present:
             yield item
 
 
 def _single_children(text: str, offset: int) -> set[str]:
-    """Return the existing elements around an offset that may occur only once."""
+    """Return the tags of existing siblings at an offset that may occur only once."""
     around = []
-    for element in Outline.of(text).around(offset):
+    for element in Outline.of(text).elements_around(offset):
         end = element.end if element.closing is None else element.closing.start
         if element.tag.end <= offset <= end and not element.tag.is_empty_element:
             around.append(element)
@@ -82,26 +82,26 @@ def _single_children(text: str, offset: int) -> set[str]:
     return {name for name in names if name in rule.child_rules and not rule.child_rules[name].many}
 
 
-def _texts(document: Document, tag: str, start: int) -> Iterator[Completion]:
-    if tag in DEPENDING:
-        yield from _dependencies(document, tag, start)
+def _text_completions(document: Document, tag: str, start: int) -> Iterator[Completion]:
+    if tag in DEPENDENCY_TAGS:
+        yield from _dependency_completions(document, tag, start)
     elif tag == "license":
-        yield from offer_values(dict.fromkeys((*_USUAL_LICENSES, *known_licenses())), start)
+        yield from offer_values(dict.fromkeys((*_COMMON_LICENSES, *known_licenses())), start)
     elif tag == "name":
         yield Completion(document.file.parent.name, ItemKind.PACKAGE, start)
     else:
         yield from offer_values(_TEXTS.get(tag, ()), start)
 
 
-def _dependencies(document: Document, tag: str, start: int) -> Iterator[Completion]:
-    """Yield packages: first the used ones, then the usual ones of the tag, then the others.
+def _dependency_completions(document: Document, tag: str, start: int) -> Iterator[Completion]:
+    """Yield completions of packages: used ones, then common ones of the tag, then the others.
 
-    Declared packages are left out.
+    Packages that the manifest declares are left out.
     """
     others = document.text[:start] + document.text[start:].partition("<")[2]
     seen = {name for other, name in _DECLARED.findall(others) if other in (tag, "depend", "name")}
     used = used_packages(document.file.parent) if tag in ("depend", "exec_depend") else []
-    usual: Iterable[str] = (*used, *_USUAL.get(tag, ()))
+    usual: Iterable[str] = (*used, *_COMMON_DEPENDENCIES.get(tag, ()))
     for name in usual:
         if name not in seen:
             seen.add(name)
@@ -114,7 +114,7 @@ def _dependencies(document: Document, tag: str, start: int) -> Iterator[Completi
 def _dependency_at(document: Document, offset: int) -> tuple[str, int] | None:
     """Return the package name in the element at an offset and its start, or None."""
     cursor: Cursor = cursor_at(document.text, offset)
-    if cursor.spot is not Spot.TEXT or not cursor.tags or cursor.tags[-1] not in {*DEPENDING, "name"}:
+    if cursor.syntax is not CursorSyntax.TEXT or not cursor.tags or cursor.tags[-1] not in {*DEPENDENCY_TAGS, "name"}:
         return None
     begin = offset - len(cursor.typed)
     text = document.text[begin:].partition("<")[0]
@@ -150,7 +150,7 @@ def _symbols(document: Document) -> Iterator[Symbol]:
         for element in package.children:
             inner = document.text[element.tag.end : element.closing.start] if element.closing is not None else ""
             text = " ".join(inner.split()) if "<" not in inner else ""
-            kind = SymbolKind.PACKAGE if element.tag.name in DEPENDING else SymbolKind.FIELD
+            kind = SymbolKind.PACKAGE if element.tag.name in DEPENDENCY_TAGS else SymbolKind.FIELD
             children.append(Symbol(element.tag.name, kind, element.tag.start, element.end, (), text[:60]))
         name = next((child.detail for child in children if child.name == "name" and child.detail), package.tag.name)
         yield Symbol(name, SymbolKind.GROUP, package.tag.start, package.end, tuple(children))

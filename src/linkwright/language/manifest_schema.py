@@ -105,5 +105,5 @@ PACKAGE = ElementRule(
 )
 """The rule of the root element of ``package.xml``."""
 
-DEPENDING = frozenset({*DEPENDENCIES, "conflict", "replace"})
+DEPENDENCY_TAGS = frozenset({*DEPENDENCIES, "conflict", "replace"})
 """The elements whose text is the name of a package."""

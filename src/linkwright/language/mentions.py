@@ -22,13 +22,13 @@ from linkwright.xmltree.tokens import Kind, tokens
 FILES = (".yaml", ".yml", ".rviz", ".launch.py", ".launch.xml", ".launch", ".py")
 """The suffixes of the files that may mention names."""
 
-_MOST_TEXT = 1_000_000
+_MAX_TEXT = 1_000_000
 """The maximum length in characters. Longer files are data, not configuration."""
 _FRAMES = lazy_pattern(r"(?i)(^|[ _/])(frame|frame_id|link|base|tip|root|ee_link|footprint|body)s?(_name)?s?$")
 _JOINTS = lazy_pattern(r"(?i)((^|[ _])(joint|wheel)(_?names?)?s?$)|(^|_)joint_names?$|^dof_names$")
 _INTERFACES = frozenset(("position", "velocity", "effort", "acceleration"))
 """The interfaces of a joint: they follow the joint's name and a slash."""
-_OF_JOINTS = frozenset(
+_JOINT_MAPPINGS = frozenset(
     (
         "joint_limits",
         "gains",
@@ -42,7 +42,7 @@ _OF_JOINTS = frozenset(
     )
 )
 """Keys whose content is a mapping from joints."""
-_OF_LINKS = frozenset(("Links", "Frames", "Tree"))
+_LINK_MAPPINGS = frozenset(("Links", "Frames", "Tree"))
 """Keys of RViz displays whose content is a mapping from links or frames."""
 _TRANSFORM = "static_transform_publisher"
 _POSE = 6
@@ -80,7 +80,7 @@ def mentions_in(text: str, file: Path, names: frozenset[str]) -> Iterator[Mentio
         file: the file, whose name determines its format.
         names: the names.
     """
-    if len(text) > _MOST_TEXT or not any(name in text for name in names):
+    if len(text) > _MAX_TEXT or not any(name in text for name in names):
         return
     if file.name.endswith((".yaml", ".yml", ".rviz")):
         yield from _in_yaml(text, file, names)
@@ -130,14 +130,14 @@ def _in_path(value: str, text: str, begin: int, file: Path, names: frozenset[str
 def _kinds_of_keys(keys: Sequence[str], *, is_key: bool) -> tuple[NameKind, ...]:
     last = keys[-1] if keys else ""
     if is_key:
-        if not _OF_LINKS.isdisjoint(keys):
+        if not _LINK_MAPPINGS.isdisjoint(keys):
             return (NameKind.LINK,)
-        return (NameKind.JOINT,) if last in _OF_JOINTS else ()
+        return (NameKind.JOINT,) if last in _JOINT_MAPPINGS else ()
     return kinds_of_key(last)
 
 
 def kinds_of_key(key: str) -> tuple[NameKind, ...]:
-    """Return the kinds of names that a parameter may hold, derived from its own name."""
+    """Return the kinds of names that a parameter may contain, derived from the parameter's name."""
     if _JOINTS.search(key):
         return (NameKind.JOINT,)
     return (NameKind.LINK,) if _FRAMES.search(key) else ()
@@ -173,8 +173,8 @@ def _kinds_in_python(tree: ast.AST) -> Iterator[tuple[int, tuple[NameKind, ...]]
         elif isinstance(node, ast.keyword) and node.arg:
             yield id(node.value), kinds_of_key(node.arg)
         elif isinstance(node, ast.Call):
-            given = {keyword.arg: keyword.value for keyword in node.keywords}
-            program, words = given.get("executable"), given.get("arguments")
+            keywords = {keyword.arg: keyword.value for keyword in node.keywords}
+            program, words = keywords.get("executable"), keywords.get("arguments")
             if isinstance(program, ast.Constant) and program.value == _TRANSFORM and isinstance(words, ast.List):
                 for item in words.elts[_POSE:] if len(words.elts) > _POSE else ():
                     yield id(item), (NameKind.LINK,)
@@ -199,10 +199,10 @@ def _in_launch_xml(text: str, file: Path, names: frozenset[str]) -> Iterator[Men
     for token in tokens(text):
         if token.kind is not Kind.START:
             continue
-        given = {attribute.name: attribute for attribute in token.attributes() if attribute.value}
-        key = given["name"].value if "name" in given else ""
-        program = next((given[name].value for name in ("exec", "type") if name in given), "")
-        for attribute in given.values():
+        attributes = {attribute.name: attribute for attribute in token.attributes() if attribute.value}
+        key = attributes["name"].value if "name" in attributes else ""
+        program = next((attributes[name].value for name in ("exec", "type") if name in attributes), "")
+        for attribute in attributes.values():
             value = attribute.value or ""
             for found in words.finditer(value):
                 is_whole = found[0] == value and attribute.name in ("value", "default")

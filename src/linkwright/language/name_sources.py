@@ -31,7 +31,7 @@ _MAX_EXPRESSIONS = 8
 
 
 @dataclass(frozen=True, slots=True)
-class WrittenText:
+class SourceValue:
     """A text of a file, as written.
 
     Attributes:
@@ -52,7 +52,7 @@ class WrittenText:
         return "$" not in self.text
 
 
-def written_text(element: Element, key: str) -> WrittenText | None:
+def source_value(element: Element, key: str) -> SourceValue | None:
     """Return the source of an attribute or text of an expanded element, or None.
 
     Args:
@@ -66,7 +66,7 @@ def written_text(element: Element, key: str) -> WrittenText | None:
     if place is None:
         return None
     frame = element.origin if isinstance(element.origin, Frame) else None
-    return WrittenText(real(source.name), place[0], source.text[place[0] : place[1]], frame)
+    return SourceValue(real(source.name), place[0], source.text[place[0] : place[1]], frame)
 
 
 def _text_range(element: Element) -> tuple[int, int] | None:
@@ -115,7 +115,7 @@ class NameSources:
         self._project, self._texts = project, texts
         self._tags = {file: [*_start_tags(project.text(file, texts) or "")] for file in files}
 
-    def edits(self, written: WrittenText, value: str, new: str) -> Iterator[tuple[Edit, ...]]:
+    def edits(self, written: SourceValue, value: str, new: str) -> Iterator[tuple[Edit, ...]]:
         """Yield proposals of edits that give a text a new value, the likeliest first.
 
         Args:
@@ -125,7 +125,7 @@ class NameSources:
         """
         yield from self._edits(written, value, new, 0)
 
-    def _edits(self, written: WrittenText, value: str, new: str, depth: int) -> Iterator[tuple[Edit, ...]]:
+    def _edits(self, written: SourceValue, value: str, new: str, depth: int) -> Iterator[tuple[Edit, ...]]:
         if value == new or depth > _DEEPEST:
             return
         if written.is_literal:
@@ -136,11 +136,11 @@ class NameSources:
         expressions = [part for part in parts if part.kind is not TokenKind.TEXT]
         if not parts or len(expressions) > _MAX_EXPRESSIONS:
             return
-        yield from self._of_literals(written, parts, value, new)
-        yield from self._of_expressions(written, parts, value, new, depth)
+        yield from self._literal_edits(written, parts, value, new)
+        yield from self._expression_edits(written, parts, value, new, depth)
 
-    def _of_literals(
-        self, written: WrittenText, parts: Sequence[Token], value: str, new: str
+    def _literal_edits(
+        self, written: SourceValue, parts: Sequence[Token], value: str, new: str
     ) -> Iterator[tuple[Edit, ...]]:
         """Yield the edits of the literal parts that give the new value, with equal expressions."""
         values = self._values(written, parts, value)
@@ -163,8 +163,8 @@ class NameSources:
         if edits and all(edit.text for edit in edits):
             yield tuple(edits)
 
-    def _of_expressions(
-        self, written: WrittenText, parts: Sequence[Token], value: str, new: str, depth: int
+    def _expression_edits(
+        self, written: SourceValue, parts: Sequence[Token], value: str, new: str, depth: int
     ) -> Iterator[tuple[Edit, ...]]:
         """Yield the edits that change the value of one expression, which may occur repeatedly."""
         values = self._values(written, parts, value)
@@ -188,7 +188,7 @@ class NameSources:
                 for source in self._sources(part, written.frame):
                     yield from self._edits(source, text, matched["new"], depth + 1)
 
-    def _values(self, written: WrittenText, parts: Sequence[Token], value: str) -> list[str] | None:
+    def _values(self, written: SourceValue, parts: Sequence[Token], value: str) -> list[str] | None:
         """Return the values of the parts of a text, or None if they do not fit its value."""
         known = [part.text if part.kind is TokenKind.TEXT else self._value(part, written.frame, 0) for part in parts]
         pattern = "".join("(.*?)" if text is None else f"({re.escape(text)})" for text in known)
@@ -209,33 +209,33 @@ class NameSources:
         ]
         return "".join(text for text in values if text is not None) if None not in values else None
 
-    def _sources(self, part: Token, frame: Frame | None) -> Iterator[WrittenText]:
+    def _sources(self, part: Token, frame: Frame | None) -> Iterator[SourceValue]:
         """Yield the texts from which an expression may get its value."""
         if part.kind is TokenKind.EXPRESSION:
             name = _NAME.fullmatch(part.text)
             if name is not None:
-                yield from self._of_name(name[1], frame)
+                yield from self._sources_of_name(name[1], frame)
             return
         argument = _ARGUMENT.fullmatch(part.text)
         if argument is not None:
             yield from self._attributes("xacro:arg", argument[1], "default")
 
-    def _of_name(self, name: str, frame: Frame | None) -> Iterator[WrittenText]:
+    def _sources_of_name(self, name: str, frame: Frame | None) -> Iterator[SourceValue]:
         while frame is not None:
             source = frame.site.source
             place = None if source is None else attribute_value_range(source.text, frame.site.offset, name)
             if frame.macro is not None and source is not None:
                 if place is not None:
-                    yield WrittenText(real(source.name), place[0], source.text[place[0] : place[1]], frame.around)
+                    yield SourceValue(real(source.name), place[0], source.text[place[0] : place[1]], frame.around)
                     return
-                default = self._default(frame.macro, name, frame)
+                default = self._parameter_default(frame.macro, name, frame)
                 if default is not None:
                     yield default
                     return
             frame = frame.around
         yield from self._attributes("xacro:property", name, "value")
 
-    def _default(self, macro: str, name: str, frame: Frame) -> WrittenText | None:
+    def _parameter_default(self, macro: str, name: str, frame: Frame) -> SourceValue | None:
         """Return the default of a parameter of a macro, or None."""
         called = macro.rpartition(".")[2].removeprefix("xacro:")
         for file, tags in self._tags.items():
@@ -252,10 +252,10 @@ class NameSources:
                             begin = start + parameter.default_start
                             if text[:1] in ("'", '"') and text[-1:] == text[:1] and len(text) > 1:
                                 text, begin = text[1:-1], begin + 1
-                            return WrittenText(file, begin, text, frame)
+                            return SourceValue(file, begin, text, frame)
         return None
 
-    def _attributes(self, tag: str, name: str, key: str) -> Iterator[WrittenText]:
+    def _attributes(self, tag: str, name: str, key: str) -> Iterator[SourceValue]:
         """Yield the values of an attribute of the elements with a tag and a name."""
         for file, tags in self._tags.items():
             for other, given in tags:
@@ -264,7 +264,7 @@ class NameSources:
                     default = _OPTIONAL.fullmatch(text)  # the environment seldom has a value
                     if default is not None:
                         text, start = default[1], start + default.start(1)
-                    yield WrittenText(file, start, text, None)
+                    yield SourceValue(file, start, text, None)
 
 
 def _start_tags(text: str) -> Iterator[tuple[str, dict[str, tuple[str, int]]]]:

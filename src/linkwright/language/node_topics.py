@@ -79,7 +79,7 @@ def topics_of(document: Document, programs: Iterable[NodeProgram]) -> list[NodeT
 
     Args:
         document: the launch file.
-        programs: the programs of the nodes; none for all that a launch file may have.
+        programs: the programs of the nodes.
 
     Raises:
         NotYetKnownError: the sources of the workspace were never read, and the document does not wait.
@@ -111,7 +111,7 @@ def _in_sources(document: Document, program: NodeProgram) -> Iterator[NodeTopic]
 
 
 def offer_topics(
-    document: Document, programs: Sequence[NodeProgram], typed: str, start: int, given: Iterable[str] = ()
+    document: Document, programs: Sequence[NodeProgram], typed: str, start: int, remapped: Iterable[str] = ()
 ) -> Iterator[Completion]:
     """Yield the names that can be remapped in some nodes, in the form that is being typed.
 
@@ -120,13 +120,13 @@ def offer_topics(
         programs: the programs of the nodes.
         typed: the typed part of the name.
         start: its offset.
-        given: the names that have a remapping already.
+        remapped: the names that have a remapping already.
     """
-    present = {plain_name(name) for name in given}
+    present = {plain_name(name) for name in remapped}
     for topic in topics_of(document, programs):
         if topic.key not in present:
             present.add(topic.key)
-            yield Completion(_in_form(topic.name, typed), ItemKind.NAME, start, topic.role, described_topic(topic))
+            yield Completion(_in_form(topic.name, typed), ItemKind.NAME, start, topic.role, describe_topic(topic))
 
 
 def _in_form(name: str, typed: str) -> str:
@@ -135,7 +135,7 @@ def _in_form(name: str, typed: str) -> str:
     return f"/{plain_name(name)}" if typed.startswith("/") else name if not typed else name.lstrip("/")
 
 
-def described_topic(topic: NodeTopic) -> str:
+def describe_topic(topic: NodeTopic) -> str:
     """Return the type and role of a topic, in Markdown."""
     place = "" if topic.target is None else f", {topic.target.file.name}"
     return f"**{topic.name}** `{topic.type}`, {topic.role}{place}".replace(" ``", "")
@@ -144,7 +144,7 @@ def described_topic(topic: NodeTopic) -> str:
 def explain_topic(document: Document, programs: Sequence[NodeProgram], name: str) -> str:
     """Return the uses of a topic, service or action by some nodes in Markdown, or empty."""
     found = [topic for topic in topics_of(document, programs) if topic.key == plain_name(name)]
-    return "\n\n".join(map(described_topic, found))
+    return "\n\n".join(map(describe_topic, found))
 
 
 def targets_of_topic(document: Document, programs: Sequence[NodeProgram], name: str) -> Iterator[Target]:

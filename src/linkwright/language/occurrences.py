@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from linkwright.language.definitions import NameKind
-from linkwright.language.expressions import decoded
+from linkwright.language.expressions import decode_entities
 from linkwright.language.grammar import PREFIX, XACRO
 from linkwright.loading.deferred import lazy_pattern
 from linkwright.xacro.expressions.template import TokenKind, tokenize
@@ -45,10 +45,10 @@ _REFERENCES: dict[tuple[str, str], tuple[NameKind, ...]] = {
     ("xacro:call", "macro"): (NameKind.MACRO,),
 }
 """The kinds of names that a value may refer to, by element and attribute."""
-_USERS_OF_JOINTS = frozenset({"transmission", "ros2_control", "group", "group_state"})
+_JOINT_USERS = frozenset({"transmission", "ros2_control", "group", "group_state"})
 """Elements in which ``<joint>`` and ``<link>`` use a name instead of defining it."""
-_OF_LINKS = lazy_pattern(r"(?i)(frame|link|body|bumper)(_?(id|name))?s?$")
-_OF_JOINTS = lazy_pattern(r"(?i)joint(_?names?)?s?(_\d+)?$")
+_LINK_TAG = lazy_pattern(r"(?i)(frame|link|body|bumper)(_?(id|name))?s?$")
+_JOINT_TAG = lazy_pattern(r"(?i)joint(_?names?)?s?(_\d+)?$")
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,9 +87,9 @@ def kinds_of_text(tag: str) -> tuple[NameKind, ...]:
 
     The kinds follow from the tag, as in the parameters ``<left_joint>`` and ``<robot_base_frame>`` of plugins.
     """
-    if _OF_JOINTS.search(tag):
+    if _JOINT_TAG.search(tag):
         return _JOINT
-    return _LINK if _OF_LINKS.search(tag) else ()
+    return _LINK if _LINK_TAG.search(tag) else ()
 
 
 def occurrences_in(text: str, file: Path) -> Iterator[Occurrence]:
@@ -116,7 +116,7 @@ class _Scan:
                 if not token.is_empty_element:
                     self._tags.append(token.name)
             elif token.kind is Kind.END:
-                yield from self._called(token)
+                yield from self._macro_use(token)
                 if token.name in self._tags:
                     while self._tags.pop() != token.name:
                         pass
@@ -131,25 +131,25 @@ class _Scan:
 
     def _start_tag(self, token: Token) -> Iterator[Occurrence]:
         tag = token.name
-        given = {attribute.name: attribute for attribute in token.attributes() if attribute.value is not None}
-        yield from self._called(token)
-        for attribute in given.values():
+        attributes = {attribute.name: attribute for attribute in token.attributes() if attribute.value is not None}
+        yield from self._macro_use(token)
+        for attribute in attributes.values():
             yield from self.in_text(attribute.value or "", attribute.value_start)
         if tag == "xacro:macro":
-            yield from self._macro_definition(given, is_whole=token.is_empty_element)
+            yield from self._macro_definition(attributes, is_empty=token.is_empty_element)
         elif tag in ("xacro:property", "xacro:insert_block"):
-            yield from self._property(given.get("name"), is_definition=tag == "xacro:property")
+            yield from self._property(attributes.get("name"), is_definition=tag == "xacro:property")
         elif tag == "xacro:arg":
-            yield from self._named(NameKind.ARGUMENT, given.get("name"), is_definition=True)
+            yield from self._named(NameKind.ARGUMENT, attributes.get("name"), is_definition=True)
         elif tag.startswith(PREFIX) and tag not in XACRO:
             owner = tag.removeprefix(PREFIX).rpartition(".")[2]
-            for attribute in given.values():
+            for attribute in attributes.values():
                 yield Occurrence(NameKind.PARAMETER, attribute.name, self._file, attribute.start, owner=owner)
         else:
-            yield from self._of_robot(token, given)
+            yield from self._robot_names(token, attributes)
 
-    def _macro_definition(self, given: dict[str, TokenAttribute], *, is_whole: bool) -> Iterator[Occurrence]:
-        name, params = given.get("name"), given.get("params")
+    def _macro_definition(self, attributes: dict[str, TokenAttribute], *, is_empty: bool) -> Iterator[Occurrence]:
+        name, params = attributes.get("name"), attributes.get("params")
         owner = "" if name is None else (name.value or "").removeprefix(PREFIX)
         if name is not None and owner:
             start = name.value_end - len(owner)
@@ -160,10 +160,10 @@ class _Scan:
             start = (params.value_start if params else 0) + parameter.start + len(parameter.name) - len(bare)
             yield Occurrence(NameKind.PARAMETER, bare, self._file, start, is_definition=True, owner=owner)
             found.add(bare)
-        if not is_whole:
+        if not is_empty:
             self._macros.append((owner, frozenset(found)))
 
-    def _called(self, token: Token) -> Iterator[Occurrence]:
+    def _macro_use(self, token: Token) -> Iterator[Occurrence]:
         tag = token.name
         if tag.startswith(PREFIX) and tag not in XACRO:
             name = tag.removeprefix(PREFIX).rpartition(".")[2]
@@ -187,27 +187,27 @@ class _Scan:
         if attribute is not None and attribute.value:
             yield Occurrence(kind, attribute.value, self._file, attribute.value_start, is_definition, owner=self._macro)
 
-    def _of_robot(self, token: Token, given: dict[str, TokenAttribute]) -> Iterator[Occurrence]:
-        tag, name = token.name, given.get("name")
+    def _robot_names(self, token: Token, attributes: dict[str, TokenAttribute]) -> Iterator[Occurrence]:
+        tag, name = token.name, attributes.get("name")
         if tag in ("link", "joint"):
             kind = NameKind.LINK if tag == "link" else NameKind.JOINT
-            uses = self._is_srdf or not _USERS_OF_JOINTS.isdisjoint(self._tags)
+            uses = self._is_srdf or not _JOINT_USERS.isdisjoint(self._tags)
             yield from self._named(kind, name, is_definition=not uses)
         elif tag == "material" and not token.is_empty_element:
             yield from self._named(NameKind.MATERIAL, name, is_definition=True)
             return
-        for attribute in given.values():
+        for attribute in attributes.values():
             for kind in kinds_of_reference(tag, attribute.name):
                 yield from self._named(kind, attribute)
 
     def _character_data(self, token: Token) -> Iterator[Occurrence]:
         yield from self.in_text(token.text, token.start)
         tag = self._tags[-1] if self._tags else ""
-        written = token.text.strip()
-        if " " not in written:
+        content = token.text.strip()
+        if " " not in content:
             for kind in kinds_of_text(tag):
-                start = token.start + token.text.index(written)
-                yield Occurrence(kind, written, self._file, start, owner=self._macro)
+                start = token.start + token.text.index(content)
+                yield Occurrence(kind, content, self._file, start, owner=self._macro)
 
     def in_text(self, text: str, start: int) -> Iterator[Occurrence]:
         """Yield the names in the expressions and substitutions of a text.
@@ -219,7 +219,7 @@ class _Scan:
         if "$" not in text:
             return
         try:
-            parts = tokenize(decoded(text))
+            parts = tokenize(decode_entities(text))
         except Fault:  # it is being typed
             return
         for part in parts:
@@ -254,19 +254,19 @@ class _Scan:
             return
         line = body.lstrip().encode()
 
-        def at(column: int) -> int:
+        def offset_of(column: int) -> int:
             return start + lead + len(line[:column].decode(errors="replace"))
 
         bound = {node.arg for node in ast.walk(tree) if isinstance(node, ast.arg)}
         bound |= {node.id for node in ast.walk(tree) if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)}
         for node in ast.walk(tree):
             if isinstance(node, ast.Name) and node.id not in bound:
-                yield self._variable(node.id, at(node.col_offset))
+                yield self._variable(node.id, offset_of(node.col_offset))
             elif isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name):
                 if node.value.id in self._namespaces and node.end_col_offset is not None:
-                    yield self._variable(node.attr, at(node.end_col_offset) - len(node.attr))
+                    yield self._variable(node.attr, offset_of(node.end_col_offset) - len(node.attr))
             elif isinstance(node, ast.Call):
-                yield from self._argument(node, at)
+                yield from self._argument(node, offset_of)
 
     def _argument(self, call: ast.Call, at: Callable[[int], int]) -> Iterator[Occurrence]:
         called = call.func.attr if isinstance(call.func, ast.Attribute) else getattr(call.func, "id", "")

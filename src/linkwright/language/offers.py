@@ -10,7 +10,7 @@ from linkwright.diagnostics.translation import localized
 from linkwright.language.completion import Completion, ItemKind
 from linkwright.language.format import Document, Target
 from linkwright.language.hover_facts import mesh_facts, package_facts
-from linkwright.language.node_topics import NodeProgram, described_topic, topics_of
+from linkwright.language.node_topics import NodeProgram, describe_topic, topics_of
 from linkwright.language.programs import components_of, package_names, programs_of, replaced_packages
 from linkwright.messages.definitions.interfaces import is_package_name
 from linkwright.packages.manifest import MANIFEST
@@ -88,9 +88,7 @@ def explain_program(document: Document, package: str | None, name: str) -> str |
     if package is None or program is None:
         return None
     topics = topics_of(document, [NodeProgram(package, name)])[:_SHOWN_TOPICS]
-    return f"**{package} {name}**: `{program.origin}`\n\n" + "\n".join(
-        f"- {described_topic(topic)}" for topic in topics
-    )
+    return f"**{package} {name}**: `{program.origin}`\n\n" + "\n".join(f"- {describe_topic(topic)}" for topic in topics)
 
 
 def explain_file(path: Path) -> str:

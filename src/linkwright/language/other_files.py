@@ -26,9 +26,9 @@ from linkwright.packages.readers.package_xml import Manifest
 from linkwright.xmltree import parse
 
 Names = Mapping[tuple[NameKind, str], str]
-_OF_ROBOT = (NameKind.LINK, NameKind.JOINT)
-_FOLLOWED = (*_OF_ROBOT, NameKind.MATERIAL)
-_ENDINGS = (".urdf", ".xacro")
+_PART_KINDS = (NameKind.LINK, NameKind.JOINT)
+_SEARCHED_KINDS = (*_PART_KINDS, NameKind.MATERIAL)
+_DESCRIPTION_SUFFIXES = (".urdf", ".xacro")
 _ROBOT = re.compile(r"<robot\b[^>]*?\bname\s*=\s*[\"']([^\"']+)[\"']")
 _LAUNCH = ("launch.py", ".launch", "launch.xml", "launch.yaml", "launch.yml")
 
@@ -104,7 +104,7 @@ class OtherFiles:
     @cached_property
     def _uses(self) -> list[Occurrence]:
         texts = ((file, self._project.text(file, self._texts) or "") for file in self._own)
-        return [use for file, text in texts for use in occurrences_in(text, file) if use.kind in _FOLLOWED]
+        return [use for file, text in texts for use in occurrences_in(text, file) if use.kind in _SEARCHED_KINDS]
 
     @cached_property
     def _files(self) -> dict[Path, list[Path]]:
@@ -119,7 +119,10 @@ class OtherFiles:
         return files
 
     def _depends(self, file: Path, names: Names, mention: Mention) -> bool:
-        """Return whether a mention is in a package that depends on the own one, and so may mean its robots, too."""
+        """Return whether the package of a mention depends on the package of the renamed description.
+
+        Its files may then mean the renamed robots, too.
+        """
         package, own = enclosing_package(file.parent), enclosing_package(self._file.parent)
         if package is None or own is None or not any((kind, mention.name) in names for kind in mention.kinds):
             return False
@@ -163,7 +166,7 @@ def robots_of_file(project: Workspace, texts: Mapping[Path, str], file: Path) ->
 
 def _robots_of_package(project: Workspace, texts: Mapping[Path, str], folder: Path) -> dict[Path, list[Path]]:
     """Return the descriptions to which a package may refer, with their files in the package."""
-    entries = [entry for entry in project.index.roots(texts) if entry.name.endswith(_ENDINGS)]
+    entries = [entry for entry in project.index.roots(texts) if entry.name.endswith(_DESCRIPTION_SUFFIXES)]
     entries = [entry for entry in entries if ".srdf" not in entry.name and not entry.name.startswith(".")]
     own = {entry: [entry] for entry in entries if entry.is_relative_to(folder)}
     if own:
@@ -224,24 +227,27 @@ def names_of_robot(project: Workspace, texts: Mapping[Path, str], robot: Path) -
         robot: the description.
     """
     versions = versions_of(texts)
-    known = project.kept.get(("names", robot))
+    known = project.cached_results.get(("names", robot))
     if known is None or known[0] != versions:
         found, _ = trials(project, texts, robot, is_partial=True, is_switched=False)
         roots = [trial.expansion.document.root for trial in found]
         names = frozenset(
             (kind, element.attributes.get("name", ""))
             for root in roots
-            for kind in _OF_ROBOT
+            for kind in _PART_KINDS
             for element in root.elements(kind.value)
         )
-        known = project.kept["names", robot] = (versions, names)
+        known = project.cached_results["names", robot] = (versions, names)
     assert isinstance(known[1], frozenset)
     return known[1]
 
 
 def _dependencies(project: Workspace, texts: Mapping[Path, str], folder: Path) -> list[Path]:
     """Return the folders of a package's direct and indirect dependencies in the workspace."""
-    manifests = {each: _manifest(project, texts, each) for each in map(real, project.index.packages)}
+    manifests = {
+        package_folder: _manifest(project, texts, package_folder)
+        for package_folder in map(real, project.index.packages)
+    }
     by_name = {manifest.name: each for each, manifest in manifests.items() if manifest is not None}
     found: dict[Path, None] = {}
     pending = [folder]

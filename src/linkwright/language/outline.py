@@ -30,8 +30,8 @@ class OutlineElement:
     @property
     def label(self) -> str:
         """The tag and the value that identifies the element, such as ``link base``."""
-        given = {attribute.name: attribute.value for attribute in self.tag.attributes()}
-        value = next((given[name] for name in _NAMING if given.get(name)), None)
+        attributes = {attribute.name: attribute.value for attribute in self.tag.attributes()}
+        value = next((attributes[name] for name in _NAMING if attributes.get(name)), None)
         return f"{self.tag.name} {value}" if value else self.tag.name
 
     @property
@@ -90,11 +90,13 @@ class Outline:
         for element in self.elements:
             yield from element.all()
 
-    def around(self, offset: int) -> list[OutlineElement]:
+    def elements_around(self, offset: int) -> list[OutlineElement]:
         """Return the elements that contain an offset, the outermost first."""
         found: list[OutlineElement] = []
-        inside = self.elements
-        while element := next((each for each in inside if each.tag.start <= offset <= each.end), None):
+        siblings = self.elements
+        while element := next(
+            (candidate for candidate in siblings if candidate.tag.start <= offset <= candidate.end), None
+        ):
             found.append(element)
-            inside = element.children
+            siblings = element.children
         return found

@@ -27,7 +27,7 @@ class ParameterInfo:
     """A parameter.
 
     Attributes:
-        name: the name with dots; ``*`` is any name, as in ``gains.*.p``.
+        name: the name with dots. A ``*`` matches any name, as in ``gains.*.p``.
         type: the ROS 2 type, such as ``double`` or ``string_array``, or empty if it is unknown.
         default: the default value, or None.
         description: the purpose with its unit, or empty.
@@ -57,7 +57,7 @@ class ParameterInfo:
         )
 
     def rest_below(self, name: str) -> str:
-        """Return the rest of the parameter's name inside a group, or empty if it is outside."""
+        """Return the parameter's name relative to a group, or empty if it is not in the group."""
         own_parts, group = self.name.split("."), name.split(".")
         is_inside = len(own_parts) > len(group) and all(
             mark in ("*", part) for mark, part in zip(own_parts, group, strict=False)
@@ -78,7 +78,7 @@ class Plugin:
         type: the type, such as ``nav2_costmap_2d::InflationLayer``.
         node: the node that loads it.
         listed: the parameter of the node that names its plugins.
-        purpose: what the plugin does.
+        purpose: the purpose of the plugin.
         parameters: the parameters, without the name of the plugin.
     """
 

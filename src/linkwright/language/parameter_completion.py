@@ -29,7 +29,7 @@ from linkwright.language.parameter_sections import (
 )
 from linkwright.language.parameter_values import kinds_of_parameter, parameter_values, sources_of
 from linkwright.language.robot_names import robot_names
-from linkwright.language.yaml_outline import Place, YamlCursor, YamlEntry, YamlOutline
+from linkwright.language.yaml_outline import YamlCursor, YamlEntry, YamlOutline, YamlPosition
 from linkwright.language.yaml_symbols import by_typed, has_colon, snippet_text
 
 _USUAL_CONTROLLERS = (
@@ -47,11 +47,11 @@ def complete_parameters(document: Document, offset: int) -> list[Completion]:
     """Return the completions at an offset of a parameter file, the likeliest first."""
     outline = YamlOutline(document.text)
     cursor = outline.cursor(offset)
-    if cursor.place is Place.NOTHING:
+    if cursor.position is YamlPosition.NOTHING:
         return []
-    section = section_at(outline, cursor.within)
+    section = section_at(outline, cursor.parent_entry)
     items: Iterable[Completion]
-    if cursor.place is Place.KEY:
+    if cursor.position is YamlPosition.KEY:
         colon = "" if has_colon(document.text, offset) else ":"
         items = _node_keys(outline, cursor, colon) if section is None else _keys(document, section, cursor, colon)
     else:
@@ -61,14 +61,14 @@ def complete_parameters(document: Document, offset: int) -> list[Completion]:
 
 def _node_keys(outline: YamlOutline, cursor: YamlCursor, colon: str) -> Iterator[Completion]:
     """Yield the keys outside ``ros__parameters``: nodes, and ``ros__parameters`` itself."""
-    others = [child for child in cursor.within.children if child is not cursor.entry]
+    others = [child for child in cursor.parent_entry.children if child is not cursor.entry]
     present = {child.key for child in others}
-    is_top = cursor.within.parent is None
+    is_top = cursor.parent_entry.parent is None
     if is_top and others and not any(sections(outline)):
         return  # another kind of file
-    body, above = f"{PARAMETERS}:\n    $0", cursor.within.key
+    body, above = f"{PARAMETERS}:\n    $0", cursor.parent_entry.key
     if not is_top:
-        if above in _COSTMAPS and len(cursor.within.path) == 1 and not present:
+        if above in _COSTMAPS and len(cursor.parent_entry.path) == 1 and not present:
             yield _key(cursor, above, "node", "", colon and f"{above}:\n  {body}")
         if PARAMETERS not in present:
             text = phrase("the parameters of the node")
@@ -96,19 +96,19 @@ def _names_of(parameters: Iterable[ParameterInfo]) -> str:
 
 def _keys(document: Document, section: Section, cursor: YamlCursor, colon: str) -> Iterator[Completion]:
     """Yield the parameters and groups at a position in ``ros__parameters``."""
-    present = {child.key for child in cursor.within.children if child is not cursor.entry}
+    present = {child.key for child in cursor.parent_entry.children if child is not cursor.entry}
     if section.is_manager:
         yield from _manager_keys(section, cursor, colon)
-    place = section.prefix.split(".") if section.prefix else []
+    prefix_parts = section.prefix.split(".") if section.prefix else []
     yield from _plugin_keys(section, cursor, colon, present)
     yield from _keys_in_sources(document, section, cursor, colon, present)
     groups: dict[str, list[str]] = {}
     dotted: list[Completion] = []
     for parameter in sorted(section.parameters(), key=lambda parameter: bool(_NUMBERED.match(parameter.name))):
         parts = parameter.name.split(".")
-        if len(parts) <= len(place) or any(a not in ("*", b) for a, b in zip(parts, place, strict=False)):
+        if len(parts) <= len(prefix_parts) or any(a not in ("*", b) for a, b in zip(parts, prefix_parts, strict=False)):
             continue
-        rest = parts[len(place) :]
+        rest = parts[len(prefix_parts) :]
         firsts = _names_for(document, section, parameter) if rest[0] == "*" else [rest[0]]
         for first in firsts:
             if len(rest) == 1 and first not in present:
@@ -182,10 +182,12 @@ def _parameter_key(cursor: YamlCursor, label: str, parameter: ParameterInfo, col
     detail = f"{parameter.type} = {default}" if default else parameter.type
     value = f"${{1:{snippet_text(default)}}}" if default and len(default) <= 40 else "$0"
     snippet = colon and f"{snippet_text(label)}: {value}"
-    return Completion(label, ItemKind.ATTRIBUTE, cursor.start, detail, described(parameter, label), snippet)
+    return Completion(
+        label, ItemKind.ATTRIBUTE, cursor.start, detail, describe_parameter_info(parameter, label), snippet
+    )
 
 
-def described(parameter: ParameterInfo, name: str = "") -> str:
+def describe_parameter_info(parameter: ParameterInfo, name: str = "") -> str:
     """Return the description of a parameter in Markdown.
 
     Args:
@@ -223,11 +225,11 @@ def _names_for(document: Document, section: Section, parameter: ParameterInfo) -
 
 def _manager_keys(section: Section, cursor: YamlCursor, colon: str) -> Iterator[Completion]:
     if section.prefix:
-        if "." not in section.prefix and cursor.within.child("type") in (None, cursor.entry):
+        if "." not in section.prefix and cursor.parent_entry.child("type") in (None, cursor.entry):
             text = phrase("the type of the controller")
             yield _key(cursor, "type", "string", text, colon and "type: $0")
         return
-    present = {child.key for child in cursor.within.children}
+    present = {child.key for child in cursor.parent_entry.children}
     for kind in dict.fromkeys((*_USUAL_CONTROLLERS, *controller_types())):
         package, _, name = kind.partition("/")
         if package.endswith("controllers"):

@@ -12,7 +12,7 @@ from linkwright.language.format import Document, Format, Target
 from linkwright.language.hover import Explanation
 from linkwright.language.hover_facts import part_facts, robots_of
 from linkwright.language.parameter_catalogue import controller_purpose, load_tables, node_parameters, plugins
-from linkwright.language.parameter_completion import complete_parameters, described
+from linkwright.language.parameter_completion import complete_parameters, describe_parameter_info
 from linkwright.language.parameter_sections import (
     PARAMETERS,
     Section,
@@ -23,7 +23,7 @@ from linkwright.language.parameter_sections import (
 )
 from linkwright.language.parameter_values import kinds_of_parameter, sources_of
 from linkwright.language.robot_names import robot_names, written_length
-from linkwright.language.yaml_outline import Place, YamlCursor, YamlEntry, YamlOutline
+from linkwright.language.yaml_outline import YamlCursor, YamlEntry, YamlOutline, YamlPosition
 from linkwright.language.yaml_symbols import yaml_symbols
 
 _ENDINGS = (".yaml", ".yml")
@@ -45,25 +45,25 @@ def explain_parameter(document: Document, offset: int) -> Explanation | None:
     start, end, word = word_at(document.text, cursor)
     if not word:
         return None
-    if cursor.place is Place.KEY and cursor.entry is not None:
-        text = _explained_key(document, outline, cursor.entry)
+    if cursor.position is YamlPosition.KEY and cursor.entry is not None:
+        text = _explain_key(document, outline, cursor.entry)
     else:
-        text = _explained_value(document, outline, cursor, word)
+        text = _explain_value(document, outline, cursor, word)
     return None if not text else Explanation(text, start, end)
 
 
 def word_at(text: str, cursor: YamlCursor) -> tuple[int, int, str]:
     """Return the range of the key or value at a cursor, and its text without quotes."""
-    if cursor.place is Place.NOTHING:
+    if cursor.position is YamlPosition.NOTHING:
         return cursor.offset, cursor.offset, ""
-    if cursor.place is Place.KEY:
+    if cursor.position is YamlPosition.KEY:
         entry = cursor.entry
         if entry is None:
             return cursor.offset, cursor.offset, ""
         start = entry.start + (1 if text[entry.start : entry.start + 1] in ("'", '"') else 0)
         return start, start + len(entry.key), entry.key
     start = end = cursor.start
-    stops = "\n,]}#" if cursor.in_list else "\n#"
+    stops = "\n,]}#" if cursor.is_in_list else "\n#"
     quote = text[start - 1 : start] if start and text[start - 1] in "\"'" else ""
     while end < len(text) and text[end] not in (quote or stops) and text[end] != "\n":
         end += 1
@@ -71,12 +71,12 @@ def word_at(text: str, cursor: YamlCursor) -> tuple[int, int, str]:
     return start, start + len(word), word
 
 
-def _explained_key(document: Document, outline: YamlOutline, entry: YamlEntry) -> str:
+def _explain_key(document: Document, outline: YamlOutline, entry: YamlEntry) -> str:
     if entry.key == PARAMETERS:
         return localized(phrase("the parameters of the node")) + (f" **{node}**" if (node := node_of(entry)) else "")
     section = section_at(outline, entry.parent) if entry.parent is not None else None
     if section is None:
-        return _explained_node(outline, entry)
+        return _explain_node(outline, entry)
     kind = entry.child("type")
     if section.is_manager and not section.prefix and kind is not None:
         return f"**{entry.key}** `{kind.scalar}`\n\n{controller_purpose(kind.scalar) or ''}".strip()
@@ -87,12 +87,12 @@ def _explained_key(document: Document, outline: YamlOutline, entry: YamlEntry) -
     name = section.name(entry.key)
     parameter = section.find(name)
     if parameter is not None:
-        return described(parameter, name)
+        return describe_parameter_info(parameter, name)
     if entry.key == "plugin":
-        return _explained_plugin(entry.scalar)
+        return _explain_plugin(entry.scalar)
     plugin = entry.child("plugin")
     if plugin is not None:
-        return f"**{entry.key}** " + _explained_plugin(plugin.scalar)
+        return f"**{entry.key}** " + _explain_plugin(plugin.scalar)
     declaration = next((declared for declared in sources_of(document, section) if declared.name == name), None)
     if declaration is not None:
         default = f" = `{declaration.default}`" if declaration.default else ""
@@ -108,7 +108,7 @@ def _explained_key(document: Document, outline: YamlOutline, entry: YamlEntry) -
     return f"**{name}**: " + ", ".join(f"`{shown}`" for shown in inside) if inside else ""
 
 
-def _explained_node(outline: YamlOutline, entry: YamlEntry) -> str:
+def _explain_node(outline: YamlOutline, entry: YamlEntry) -> str:
     if "*" in entry.key:
         return f"**{entry.key}**\n\n" + localized(phrase("the parameters of all nodes whose names match this pattern"))
     node = [part for part in entry.key.split("/") if part][-1:]
@@ -123,7 +123,7 @@ def _explained_node(outline: YamlOutline, entry: YamlEntry) -> str:
     return f"**{name}**: {shown}" + (", ..." if len(parameters) > 30 else "")
 
 
-def _explained_plugin(kind: str) -> str:
+def _explain_plugin(kind: str) -> str:
     plugin = plugins().get(kind.replace("::", "/"))
     if plugin is None:
         return f"`{kind}`" if kind else ""
@@ -132,8 +132,8 @@ def _explained_plugin(kind: str) -> str:
     return f"`{kind}`, {text}: {plugin.purpose}" + (f"\n\n{shown}" if shown else "")
 
 
-def _explained_value(document: Document, outline: YamlOutline, cursor: YamlCursor, word: str) -> str:
-    section = section_at(outline, cursor.within)
+def _explain_value(document: Document, outline: YamlOutline, cursor: YamlCursor, word: str) -> str:
+    section = section_at(outline, cursor.parent_entry)
     if section is None:
         return ""
     last = section.prefix.rpartition(".")[2]
@@ -141,12 +141,12 @@ def _explained_value(document: Document, outline: YamlOutline, cursor: YamlCurso
     if purpose is not None:
         return f"`{word}`: {purpose}"
     if word.replace("::", "/") in plugins():
-        return _explained_plugin(word)
+        return _explain_plugin(word)
     facts = part_explanation(document, word, kinds_of_parameter(last))
     if facts:
         return facts
     parameter = section.find(section.prefix)
-    return "" if parameter is None else described(parameter, section.prefix)
+    return "" if parameter is None else describe_parameter_info(parameter, section.prefix)
 
 
 def part_explanation(document: Document, name: str, kinds: tuple[NameKind, ...]) -> str:
@@ -169,34 +169,34 @@ def define_in_parameters(document: Document, offset: int) -> Iterator[Target]:
     _, _, word = word_at(document.text, cursor)
     if not word:
         return
-    section = section_at(outline, cursor.within)
+    section = section_at(outline, cursor.parent_entry)
     kinds: tuple[NameKind, ...] = ()
     if section is not None:
         key = section.prefix.rpartition(".")[2]
-        kinds = kinds_of_parameter(key) if cursor.place is Place.VALUE else (NameKind.JOINT, NameKind.LINK)
+        kinds = kinds_of_parameter(key) if cursor.position is YamlPosition.VALUE else (NameKind.JOINT, NameKind.LINK)
     declaration = _declaration(outline, section, cursor, word)
     if declaration is not None:
         yield Target(document.file, declaration.start, declaration.start + len(declaration.key))
         return
-    if section is not None and cursor.place is Place.KEY:
+    if section is not None and cursor.position is YamlPosition.KEY:
         name_in_section = section.name(word)
         for source in sources_of(document, section):
             if source.name == name_in_section:
                 yield Target(source.file, source.start, source.start + len(source.name))
                 return
     for name in robot_names(document):
-        if name.name == word and (name.kind in kinds or (not kinds and cursor.in_list)):
+        if name.name == word and (name.kind in kinds or (not kinds and cursor.is_in_list)):
             yield target_of(document, name)
             return
 
 
 def _declaration(outline: YamlOutline, section: Section | None, cursor: YamlCursor, word: str) -> YamlEntry | None:
     """Return the entry that declares the controller or plugin at a cursor, or None."""
-    if cursor.place is Place.VALUE and section is not None:
+    if cursor.position is YamlPosition.VALUE and section is not None:
         entry = section.entry.child(word)
         if entry is not None and entry.children:
             return entry
-    if cursor.place is Place.KEY and section is not None and not section.is_manager:
+    if cursor.position is YamlPosition.KEY and section is not None and not section.is_manager:
         return None
     kind = controller_declarations(outline).get(word.rpartition("/")[2])
     entry = kind if kind is None or kind.key != "type" else kind.parent

@@ -57,7 +57,7 @@ class Section:
 
     def entries(self) -> dict[str, YamlEntry]:
         """Return the entries of the section, by full parameter name."""
-        return {".".join(_below(self.entry, entry)): entry for entry in self.entry.all() if entry.key}
+        return {".".join(_keys_below(self.entry, entry)): entry for entry in self.entry.all() if entry.key}
 
     def parameters(self) -> list[ParameterInfo]:
         """Return the possible parameters of the section's node and its plugins."""
@@ -71,13 +71,13 @@ class Section:
                 parameters += [_EVERY_NODE, *_common_parameters()]
         if self.may_be_controller:
             parameters.append(_TYPE)
-        return [*parameters, *self._of_plugins(entries), _EVERY_NODE]
+        return [*parameters, *self._plugin_parameters(entries), _EVERY_NODE]
 
     def find(self, name: str) -> ParameterInfo | None:
         """Return the parameter with a full name, or None if it is unknown."""
         return next((parameter for parameter in self.parameters() if parameter.matches(name)), None)
 
-    def _of_plugins(self, entries: Mapping[str, YamlEntry]) -> Iterator[ParameterInfo]:
+    def _plugin_parameters(self, entries: Mapping[str, YamlEntry]) -> Iterator[ParameterInfo]:
         for name, entry in entries.items():
             prefix, _, last = name.rpartition(".")
             plugin = (
@@ -151,7 +151,7 @@ def _common_parameters() -> tuple[ParameterInfo, ...]:
     return tuple(sorted(parameters, key=lambda parameter: -counts[parameter.name]))
 
 
-def _below(section: YamlEntry, entry: YamlEntry) -> list[str]:
+def _keys_below(section: YamlEntry, entry: YamlEntry) -> list[str]:
     keys: list[str] = []
     current: YamlEntry | None = entry
     while current is not None and current is not section:

@@ -35,14 +35,17 @@ _SENSOR_TOPICS = ("/scan", "/points")
 
 
 def sources_of(document: Document, section: Section) -> list[DeclaredParameter]:
-    """Return the parameters that the sources of a section's node declare, if it is unknown."""
+    """Return the parameters that the sources of a section's node declare.
+
+    The result is empty for patterns, known nodes, controller managers and declared controllers.
+    """
     if not section.may_be_controller or section.node in section.controllers:
         return []
     return declared_parameters(document, section.node)
 
 
 def kinds_of_parameter(key: str) -> tuple[NameKind, ...]:
-    """Return the kinds of names that a parameter may hold, derived from its own name."""
+    """Return the kinds of names that a parameter may contain, derived from the parameter's name."""
     last = key.rpartition(".")[2]
     return kinds_of_key(last)
 
@@ -52,13 +55,13 @@ def parameter_values(document: Document, section: Section, cursor: YamlCursor) -
     name = section.prefix
     last = name.rpartition(".")[2]
     parameter = section.find(name)
-    is_array = parameter is not None and parameter.type.endswith("_array") and not cursor.in_list
+    is_array = parameter is not None and parameter.type.endswith("_array") and not cursor.is_in_list
 
     def item(label: str, kind: ItemKind = ItemKind.VALUE, detail: str = "", description: str = "") -> Completion:
         snippet = f"[{snippet_text(label)}$0]" if is_array and not label.startswith("[") else ""
         return Completion(label, kind, cursor.start, detail, description, snippet)
 
-    present = {text for text, start in cursor.within.items() if start != cursor.start}
+    present = {text for text, start in cursor.parent_entry.items() if start != cursor.start}
     if last == "type" and (section.is_manager or (section.may_be_controller and name == "type")):
         for kind in _resembling(controller_types(), name.rpartition(".")[0] or section.node):
             yield item(kind, description=controller_purpose(kind) or "")
@@ -91,7 +94,7 @@ def parameter_values(document: Document, section: Section, cursor: YamlCursor) -
     if last == "topic" and name.count("."):
         for topic in ("cmd_vel",) if section.node == "twist_mux" else _SENSOR_TOPICS:
             yield item(topic)
-    if parameter is not None and not cursor.in_list and parameter.written_default and not parameter.choices:
+    if parameter is not None and not cursor.is_in_list and parameter.written_default and not parameter.choices:
         default = parameter.written_default
         if parameter.type != "bool":
             yield item(default, detail=localized(phrase("default")))

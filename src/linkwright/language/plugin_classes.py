@@ -26,7 +26,7 @@ class PluginClass:
     """A class that a package exports.
 
     Attributes:
-        name: the name by which it is loaded, such as ``diff_drive_controller/DiffDriveController``.
+        name: the lookup name of the class, such as ``diff_drive_controller/DiffDriveController``.
         type: the class in C++.
         base: the package of the base class, such as ``hardware_interface``.
         description: its description, or empty.
@@ -57,10 +57,10 @@ def plugin_classes(document: Document, base: str) -> list[PluginClass]:
     Raises:
         NotYetKnownError: the packages were never read, and the document does not wait.
     """
-    return [plugin for plugin in _known(document) if plugin.base == base]
+    return [plugin for plugin in _all_classes(document) if plugin.base == base]
 
 
-def _known(document: Document) -> list[PluginClass]:
+def _all_classes(document: Document) -> list[PluginClass]:
     known = _classes.get(document.project)
     if known is not None and time.monotonic() - known[0] <= _SECONDS:
         return known[1]
@@ -71,7 +71,7 @@ def _known(document: Document) -> list[PluginClass]:
     elif known is None:
         raise NotYetKnownError
     else:
-        document.refreshes.append(partial(_known, replace(document, waits=True)))
+        document.refreshes.append(partial(_all_classes, replace(document, waits=True)))
     return known[1]
 
 
@@ -116,8 +116,8 @@ def _classes_in(text: str, base: str, folder: Path, file: Path) -> Iterator[Plug
 
 
 def _class_of(token: Token, description: str, base: str, folder: Path, file: Path) -> Iterator[PluginClass]:
-    given = {attribute.name: attribute for attribute in token.attributes()}
-    named = given.get("name") or given.get("type")
-    if named is not None and named.value:
-        kind = given["type"].value if "type" in given else None
-        yield PluginClass(named.value, kind or "", base, description, folder, file, named.value_start)
+    attributes = {attribute.name: attribute for attribute in token.attributes()}
+    name_attribute = attributes.get("name") or attributes.get("type")
+    if name_attribute is not None and name_attribute.value:
+        kind = attributes["type"].value if "type" in attributes else None
+        yield PluginClass(name_attribute.value, kind or "", base, description, folder, file, name_attribute.value_start)

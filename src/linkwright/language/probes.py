@@ -10,7 +10,7 @@ from linkwright.language.includes import real
 from linkwright.language.occurrences import Occurrence
 from linkwright.language.proof import ExpansionProof
 from linkwright.language.workspace import Workspace
-from linkwright.language.written import WrittenElement, innermost, written_elements
+from linkwright.language.written import SourceElement, innermost_element, source_elements
 from linkwright.xacro.faults import Fault
 from linkwright.xacro.macros import Parameter, parse_parameters
 
@@ -29,7 +29,7 @@ def is_reached(proof: ExpansionProof, text: str, name: Occurrence) -> bool:
         text: the text of the file that contains the name.
         name: the name.
     """
-    place = innermost(written_elements(text), name.start)
+    place = innermost_element(source_elements(text), name.start)
     if place is None:
         return True
     macro = place.macro if not place.name.startswith("xacro:macro") else place
@@ -56,7 +56,7 @@ def probes_of(project: Workspace, texts: Mapping[Path, str], name: Occurrence) -
         name: the name.
     """
     text = project.text(name.file, texts) or ""
-    place = innermost(written_elements(text), name.start)
+    place = innermost_element(source_elements(text), name.start)
     macro = None if place is None else place if place.name == "xacro:macro" else place.macro
     if macro is None or macro.macro is not None or not project.contains(real(name.file)):
         return {}
@@ -70,7 +70,7 @@ def probes_of(project: Workspace, texts: Mapping[Path, str], name: Occurrence) -
     }
 
 
-def _calls(macro: WrittenElement) -> Iterator[str]:
+def _calls(macro: SourceElement) -> Iterator[str]:
     called = macro.value("name").removeprefix("xacro:")
     try:
         parameters = parse_parameters(macro.value("params"))

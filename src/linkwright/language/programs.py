@@ -26,7 +26,17 @@ _PACKAGE_USE = re.compile(
     r"""|\bpackage\s*=\s*["']([a-z]\w+)["']"""
     r"""|(?:get_package_share_\w+|FindPackageShare)\(\s*["']([a-z]\w+)["']"""
 )
-_USING = (".launch.py", "_launch.py", ".launch.xml", ".launch.yaml", ".xacro", ".urdf", ".sdf", ".world", ".rviz")
+_FILES_WITH_PACKAGES = (
+    ".launch.py",
+    "_launch.py",
+    ".launch.xml",
+    ".launch.yaml",
+    ".xacro",
+    ".urdf",
+    ".sdf",
+    ".world",
+    ".rviz",
+)
 _MAX_FILES = 200
 _MAX_BYTES = 300_000
 _REGISTERED = re.compile(r"(?i)\brclcpp_components_register_nodes?\s*\(([^)]*)\)")
@@ -54,7 +64,7 @@ class Program:
 
 def used_packages(folder: Path) -> list[str]:
     """Return the packages that the files of a package use, the most used first."""
-    files, _ = walk(folder, _USING)
+    files, _ = walk(folder, _FILES_WITH_PACKAGES)
     found: Counter[str] = Counter()
     for file in files[:_MAX_FILES]:
         try:
@@ -98,7 +108,7 @@ def _in_sources(share: Path, package: str) -> Iterator[Program]:
     programs = source_programs(share, runs_setup=False)
     root = python_root(share, package) or share
     for name, entry in programs.entry_points.items():
-        yield Program(name, f"{entry.module}:{entry.function}", _of_entry(root, entry))
+        yield Program(name, f"{entry.module}:{entry.function}", _entry_target(root, entry))
     for name, path in programs.scripts.items():
         yield Program(name, str(path.relative_to(share)), Target(Path(source_of(str(path)))))
     build = Path(source_of(str(share / "CMakeLists.txt")))
@@ -108,7 +118,7 @@ def _in_sources(share: Path, package: str) -> Iterator[Program]:
         yield Program(name, "CMakeLists.txt", Target(build, *(place.span(1) if place else (0, 0))))
 
 
-def _of_entry(root: Path, entry: EntryPoint) -> Target | None:
+def _entry_target(root: Path, entry: EntryPoint) -> Target | None:
     file = module_file(root, entry.module)
     if file is None:
         return None

@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 from linkwright.diagnostics import LinkwrightError, Phrase, Span, display_path, phrase
 from linkwright.language.includes import real
-from linkwright.language.trials import Trial, expanded, trials, without
+from linkwright.language.trials import Trial, blank_out, expand_with_gaps, trials
 from linkwright.language.workspace import Workspace
 from linkwright.lint.targets import DESCRIPTIONS
 from linkwright.loading.deferred import lazy_pattern
@@ -66,14 +66,14 @@ class ExpansionPair(NamedTuple):
     text_after: str
 
 
-def edited(text: str, edits: Collection[Edit]) -> str:
+def apply_edits(text: str, edits: Collection[Edit]) -> str:
     """Apply edits, which must not overlap, to the text of their file."""
     for edit in sorted(edits, key=lambda edit: (edit.start, edit.end), reverse=True):
         text = text[: edit.start] + edit.text + text[edit.end :]
     return text
 
 
-def edited_texts(project: Workspace, texts: Mapping[Path, str], edits: Collection[Edit]) -> dict[Path, str]:
+def apply_edits_to_texts(project: Workspace, texts: Mapping[Path, str], edits: Collection[Edit]) -> dict[Path, str]:
     """Return the texts of the open and edited files, with the edits applied.
 
     Args:
@@ -84,7 +84,7 @@ def edited_texts(project: Workspace, texts: Mapping[Path, str], edits: Collectio
     changed = dict(texts)
     for file in {edit.file for edit in edits}:
         text = project.text(file, texts) or ""
-        changed[file] = edited(text, [edit for edit in edits if edit.file == file])
+        changed[file] = apply_edits(text, [edit for edit in edits if edit.file == file])
     return changed
 
 
@@ -198,5 +198,5 @@ class ExpansionProof:
             gaps = former.gaps.get(file, ())
             inside = [edit for edit in edits if edit.file == file]
             kept = [edit for edit in inside if not any(start <= edit.start < end for start, end in gaps)]
-            texts[file] = edited(without(self._project.text(file, self._texts) or "", gaps), kept)
-        return expanded(self._project, texts, former.entry, arguments)
+            texts[file] = apply_edits(blank_out(self._project.text(file, self._texts) or "", gaps), kept)
+        return expand_with_gaps(self._project, texts, former.entry, arguments)

@@ -1,4 +1,4 @@
-"""The values of string and path expressions in a Python text, which is not run."""
+"""The values of string and path expressions in a Python text, found without running it."""
 
 from __future__ import annotations
 

@@ -1,5 +1,6 @@
-"""The calls and strings of a Python text, which may be incomplete and is not run.
+"""The calls and strings of a Python text, which may be incomplete.
 
+The text is not run.
 Unclosed brackets end at the next statement.
 """
 
@@ -32,7 +33,7 @@ _TOKEN = lazy_pattern(
 _STATEMENT = frozenset({"def", "class", "return", "import", "from", "with", "try", "while", "raise", "del"})
 """The words that begin a statement. A line that begins with one ends all open brackets."""
 _CLOSING = {"(": ")", "[": "]", "{": "}", "": ""}
-_MOST_TEXT = 300_000
+_MAX_TEXT = 300_000
 """The maximum length in characters. Longer files are not launch files."""
 
 
@@ -161,7 +162,7 @@ class PythonText:
         self.bindings: dict[str, Item | None] = {}
         self._group = self.root
         self._item = self._new_item(0)
-        if len(text) <= _MOST_TEXT:
+        if len(text) <= _MAX_TEXT:
             self._read(text)
 
     def calls_of(self, *functions: str) -> Iterator[Group]:
@@ -248,11 +249,11 @@ class PythonText:
         if around.parent is None:
             return
         while self._group is not around:
-            self._leave(end)
+            self._close_group(end)
         around.is_closed = True
-        self._leave(end)
+        self._close_group(end)
 
-    def _leave(self, end: int) -> None:
+    def _close_group(self, end: int) -> None:
         parent = self._group.parent
         if parent is not None:
             self._group.end = end
@@ -262,7 +263,7 @@ class PythonText:
 
     def _close_all(self, end: int) -> None:
         while self._group is not self.root:
-            self._leave(end)
+            self._close_group(end)
 
 
 @lru_cache(maxsize=16)

@@ -134,55 +134,55 @@ def refactor(
 
 
 _Selection = tuple[int, int]
-_NOTHING = phrase("this refactoring does not fit the selection")
+_DOES_NOT_FIT = phrase("this refactoring does not fit the selection")
 
 
-def _property_extracted(
+def _extract_property(
     project: Workspace, texts: Mapping[Path, str], file: Path, text: str, selection: _Selection
 ) -> Refactoring:
     value = selected_value(text, *selection)
     if value is None:
-        raise UnprovedError(_NOTHING)
+        raise UnprovedError(_DOES_NOT_FIT)
     return Refactoring(extract_property(project, texts, file, text, value))
 
 
-def _macro_extracted(
+def _extract_macro(
     project: Workspace, texts: Mapping[Path, str], file: Path, text: str, selection: _Selection
 ) -> Refactoring:
     siblings = selected_elements(text, *selection)
     if not siblings:
-        raise UnprovedError(_NOTHING)
+        raise UnprovedError(_DOES_NOT_FIT)
     return Refactoring(extract_macro(project, texts, file, text, siblings))
 
 
-def _property_inlined(
+def _inline_property(
     project: Workspace, texts: Mapping[Path, str], file: Path, text: str, selection: _Selection
 ) -> Refactoring:
     name = property_at(text, file, selection[0])
     if name is None:
-        raise UnprovedError(_NOTHING)
+        raise UnprovedError(_DOES_NOT_FIT)
     return Refactoring(inline_property(project, texts, name))
 
 
-def _converted(
+def _convert(
     project: Workspace, texts: Mapping[Path, str], file: Path, text: str, _selection: _Selection
 ) -> Refactoring:
     return Refactoring(new_file=convert_to_xacro(project, texts, file, text))
 
 
-def _inertia_filled_in(
+def _fill_in_inertia(
     project: Workspace, texts: Mapping[Path, str], file: Path, text: str, selection: _Selection
 ) -> Refactoring:
     link = link_with_shapes_at(text, selection[0])
     if link is None:
-        raise UnprovedError(_NOTHING)
+        raise UnprovedError(_DOES_NOT_FIT)
     return Refactoring(fill_in_inertia(project, texts, file, text, link))
 
 
 _ACTIONS: dict[Action, Callable[[Workspace, Mapping[Path, str], Path, str, _Selection], Refactoring]] = {
-    Action.EXTRACT_PROPERTY: _property_extracted,
-    Action.EXTRACT_MACRO: _macro_extracted,
-    Action.INLINE_PROPERTY: _property_inlined,
-    Action.CONVERT_TO_XACRO: _converted,
-    Action.FILL_IN_INERTIA: _inertia_filled_in,
+    Action.EXTRACT_PROPERTY: _extract_property,
+    Action.EXTRACT_MACRO: _extract_macro,
+    Action.INLINE_PROPERTY: _inline_property,
+    Action.CONVERT_TO_XACRO: _convert,
+    Action.FILL_IN_INERTIA: _fill_in_inertia,
 }

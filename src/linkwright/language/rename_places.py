@@ -1,4 +1,4 @@
-"""Renaming of the name at a place in a file of any format."""
+"""Renaming of the name at an offset of a file in any format."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from linkwright.language.grammar import root_of
 from linkwright.language.launch_names import LaunchName, is_launch_file
 from linkwright.language.launch_renaming import launch_name_at, rename_launch_argument
 from linkwright.language.mentions import FILES, Mention, mentions_in
-from linkwright.language.name_sources import renamed_template, written_text
+from linkwright.language.name_sources import renamed_template, source_value
 from linkwright.language.occurrences import Occurrence
 from linkwright.language.other_files import names_of_robot, robots_of_file
 from linkwright.language.proof import UnprovedError
 from linkwright.language.renaming import Renaming, occurrence_at, rename, xacro_name_at
-from linkwright.language.robot_renaming import OF_ROBOT
+from linkwright.language.robot_renaming import ROBOT_NAME_KINDS
 from linkwright.language.sdf_names import SdfName, rename_in_sdf, sdf_name_at
 from linkwright.language.srdf import is_srdf
 from linkwright.language.trials import trials
@@ -34,7 +34,7 @@ _MAX_ROBOTS = 4
 
 
 @dataclass(frozen=True, slots=True)
-class RenamePlace:
+class RenamableName:
     """A name that can be renamed.
 
     Attributes:
@@ -56,8 +56,8 @@ class RenamePlace:
         return self.start + len(self.name)
 
 
-def place_at(project: Workspace, texts: Mapping[Path, str], file: Path, offset: int) -> RenamePlace | None:
-    """Return the name at an offset of a file, or None if there is no renamable name.
+def renamable_name_at(project: Workspace, texts: Mapping[Path, str], file: Path, offset: int) -> RenamableName | None:
+    """Return the renamable name at an offset of a file, or None if there is none.
 
     Args:
         project: the workspace.
@@ -71,20 +71,20 @@ def place_at(project: Workspace, texts: Mapping[Path, str], file: Path, offset: 
     if is_launch_file(file):
         launch = launch_name_at(Document(project, texts, file, text), offset)
         if launch is not None:
-            return RenamePlace(file, launch[0].start, launch[0].name, launch)
+            return RenamableName(file, launch[0].start, launch[0].name, launch)
     elif root_of(file) is SDF:
         name = sdf_name_at(text, file, offset)
         if name is not None:
-            return RenamePlace(file, name.start, name.name, name)
+            return RenamableName(file, name.start, name.name, name)
         occurrence = xacro_name_at(text, file, offset)
-        return None if occurrence is None else RenamePlace(file, occurrence.start, occurrence.name, occurrence)
+        return None if occurrence is None else RenamableName(file, occurrence.start, occurrence.name, occurrence)
     elif not file.name.endswith(FILES):
         occurrence = occurrence_at(text, file, offset)
-        return None if occurrence is None else RenamePlace(file, occurrence.start, occurrence.name, occurrence)
+        return None if occurrence is None else RenamableName(file, occurrence.start, occurrence.name, occurrence)
     mention = _mention_at(text, file, offset)
     if mention is None or next(_robots_with(project, texts, mention), None) is None:
         return None
-    return RenamePlace(file, mention.start, mention.name, mention)
+    return RenamableName(file, mention.start, mention.name, mention)
 
 
 def _mention_at(text: str, file: Path, offset: int) -> Mention | None:
@@ -116,19 +116,19 @@ def _fits(written: str, name: str) -> bool:
     return any(parts) and re.fullmatch(".*".join(map(re.escape, parts)), name) is not None
 
 
-def rename_place(project: Workspace, texts: Mapping[Path, str], place: RenamePlace, new: str) -> Renaming:
+def rename_name(project: Workspace, texts: Mapping[Path, str], renamable: RenamableName, new: str) -> Renaming:
     """Return the edits that rename the name at a place.
 
     Args:
         project: the workspace.
         texts: the texts of the open files.
-        place: the place, as `place_at` returns it.
+        renamable: the place, as `renamable_name_at` returns it.
         new: the new name.
 
     Raises:
         LinkwrightError: LANG102, the new name is not valid; LANG103, it exists; LANG104, the edits cannot be proved.
     """
-    meaning = place.meaning
+    meaning = renamable.meaning
     if isinstance(meaning, Occurrence):
         return _rename_occurrence(project, texts, meaning, new)
     if isinstance(meaning, Mention):
@@ -138,16 +138,16 @@ def rename_place(project: Workspace, texts: Mapping[Path, str], place: RenamePla
             edits, unchanged = rename_in_sdf(project, texts, meaning, new)
             return Renaming(tuple(sorted(edits)), {meaning.name: new}, tuple(unchanged))
         if not _LAUNCH_NAME.fullmatch(new):
-            raise _invalid(new, phrase("launch argument"))
+            raise _invalid_name_error(new, phrase("launch argument"))
         found = rename_launch_argument(project, texts, meaning[1], meaning[0].name, new)
     except UnprovedError as error:
-        raise _refused(place.name, error.reason, error.span) from None
+        raise _refusal_error(renamable.name, error.reason, error.span) from None
     return Renaming(tuple(sorted(found.edits)), {}, tuple(found.unchanged), tuple(dict.fromkeys(found.notes)))
 
 
 def _rename_occurrence(project: Workspace, texts: Mapping[Path, str], name: Occurrence, new: str) -> Renaming:
     """Rename a name in a description, or a use in an SRDF of a name in another file."""
-    is_use = name.kind in OF_ROBOT[:2] and not name.is_definition
+    is_use = name.kind in ROBOT_NAME_KINDS[:2] and not name.is_definition
     if is_use and is_srdf(name.file):
         return _rename_in_srdf(project, texts, name, new)
     try:
@@ -172,8 +172,10 @@ def _rename_mention(project: Workspace, texts: Mapping[Path, str], mention: Ment
             continue
         if any((edit.file, edit.start) == (mention.file, mention.start) for edit in renaming.edits):
             return renaming
-        error = error or _refused(mention.name, phrase("several robots have this name, and the file may refer to any"))
-    raise error or _refused(mention.name, phrase("no description of the workspace has it"))
+        error = error or _refusal_error(
+            mention.name, phrase("several robots have this name, and the file may refer to any")
+        )
+    raise error or _refusal_error(mention.name, phrase("no description of the workspace has it"))
 
 
 def _rename_in_srdf(project: Workspace, texts: Mapping[Path, str], name: Occurrence, new: str) -> Renaming:
@@ -199,27 +201,30 @@ def _rename_in_srdf(project: Workspace, texts: Mapping[Path, str], name: Occurre
                 continue
             if any((edit.file, edit.start) == (name.file, name.start) for edit in renaming.edits):
                 return renaming
-    raise error or _refused(name.name, phrase("no description of the workspace has it"))
+    raise error or _refusal_error(name.name, phrase("no description of the workspace has it"))
 
 
 def _definition(
     project: Workspace, texts: Mapping[Path, str], robot: Path, name: Occurrence, value: str
 ) -> Occurrence | None:
-    """Return the definition of a link or joint that is written like a use, such as ``${prefix}wheel``; else None."""
+    """Return the definition of a link or joint whose source equals a use, or None.
+
+    The source of a name may contain expressions, such as ``${prefix}wheel``.
+    """
     found, _ = trials(project, texts, robot, is_partial=True, is_switched=False)
     for trial in found:
         for element in trial.expansion.document.root.elements(name.kind.value):
-            written = written_text(element, "name") if element.attributes.get("name") == value else None
+            written = source_value(element, "name") if element.attributes.get("name") == value else None
             if written is not None and written.text == name.name:
                 return occurrence_at(project.text(written.file, texts) or "", written.file, written.start)
     return None
 
 
-def _refused(name: str, reason: Phrase, span: Span | None = None) -> LinkwrightError:
+def _refusal_error(name: str, reason: Phrase, span: Span | None = None) -> LinkwrightError:
     return LinkwrightError(Diagnostic(_UNPROVED, phrase("'{name}' is not renamed: {why}", name=name, why=reason), span))
 
 
-def _invalid(new: str, kind: Phrase) -> LinkwrightError:
+def _invalid_name_error(new: str, kind: Phrase) -> LinkwrightError:
     message = phrase("'{new}' is not a valid {kind} name", new=new, kind=kind)
     hint = phrase("use letters, digits and underscores, and begin with a letter")
     return LinkwrightError(Diagnostic("LANG102", message, hint=hint))

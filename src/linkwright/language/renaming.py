@@ -22,7 +22,7 @@ from linkwright.language.mentions import Mention
 from linkwright.language.occurrences import Occurrence, occurrences_in
 from linkwright.language.probes import is_reached, probes_of
 from linkwright.language.proof import Edit, ExpansionProof, UnprovedError
-from linkwright.language.robot_renaming import OF_ROBOT, RobotRenaming
+from linkwright.language.robot_renaming import ROBOT_NAME_KINDS, RobotRenaming
 from linkwright.language.workspace import Workspace
 from linkwright.sdf.worlds import SDF
 
@@ -55,8 +55,8 @@ def occurrence_at(text: str, file: Path, offset: int) -> Occurrence | None:
 
 
 def xacro_name_at(text: str, file: Path, offset: int) -> Occurrence | None:
-    """Return the macro, parameter, property or argument at an offset of a model in xacro; None if there is none."""
-    return _innermost((name for name in occurrences_in(text, file) if name.kind not in OF_ROBOT), offset)
+    """Return the macro, parameter, property or argument at an offset of an SDF xacro file, or None."""
+    return _innermost((name for name in occurrences_in(text, file) if name.kind not in ROBOT_NAME_KINDS), offset)
 
 
 def _innermost(names: Iterable[Occurrence], offset: int) -> Occurrence | None:
@@ -74,7 +74,7 @@ def references(project: Workspace, texts: Mapping[Path, str], name: Occurrence) 
     """
     found: dict[Path, list[Occurrence]] = {}
     pending = [name.file]
-    is_shared = name.kind not in OF_ROBOT  # a link of another robot with the same name is another link
+    is_shared = name.kind not in ROBOT_NAME_KINDS  # a link of another robot with the same name is another link
     for start in pending:
         for file in project.index.related(start, texts, computed=True):
             if file not in found:
@@ -86,7 +86,7 @@ def references(project: Workspace, texts: Mapping[Path, str], name: Occurrence) 
 
 
 def rename(project: Workspace, texts: Mapping[Path, str], name: Occurrence, new: str) -> Renaming:
-    """Return the proved edits that give a name another spelling.
+    """Return the proved edits that rename a name of a description.
 
     Args:
         project: the workspace.
@@ -99,7 +99,7 @@ def rename(project: Workspace, texts: Mapping[Path, str], name: Occurrence, new:
     """
     _check_new_name(name, new)
     seeds = references(project, texts, name)
-    if not any(seed.is_definition for seed in seeds) and name.kind not in OF_ROBOT:
+    if not any(seed.is_definition for seed in seeds) and name.kind not in ROBOT_NAME_KINDS:
         raise _unproved(phrase("'{name}' is not defined in the files of the workspace", name=name.name), name)
     taken = next((other for other in references(project, texts, _named(name, new)) if other.is_definition), None)
     if taken is not None:
@@ -121,7 +121,7 @@ def _proved(project: Workspace, texts: Mapping[Path, str], name: Occurrence, new
         proof = ExpansionProof(project, texts, name.file, is_partial=True)
         notes.append(phrase("no description calls this macro, so the edits were checked with generated calls"))
     seeds = references(project, texts, name)
-    if name.kind in OF_ROBOT:
+    if name.kind in ROBOT_NAME_KINDS:
         renaming = RobotRenaming(project, texts, name, new, proof)
         renaming.run(seeds)
         edits, names, unchanged = renaming.edits, renaming.names, renaming.unchanged
@@ -206,7 +206,7 @@ def _passed_arguments(
     passed = re.compile(rf"(?<!\w){re.escape(old)}(?=:=)|(?<=['\"]){re.escape(old)}(?=['\"]\s*:)")
     edits: set[Edit] = set()
     for entry in proof.entries:
-        for values, span in project.calls(entry):
+        for values, span in project.argument_calls(entry):
             if old not in values or span is None:
                 continue
             file = real(span.file)
@@ -225,7 +225,7 @@ def _is_same(other: Occurrence, name: Occurrence) -> bool:
         return False
     if name.kind is NameKind.PARAMETER:
         return other.owner == name.owner
-    is_template = name.kind in OF_ROBOT and "$" in name.name
+    is_template = name.kind in ROBOT_NAME_KINDS and "$" in name.name
     return not is_template or (other.file, other.owner) == (name.file, name.owner)
 
 
@@ -234,9 +234,9 @@ def _named(name: Occurrence, new: str) -> Occurrence:
 
 
 def _check_new_name(name: Occurrence, new: str) -> None:
-    is_variable = name.kind not in OF_ROBOT
+    is_variable = name.kind not in ROBOT_NAME_KINDS
     is_valid = new.isidentifier() and not keyword.iskeyword(new) if is_variable else bool(new.strip())
-    if name.kind is NameKind.MACRO or (name.kind in OF_ROBOT and "$" not in new):
+    if name.kind is NameKind.MACRO or (name.kind in ROBOT_NAME_KINDS and "$" not in new):
         is_valid = _NAME.fullmatch(new) is not None
     if not is_valid:
         message = phrase("'{new}' is not a valid {kind} name", new=new, kind=term(name.kind.value))

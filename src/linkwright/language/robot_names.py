@@ -38,7 +38,7 @@ _State = tuple[tuple[str, object], ...]
 class _Robot:
     state: _State
     names: tuple[NameDefinition, ...]
-    texts: frozenset[str] = frozenset()
+    mentioned_files: frozenset[str] = frozenset()
     """The names of YAML files in its elements, such as parameters of controllers."""
     is_expanded: bool = True
 
@@ -47,7 +47,7 @@ _robots: WeakKeyDictionary[Workspace, dict[Path, _Robot]] = WeakKeyDictionary()
 
 
 def robot_names(document: Document) -> list[NameDefinition]:
-    """Return the links and joints of the robots that a file probably means, the likeliest first.
+    """Return the links and joints of the robots to which a file probably refers, likeliest first.
 
     Names with expressions are expanded, and located at the attribute with the expressions. A description that cannot
     be expanded provides its earlier names, the names in its valid parts, or the names without expressions.
@@ -68,7 +68,7 @@ def robot_names(document: Document) -> list[NameDefinition]:
             robots.append(robot)
         elif not robots:
             raise NotYetKnownError
-    return _names(sorted(robots, key=lambda robot: document.file.name not in robot.texts))
+    return _names(sorted(robots, key=lambda robot: document.file.name not in robot.mentioned_files))
 
 
 def part_names(document: Document) -> list[NameDefinition]:
@@ -162,49 +162,49 @@ def _read(project: Workspace, texts: Mapping[Path, str], entry: Path, before: _R
         entry: the description.
         before: its earlier names, or None.
     """
-    robot = _expanded(project, texts, entry)
+    robot = _expanded_robot(project, texts, entry)
     if robot is not None:
         return robot
     related = dict.fromkeys((entry, *project.index.related(entry, texts)))
     state = _state([*map(str, related), *(path for path, _ in (() if before is None else before.state))], texts)
     if before is not None and before.is_expanded:
         return replace(before, state=state)
-    saved = _expanded(project, {}, entry) if texts else None
+    saved = _expanded_robot(project, {}, entry) if texts else None
     if saved is not None:
         return replace(saved, state=state)
     parts = valid_parts(project, texts, entry)
     if parts is not None:
-        return _of_expansion(parts, state, is_whole=False)
+        return _robot_of_expansion(parts, state, is_complete=False)
     text = project.text(entry, texts) or ""
     literal = (name for name in definitions_in(text, entry) if "$" not in name.name)
     return _Robot(state, tuple(name for name in literal if name.kind in _KINDS.values()), is_expanded=False)
 
 
-def _expanded(project: Workspace, texts: Mapping[Path, str], entry: Path) -> _Robot | None:
+def _expanded_robot(project: Workspace, texts: Mapping[Path, str], entry: Path) -> _Robot | None:
     """Return the names in the first expansion without errors, or None if there is none."""
     overlay = Overlay({str(path): text for path, text in texts.items()})
-    for arguments, _ in project.calls(entry)[:_MAX_ARGUMENT_SETS]:
+    for arguments, _ in project.argument_calls(entry)[:_MAX_ARGUMENT_SETS]:
         with suppress(LinkwrightError, OSError, RecursionError):
             expansion = expand(entry, arguments, packages=project.finder(entry), overlay=overlay)
-            return _of_expansion(expansion, _state(map(str, expansion.dependencies), texts))
+            return _robot_of_expansion(expansion, _state(map(str, expansion.dependencies), texts))
     return None
 
 
-def _of_expansion(expansion: Expansion, state: _State, *, is_whole: bool = True) -> _Robot:
+def _robot_of_expansion(expansion: Expansion, state: _State, *, is_complete: bool = True) -> _Robot:
     names: list[NameDefinition] = []
     for element in expansion.document.root.elements():
         kind, name = _KINDS.get(element.tag), element.attributes.get("name")
         if kind is not None and name and element.source is not None:
             end = start_tag_end(element.source.text, element.offset)
             tag = element.source.text[element.offset : end]
-            written = next(definitions_in(tag, Path()), None)
-            start = element.offset + (written.start if written else 0)
+            definition = next(definitions_in(tag, Path()), None)
+            start = element.offset + (definition.start if definition else 0)
             detail = element.attributes.get("type", "")
             names.append(NameDefinition(kind, name, real(element.source.name), start, detail))
     contents = (element.text() for element in expansion.document.root.walk())
     files = (content.strip().rpartition("/")[2] for content in contents)
     mentioned = frozenset(file for file in files if file.endswith((".yaml", ".yml")))
-    return _Robot(state, tuple(names), mentioned, is_whole)
+    return _Robot(state, tuple(names), mentioned, is_complete)
 
 
 def _state(files: Iterator[str] | list[str] | map[str], texts: Mapping[Path, str]) -> _State:

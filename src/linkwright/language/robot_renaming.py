@@ -14,7 +14,7 @@ from pathlib import Path
 from linkwright.diagnostics import Phrase, Span, phrase, quoted_names, term
 from linkwright.language.definitions import NameKind
 from linkwright.language.mentions import Mention
-from linkwright.language.name_sources import NameSources, WrittenText, renamed_template, written_text
+from linkwright.language.name_sources import NameSources, SourceValue, renamed_template, source_value
 from linkwright.language.occurrences import Occurrence, kinds_of_reference, kinds_of_text
 from linkwright.language.other_files import OtherFiles
 from linkwright.language.proof import Edit, ExpansionPair, ExpansionProof, UnprovedError
@@ -23,7 +23,7 @@ from linkwright.xmltree import Element
 from linkwright.xmltree.positions import attribute_value_range, start_tag_end
 from linkwright.xmltree.tokens import Kind, tokens
 
-OF_ROBOT = (NameKind.LINK, NameKind.JOINT, NameKind.MATERIAL)
+ROBOT_NAME_KINDS = (NameKind.LINK, NameKind.JOINT, NameKind.MATERIAL)
 Names = Mapping[tuple[NameKind, str], str]
 
 _MAX_ROUNDS = 8
@@ -78,24 +78,24 @@ class RobotRenaming:
         error: UnprovedError | None = None
         for proposal in islice(self._proposals(required, literal), _MAX_PROPOSALS):
             try:
-                self._follow(proposal, required)
+                self._extend(proposal, required)
             except UnprovedError as reason:  # noqa: PERF203 - each proposal may fail for itself
                 error = error or reason
             else:
                 return
-        raise error or UnprovedError(self._nothing())
+        raise error or UnprovedError(self._no_name_reason())
 
     def _rename_unused(self, seeds: Iterable[Occurrence], required: Names) -> None:
         """Rename a name that no expansion contains, such as an unused material."""
         name = self._name
         edits = {Edit(seed.file, seed.start, seed.end, self._new) for seed in seeds}
         if "$" in name.name or not any(seed.is_definition for seed in seeds):
-            raise UnprovedError(self._nothing())
+            raise UnprovedError(self._no_name_reason())
         self._proof.check_equal(edits)
         found, self.unchanged = self._others.edits(required)
         self.edits = edits | found
 
-    def _nothing(self) -> Phrase:
+    def _no_name_reason(self) -> Phrase:
         reason = self._proof.gap_reason
         nothing = phrase("no link, joint or material takes its name from this place")
         return (
@@ -119,7 +119,7 @@ class RobotRenaming:
     def _kind(self) -> NameKind:
         """Return the kind of a literal name: of its definition, or else of its occurrence."""
         name = self._name
-        for kind in (name.kind, *OF_ROBOT[:2]):
+        for kind in (name.kind, *ROBOT_NAME_KINDS[:2]):
             if self._defines(kind, name.name):
                 return kind
         return name.kind
@@ -148,13 +148,13 @@ class RobotRenaming:
 
     def _proposals(self, required: Names, literal: set[Edit]) -> Iterator[set[Edit]]:
         """Yield the initial edits: of certain occurrences, and of computed definitions."""
-        computed: list[tuple[WrittenText, str, str]] = []
+        computed: list[tuple[SourceValue, str, str]] = []
         for kind, value in required:
             for trial in self._proof.trials:
                 for element in _definitions(trial.expansion.document.root, kind):
                     if element.attributes.get("name") != value:
                         continue
-                    written = written_text(element, "name")
+                    written = source_value(element, "name")
                     if written is not None and not any(
                         (edit.file, edit.start) == (written.file, written.start) for edit in literal
                     ):
@@ -165,33 +165,33 @@ class RobotRenaming:
             return
         first = [*islice(self._sources.edits(*computed[0]), _MAX_PROPOSALS)]
         if not first:
-            raise _computed(computed[0][0], computed[0][1])
+            raise _computed_name_error(computed[0][0], computed[0][1])
         for edits in first:
             yield literal | {*edits}
 
-    def _follow(self, edits: set[Edit], required: Names) -> None:
+    def _extend(self, edits: set[Edit], required: Names) -> None:
         """Extend edits until all names have changed."""
         for _ in range(_MAX_ROUNDS):
             pairs = [*self._proof.pairs(edits)]
             names = dict(_changed_names(pairs))
             if not names and not required:
-                raise UnprovedError(self._nothing())
+                raise UnprovedError(self._no_name_reason())
             wanted = {**names, **required}
             more: set[Edit] = set()
             for pair in pairs:
-                more |= {*self._stale(pair, wanted, edits)}
+                more |= {*self._edits_of_old_names(pair, wanted, edits)}
             found, unchanged = self._others.edits(wanted)
             more |= found
             if more <= edits:
                 self._check(pairs, names, required)
                 self.edits, self.names = edits, names
-                self.unchanged = (*unchanged, *self._leftovers(edits, names))
+                self.unchanged = (*unchanged, *self._unused_mentions(edits, names))
                 return
             edits = edits | more
             _check_overlap(edits)
         raise UnprovedError(phrase("some references would keep the old name"))
 
-    def _leftovers(self, edits: Collection[Edit], names: Names) -> Iterator[Mention]:
+    def _unused_mentions(self, edits: Collection[Edit], names: Names) -> Iterator[Mention]:
         """Yield unused values with an old name in the descriptions, such as unused defaults."""
         edited = {(edit.file, edit.start) for edit in edits}
         words = "|".join(re.escape(old) for old in dict.fromkeys(old for _, old in names))
@@ -207,7 +207,7 @@ class RobotRenaming:
                         if (file, start) not in edited:
                             yield Mention(found[1], file, start)
 
-    def _stale(self, pair: ExpansionPair, names: Names, edits: Collection[Edit]) -> Iterator[Edit]:
+    def _edits_of_old_names(self, pair: ExpansionPair, names: Names, edits: Collection[Edit]) -> Iterator[Edit]:
         """Yield edits of the definitions and references in an expansion that still have an old name."""
         for old, new in zip(pair.before.walk(), pair.after.walk(), strict=False):
             if old.tag != new.tag:
@@ -218,14 +218,14 @@ class RobotRenaming:
                 wanted = next((names[kind, before] for kind in kinds if (kind, before) in names), None)
                 if wanted is None or after != before or wanted == before:
                     continue
-                written = written_text(old, key)
+                written = source_value(old, key)
                 if written is None:
                     continue
                 proposal = next(self._sources.edits(written, before, wanted), None)
                 if proposal is None:
-                    raise _computed(written, before, old.attribute_span(key) if key else old.span())
+                    raise _computed_name_error(written, before, old.attribute_span(key) if key else old.span())
                 if {*proposal} <= {*edits}:  # the edits did not change the value
-                    raise _computed(written, before, old.attribute_span(key) if key else old.span())
+                    raise _computed_name_error(written, before, old.attribute_span(key) if key else old.span())
                 yield from proposal
 
     def _check(self, pairs: Sequence[ExpansionPair], names: Names, required: Names) -> None:
@@ -237,12 +237,12 @@ class RobotRenaming:
             self._check_sharing(pairs, required)
         allowed = {*((old, new) for (_, old), new in names.items())}
         for pair in pairs:
-            olds, news = _defined(pair.before), _defined(pair.after)
+            olds, news = _part_names(pair.before), _part_names(pair.after)
             for key, old, new in _differences(pair.before, pair.after):
                 is_name = (old, new) in allowed and (old not in olds or new in news)
                 if not is_name and not (key == "name" and _is_derived(old, new, allowed)):
                     raise UnprovedError(phrase("'{old}' would become '{new}'", old=old, new=new))
-            for kind in OF_ROBOT[:2]:
+            for kind in ROBOT_NAME_KINDS[:2]:
                 count = len({*_values(pair.after, kind)})
                 if count != len([*_values(pair.after, kind)]) and count != len({*_values(pair.before, kind)}):
                     raise UnprovedError(phrase("two {kind}s would have the same name", kind=term(kind.value)))
@@ -269,7 +269,7 @@ class RobotRenaming:
                 raise UnprovedError(message)
 
 
-def _computed(written: WrittenText, value: str, span: Span | None = None) -> UnprovedError:
+def _computed_name_error(written: SourceValue, value: str, span: Span | None = None) -> UnprovedError:
     return UnprovedError(phrase("'{value}' is computed from '{written}'", value=value, written=written.text), span)
 
 
@@ -303,7 +303,7 @@ def _changed_names(pairs: Iterable[ExpansionPair]) -> Iterator[tuple[tuple[NameK
     """Yield the changed names, each once with its single new name."""
     names: dict[tuple[NameKind, str], str] = {}
     for pair in pairs:
-        for kind in OF_ROBOT:
+        for kind in ROBOT_NAME_KINDS:
             olds, news = [*_values(pair.before, kind)], [*_values(pair.after, kind)]
             if len(olds) != len(news):
                 raise UnprovedError(phrase("the number of {kind}s would change", kind=term(kind.value)))
@@ -333,9 +333,9 @@ def _names_in(element: Element, *, is_top: bool) -> Iterator[tuple[tuple[NameKin
         yield kinds, ""
 
 
-def _defined(root: Element) -> set[str]:
+def _part_names(root: Element) -> set[str]:
     """Return the names of the links and joints of a robot."""
-    return {value for kind in OF_ROBOT[:2] for value in _values(root, kind)}
+    return {value for kind in ROBOT_NAME_KINDS[:2] for value in _values(root, kind)}
 
 
 def _is_derived(old: str, new: str, allowed: Collection[tuple[str, str]]) -> bool:

@@ -25,7 +25,7 @@ from linkwright.language.rviz_owners import (
     load_displays,
     owner_of,
 )
-from linkwright.language.yaml_outline import Place, YamlCursor, YamlOutline
+from linkwright.language.yaml_outline import YamlCursor, YamlOutline, YamlPosition
 from linkwright.language.yaml_symbols import by_typed, has_colon, snippet_text, yaml_symbols
 from linkwright.loading.extensions import extensions
 from linkwright.rviz.config.former_names import modern_class
@@ -33,7 +33,18 @@ from linkwright.rviz.config.schema import FIXED_FRAME, PropertySpec, to_text
 from linkwright.rviz.config.tools import TOOL_KINDS
 from linkwright.rviz.config.views import ORBIT, VIEW_SCHEMAS
 
-_USUAL = ("RobotModel", "TF", "LaserScan", "Map", "PointCloud2", "Image", "Path", "Odometry", "MarkerArray", "Grid")
+_COMMON_DISPLAYS = (
+    "RobotModel",
+    "TF",
+    "LaserScan",
+    "Map",
+    "PointCloud2",
+    "Image",
+    "Path",
+    "Odometry",
+    "MarkerArray",
+    "Grid",
+)
 """The displays that most configurations have, offered first."""
 _FRAMES = ("map", "odom", "world")
 _TOPICS = {
@@ -56,15 +67,15 @@ _TOPIC = re.compile(r"(?m)^[ \t]{0,99}(?:Value|Topic|[\w ]{0,60}Topic): (/[\w/]+
 def complete_rviz(document: Document, offset: int) -> list[Completion]:
     """Return the completions at an offset of a configuration, the likeliest first."""
     cursor = YamlOutline(document.text).cursor(offset)
-    if cursor.place is Place.NOTHING:
+    if cursor.position is YamlPosition.NOTHING:
         return []
-    items = _keys(document, cursor) if cursor.place is Place.KEY else _values(document, cursor)
+    items = _keys(document, cursor) if cursor.position is YamlPosition.KEY else _values(document, cursor)
     return by_typed(items, cursor.typed)
 
 
 def _keys(document: Document, cursor: YamlCursor) -> Iterator[Completion]:
-    owner = owner_of(cursor.within)
-    present = {child.key for child in cursor.within.children if child is not cursor.entry}
+    owner = owner_of(cursor.parent_entry)
+    present = {child.key for child in cursor.parent_entry.children if child is not cursor.entry}
     has_value = has_colon(document.text, cursor.offset)
     specs = owner.schema
     here = ConfigOwner(owner.role, owner.entry, owner.keys[:-1]).spec(owner.keys[-1]) if owner.keys else None
@@ -89,14 +100,14 @@ def _property(spec: PropertySpec, start: int, *, has_value: bool) -> Completion:
     elif spec.children:
         value = f":\n  Value: ${{1:{snippet_text(default)}}}" if default else ":\n  Value: $0"
     snippet = "" if has_value else spec.name + value
-    return Completion(spec.name, ItemKind.ATTRIBUTE, start, detail, _described(spec), snippet)
+    return Completion(spec.name, ItemKind.ATTRIBUTE, start, detail, _property_description(spec), snippet)
 
 
 def _default_text(spec: PropertySpec) -> str:
     return "" if spec.default is None or spec.default == "" else to_text(spec, spec.default)
 
 
-def _described(spec: PropertySpec) -> str:
+def _property_description(spec: PropertySpec) -> str:
     default = _default_text(spec)
     lines = [f"**{spec.name}** `{spec.kind}`" + (f" = `{default}`" if default else "")]
     if spec.description:
@@ -112,16 +123,16 @@ def _described(spec: PropertySpec) -> str:
 
 
 def _values(document: Document, cursor: YamlCursor) -> Iterator[Completion]:
-    parent = cursor.within.parent
+    parent = cursor.parent_entry.parent
     if parent is None:
         return
-    owner, key = owner_of(parent), cursor.within.key
+    owner, key = owner_of(parent), cursor.parent_entry.key
     if key == "Class":
         for name, purpose in _classes(owner):
             yield Completion(name, ItemKind.VALUE, cursor.start, "", purpose)
         return
     if key == "Name":
-        yield Completion(_usual_name(owner), ItemKind.VALUE, cursor.start)
+        yield Completion(_default_name(owner), ItemKind.VALUE, cursor.start)
     spec = owner.spec(key)
     if spec is None:
         return
@@ -144,7 +155,7 @@ def _values(document: Document, cursor: YamlCursor) -> Iterator[Completion]:
         yield Completion(default, ItemKind.VALUE, cursor.start, localized(phrase("default")))
 
 
-def _usual_name(owner: ConfigOwner) -> str:
+def _default_name(owner: ConfigOwner) -> str:
     """Return the name that RViz gives to a display, tool, view or panel."""
     if owner.role == "Views":
         return "Current View" if owner.entry.key == "Current" else owner.class_name.rpartition("/")[2]
@@ -154,7 +165,7 @@ def _usual_name(owner: ConfigOwner) -> str:
 def _classes(owner: ConfigOwner) -> Iterator[tuple[str, str]]:
     """Yield the classes that a display, tool, view or panel may have, each with its purpose."""
     if owner.role == "Displays":
-        usual = {f"rviz_default_plugins/{name}": number for number, name in enumerate(_USUAL)}
+        usual = {f"rviz_default_plugins/{name}": number for number, name in enumerate(_COMMON_DISPLAYS)}
         for name in sorted(extensions(DISPLAYS), key=lambda name: usual.get(name, len(usual))):
             yield name, _purpose(name)
     elif owner.role == "Tools":
@@ -200,33 +211,33 @@ def explain_rviz(document: Document, offset: int) -> Explanation | None:
     start, end, word = word_at(document.text, cursor)
     if not word:
         return None
-    if cursor.place is Place.KEY:
-        owner = owner_of(cursor.within)
-        text = _explained(owner, word)
+    if cursor.position is YamlPosition.KEY:
+        owner = owner_of(cursor.parent_entry)
+        text = _explain_property(owner, word)
         if not text and {"Links", "Frames", "Tree"} & set(owner.keys):
             text = part_explanation(document, word, (NameKind.LINK,))
     else:
-        parent = cursor.within.parent
-        owner = owner_of(parent if parent is not None else cursor.within)
-        key = cursor.within.key
+        parent = cursor.parent_entry.parent
+        owner = owner_of(parent if parent is not None else cursor.parent_entry)
+        key = cursor.parent_entry.key
         spec = owner.spec(key)
         text = ""
         if key == "Class":
-            text = _explained_class(modern_class(word))
+            text = _explain_class(modern_class(word))
         elif spec is not None and spec.kind == "frame":
             text = part_explanation(document, word, (NameKind.LINK,))
-        text = text or _explained(owner, key)
+        text = text or _explain_property(owner, key)
     return Explanation(text, start, end) if text else None
 
 
-def _explained(owner: ConfigOwner, key: str) -> str:
+def _explain_property(owner: ConfigOwner, key: str) -> str:
     if key == "Class":
-        return _explained_class(owner.class_name)
+        return _explain_class(owner.class_name)
     spec = owner.spec(key)
-    return "" if spec is None else _described(spec)
+    return "" if spec is None else _property_description(spec)
 
 
-def _explained_class(name: str) -> str:
+def _explain_class(name: str) -> str:
     purpose = _purpose(name)
     schema = display_schema(name) or VIEW_SCHEMAS.get(name, ())
     properties = ", ".join(f"`{spec.name}`" for spec in schema)
@@ -239,10 +250,10 @@ def define_in_rviz(document: Document, offset: int) -> Iterator[Target]:
     _, _, word = word_at(document.text, cursor)
     if not word:
         return
-    keys = cursor.within.path
+    keys = cursor.parent_entry.path
     names_link = bool({"Links", "Frames", "Tree"} & set(keys))
-    if cursor.place is Place.VALUE and cursor.within.parent is not None:
-        spec = owner_of(cursor.within.parent).spec(cursor.within.key)
+    if cursor.position is YamlPosition.VALUE and cursor.parent_entry.parent is not None:
+        spec = owner_of(cursor.parent_entry.parent).spec(cursor.parent_entry.key)
         names_link = spec is not None and spec.kind == "frame"
     for name in robot_names(document) if names_link else ():
         if name.kind is NameKind.LINK and name.name == word:

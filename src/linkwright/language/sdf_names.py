@@ -15,16 +15,16 @@ from linkwright.diagnostics import SourceText, phrase
 from linkwright.language.includes import real
 from linkwright.language.mentions import Mention, mentions_in
 from linkwright.language.occurrences import kinds_of_text
-from linkwright.language.proof import Edit, ExpansionProof, UnprovedError, edited
+from linkwright.language.proof import Edit, ExpansionProof, UnprovedError, apply_edits
 from linkwright.language.workspace import Workspace
-from linkwright.language.written import WrittenElement, innermost, written_elements
+from linkwright.language.written import SourceElement, innermost_element, source_elements
 
 _DEFINING = frozenset({"link", "joint", "frame", "model"})
 _SCOPES = frozenset({"model", "world", "sdf"})
 _ATTRIBUTES = frozenset(
     {"relative_to", "attached_to", "expressed_in", "rotate_to", "canonical_link", "placement_frame"}
 )
-_OF_OWN_SCOPE = frozenset({"canonical_link", "placement_frame"})
+_INNER_REFERENCES = frozenset({"canonical_link", "placement_frame"})
 _MIMIC = ("mimic", "joint")
 _TEXTS = frozenset({"parent", "child", "link", "joint", "gripper_link", "palm_link", "placement_frame"})
 _NAME = re.compile(r"[^\s<>&\"':/]+(?: [^\s<>&\"':/]+)*")
@@ -56,13 +56,13 @@ class SdfName:
 
 def sdf_names(text: str, file: Path) -> Iterator[SdfName]:
     """Yield the names of links, joints, frames and models in a text, and their uses."""
-    for element in written_elements(text):
+    for element in source_elements(text):
         if element.name in _DEFINING and element.parent is not None:
             for attribute in element.tag.attributes():
                 if attribute.name == "name" and attribute.value and _defines(element):
                     yield SdfName(attribute.value, file, attribute.value_start, element.start)
         for value, start, scope in _references(element, text):
-            for part, offset, found in _path(scope, value):
+            for part, offset, found in _referred_elements(scope, value):
                 yield SdfName(part, file, start + offset, found.start)
 
 
@@ -74,9 +74,9 @@ def sdf_name_at(text: str, file: Path, offset: int) -> SdfName | None:
 def rename_in_sdf(
     project: Workspace, texts: Mapping[Path, str], name: SdfName, new: str
 ) -> tuple[set[Edit], list[Mention]]:
-    """Return the edits with which a link, joint, frame or model of an SDF text has a new name, and other mentions.
+    """Return the edits that rename a link, joint, frame or model of an SDF text, and uncertain mentions.
 
-    Other files may mean the name, such as a launch file that starts a model, but nothing proves it.
+    A mention in another file, such as a launch file that starts a model, may have another meaning.
 
     Args:
         project: the workspace.
@@ -94,11 +94,11 @@ def rename_in_sdf(
         raise UnprovedError(phrase("'{new}' is not a valid name", new=new), span)
     if not project.contains(name.file):
         raise UnprovedError(phrase("'{file}' is outside of the workspace", file=name.file.name), span)
-    definition = innermost(written_elements(text), name.definition)
+    definition = innermost_element(source_elements(text), name.definition)
     scope = None if definition is None else _scope(definition.parent)
     if definition is None or scope is None:
         raise UnprovedError(phrase("the name is not defined in this file"), span)
-    if any(other.value("name") == new for other in _named(scope)):
+    if any(other.value("name") == new for other in _named_children(scope)):
         raise UnprovedError(phrase("'{name}' exists already", name=new), span)
     edits = {
         Edit(use.file, use.start, use.end, new)
@@ -125,9 +125,12 @@ def rename_in_sdf(
 
 
 def _check(project: Workspace, texts: Mapping[Path, str], file: Path, edits: set[Edit]) -> None:
-    """Check that as many values as before lead to elements, in the file and, if it is xacro, in its expansions."""
+    """Check that the edits keep the number of references to elements in the file.
+
+    For a xacro file, check its expansions, too.
+    """
     text = project.text(file, texts) or ""
-    pairs = [(text, edited(text, edits))]
+    pairs = [(text, apply_edits(text, edits))]
     if file.name.endswith(".xacro"):
         proof = ExpansionProof(project, texts, file, is_partial=True)
         pairs += [(pair.text_before, pair.text_after) for pair in proof.pairs(edits)]
@@ -136,36 +139,36 @@ def _check(project: Workspace, texts: Mapping[Path, str], file: Path, edits: set
             raise UnprovedError(phrase("some references keep the old name"))
 
 
-def _defines(element: WrittenElement) -> bool:
+def _defines(element: SourceElement) -> bool:
     """Return whether an element belongs to a model or world, and not to a plugin or state."""
     parent = element.parent
-    if any(outer.name == "state" for outer in element.around()):
+    if any(outer.name == "state" for outer in element.ancestors_and_self()):
         return False
     return parent is not None and parent.name in _SCOPES
 
 
-def _scope(element: WrittenElement | None) -> WrittenElement | None:
+def _scope(element: SourceElement | None) -> SourceElement | None:
     """Return the innermost model or world that is or contains an element, or None."""
     while element is not None and element.name not in _SCOPES:
         element = element.parent
     return element
 
 
-def _named(scope: WrittenElement) -> Iterator[WrittenElement]:
+def _named_children(scope: SourceElement) -> Iterator[SourceElement]:
     return (child for child in scope.children if child.name in _DEFINING)
 
 
-def _references(element: WrittenElement, text: str) -> Iterator[tuple[str, int, WrittenElement]]:
+def _references(element: SourceElement, text: str) -> Iterator[tuple[str, int, SourceElement]]:
     """Yield the values of an element that may contain names, with offset and scope."""
     for attribute in element.tag.attributes():
         is_reference = attribute.name in _ATTRIBUTES or (element.name, attribute.name) == _MIMIC
         if is_reference and attribute.value:
-            own = element if attribute.name in _OF_OWN_SCOPE and element.name == "model" else None
+            own = element if attribute.name in _INNER_REFERENCES and element.name == "model" else None
             scope = own or _scope_of_place(element)
             if scope is not None:
                 yield attribute.value, attribute.value_start, scope
     if element.name in ("model", "link"):
-        yield from _of_state(element)
+        yield from _state_reference(element)
     is_named = element.name in _TEXTS or bool(kinds_of_text(element.name))
     if is_named and not element.children and not _defines(element) and element.end > 0:
         begin = element.tag.end
@@ -176,23 +179,23 @@ def _references(element: WrittenElement, text: str) -> Iterator[tuple[str, int, 
             yield value, begin + written.index(value), scope
 
 
-def _of_state(element: WrittenElement) -> Iterator[tuple[str, int, WrittenElement]]:
+def _state_reference(element: SourceElement) -> Iterator[tuple[str, int, SourceElement]]:
     """Yield the name of a model or link in the state of a world, as a use of that name."""
-    around = [*element.around()]
+    around = [*element.ancestors_and_self()]
     state = next((number for number, outer in enumerate(around) if outer.name == "state"), None)
     scope = None if state is None else _scope(around[state].parent)
     name = next((one for one in element.tag.attributes() if one.name == "name" and one.value), None)
     if state is None or scope is None or name is None:
         return
     for outer in reversed(around[1:state]):
-        found = next((one for one in _named(scope) if one.value("name") == outer.value("name")), None)
+        found = next((one for one in _named_children(scope) if one.value("name") == outer.value("name")), None)
         if found is None:
             return
         scope = found
     yield name.value or "", name.value_start, scope
 
 
-def _scope_of_place(element: WrittenElement) -> WrittenElement | None:
+def _scope_of_place(element: SourceElement) -> SourceElement | None:
     """Return the scope of an element's attributes, which is outside the model for its pose."""
     parent = element.parent
     if element.name == "pose" and parent is not None and parent.name == "model":
@@ -200,12 +203,16 @@ def _scope_of_place(element: WrittenElement) -> WrittenElement | None:
     return _scope(parent)
 
 
-def _path(scope: WrittenElement, value: str) -> Iterator[tuple[str, int, WrittenElement]]:
+def _referred_elements(scope: SourceElement, value: str) -> Iterator[tuple[str, int, SourceElement]]:
     """Yield the parts of a value that refer to elements, with the offset and the element."""
     offset = 0
-    current: WrittenElement | None = scope
+    current: SourceElement | None = scope
     for part in value.split(_SEPARATOR):
-        found = None if current is None else next((one for one in _named(current) if one.value("name") == part), None)
+        found = (
+            None
+            if current is None
+            else next((one for one in _named_children(current) if one.value("name") == part), None)
+        )
         if found is None:
             return
         yield part, offset, found
@@ -213,10 +220,10 @@ def _path(scope: WrittenElement, value: str) -> Iterator[tuple[str, int, Written
         current = found if found.name == "model" else None
 
 
-def _path_from_top(element: WrittenElement) -> tuple[str, ...] | None:
-    """Return the names from the outermost model to an element; None for names in a world."""
+def _path_from_top(element: SourceElement) -> tuple[str, ...] | None:
+    """Return the names from the outermost model to an element, or None for an element in a world."""
     names: list[str] = []
-    current: WrittenElement | None = element
+    current: SourceElement | None = element
     while current is not None and current.name != "sdf":
         if current.name == "world":
             return None
@@ -226,7 +233,7 @@ def _path_from_top(element: WrittenElement) -> tuple[str, ...] | None:
 
 
 def _edits_of_includer(text: str, file: Path, model: Path, path: tuple[str, ...], new: str) -> Iterator[Edit]:
-    """Yield the edits of a file that includes a model: values that lead through the include to the name.
+    """Yield the edits of references to a name in a model from a file that includes the model.
 
     Args:
         text: the text of the file.
@@ -237,7 +244,7 @@ def _edits_of_includer(text: str, file: Path, model: Path, path: tuple[str, ...]
     """
     if model.parent.name not in text and model.name not in text:
         return
-    elements = written_elements(text)
+    elements = source_elements(text)
     for include in elements:
         if include.name != "include" or not _includes(include, text, model):
             continue
@@ -253,11 +260,11 @@ def _edits_of_includer(text: str, file: Path, model: Path, path: tuple[str, ...]
                     yield Edit(file, begin, begin + len(names[-1]), new)
 
 
-def _includes(include: WrittenElement, text: str, model: Path) -> bool:
+def _includes(include: SourceElement, text: str, model: Path) -> bool:
     uri = _child_text(include, "uri", text).rstrip("/")
     return uri.rpartition("/")[2] in (model.parent.name, model.name) and real(model).is_file()
 
 
-def _child_text(element: WrittenElement, tag: str, text: str) -> str:
+def _child_text(element: SourceElement, tag: str, text: str) -> str:
     child = next((one for one in element.children if one.name == tag), None)
     return "" if child is None else text[child.tag.end : text.find("<", child.tag.end)].strip()

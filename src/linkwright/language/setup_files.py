@@ -80,7 +80,7 @@ def _program(text: Text, offset: int, folder: Path) -> Iterator[Completion]:
     if colon:
         file = module_file(folder, module.strip())
         names = _FUNCTION.findall(text_of(file)) if file is not None else []
-        for each in sorted(names, key=lambda each: each != "main"):
+        for each in sorted(names, key=lambda candidate: candidate != "main"):
             yield Completion(each, ItemKind.FUNCTION, offset - len(function.lstrip()), module)
     elif equals:
         modules = [*_modules(folder)]
@@ -93,15 +93,15 @@ def _program(text: Text, offset: int, folder: Path) -> Iterator[Completion]:
 
 
 def _arguments(document: Document, offset: int) -> Iterator[Completion]:
-    """Yield the arguments of ``setup`` that are not given yet."""
+    """Yield completions of the arguments of ``setup`` that the call does not have yet."""
     call = python_text(document.text).call_at(offset)
     typed = _WORD_BEFORE.search(document.text, document.text.rfind("\n", 0, offset) + 1, offset)
     start = offset if typed is None else typed.start()
     if call is None or call.function != "setup" or not document.text[:start].rstrip().endswith(("(", ",")):
         return
-    given = {item.keyword for item in call.items}
+    present = {item.keyword for item in call.items}
     for name, meaning in _ARGUMENTS.items():
-        if name not in given:
+        if name not in present:
             yield Completion(f"{name}=", ItemKind.ATTRIBUTE, start, "setup", meaning)
 
 

@@ -20,7 +20,7 @@ _SOURCES = (".py", ".cpp", ".hpp", ".cc", ".cxx", ".h")
 _MAX_FILES = 3000
 _MAX_TEXT = 300_000
 _SECONDS = 10.0
-"""How long the sources are used before they are searched and read again."""
+"""The time in seconds after which the sources are searched and read again."""
 _DECLARATION = re.compile(
     r"""declare_parameter\s{0,9}(?:<([\w:<> ]{1,80})>)?\s{0,9}\(\s{0,99}["']([\w.]+)["']"""
     r"""\s{0,99}(?:,\s{0,99}([^,()\n]{1,200}))?"""
@@ -83,7 +83,7 @@ class DeclaredTopic:
 
 
 class _Source(NamedTuple):
-    """A source that declares something.
+    """A source file with the parameters and topics that it declares.
 
     Attributes:
         text: its text.
@@ -139,7 +139,7 @@ def declared_topics(document: Document, folder: Path) -> list[DeclaredTopic]:
 
 
 def _known(document: Document) -> dict[Path, _Source]:
-    """Return the sources that declare something."""
+    """Return the source files that declare parameters or topics, by path."""
     sources = _sources.get(document.project)
     if sources is not None and time.monotonic() - sources.time <= _SECONDS:
         return sources.found

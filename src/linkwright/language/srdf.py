@@ -9,7 +9,7 @@ from itertools import islice
 from pathlib import Path
 
 from linkwright.language.completion import Completion, ItemKind
-from linkwright.language.cursor import Cursor, Spot, cursor_at
+from linkwright.language.cursor import Cursor, CursorSyntax, cursor_at
 from linkwright.language.definitions import NameDefinition, NameKind
 from linkwright.language.format import Document, Format, Target
 from linkwright.language.grammar import rule_at
@@ -59,10 +59,10 @@ class _Semantics:
         """The descriptions of the robot, found by MoveIt's Setup Assistant or the robot's name."""
         project, file = self.document.project, self.document.file
         package = enclosing_package(file.parent)
-        found = [*self._of_assistant(package[1])] if package is not None else []
+        found = [*self._setup_assistant_descriptions(package[1])] if package is not None else []
         named = _ROBOT.search(self.document.text)
         name = named[1] if named is not None else ""
-        beside = project.neighbours(file, ())
+        beside = project.package_neighbors(file, ())
         for other in dict.fromkeys((*beside, *project.index.files)):
             head = _ROBOT.search(self.document.other(other)[:_LONGEST_HEAD]) if name else None
             if head is not None and head[1] == name and not is_srdf(other):
@@ -71,7 +71,7 @@ class _Semantics:
         words = {attribute.value or "" for token in tokens(self.document.text) for attribute in token.attributes()}
         return [*islice(dict.fromkeys(found or mentioned_robots(self.document, words) or whole), _MAX_ROBOTS)]
 
-    def _of_assistant(self, folder: Path) -> Iterator[Path]:
+    def _setup_assistant_descriptions(self, folder: Path) -> Iterator[Path]:
         for found in _ASSISTANT.finditer(text_of(folder / ".setup_assistant")):
             share = self.document.finder.find(found[1])
             if share is not None and (share / found[2]).is_file():
@@ -100,7 +100,7 @@ class _Semantics:
 
 def _rule_of(cursor: Cursor) -> AttributeRule | None:
     """Return the rule of the attribute whose value is at a cursor, or None."""
-    if cursor.spot is not Spot.VALUE or cursor.attribute is None:
+    if cursor.syntax is not CursorSyntax.VALUE or cursor.attribute is None:
         return None
     rule = rule_at(SRDF, cursor.tags)
     return None if rule is None else rule.attribute_rules.get(cursor.attribute.name)
@@ -122,9 +122,9 @@ def _complete(document: Document, offset: int) -> Iterator[Completion]:
         yield Completion(choice, ItemKind.VALUE, start)
     if rule.type in (LINK, JOINT):
         kind = NameKind.LINK if rule.type is LINK else NameKind.JOINT
-        given = _names_beside(document.text, offset) if rule.name == "name" else set()
+        present = _names_beside(document.text, offset) if rule.name == "name" else set()
         for name in semantics.parts(kind):
-            if name not in given:
+            if name not in present:
                 yield Completion(name, ItemKind.NAME, start, kind.value)
     elif _is_group(cursor, rule):
         for name, place in semantics.groups().items():
@@ -134,7 +134,7 @@ def _complete(document: Document, offset: int) -> Iterator[Completion]:
 
 def _names_beside(text: str, offset: int) -> set[str | None]:
     """Return the names of the siblings with the same tag as the element at an offset."""
-    around = Outline.of(text).around(offset)
+    around = Outline.of(text).elements_around(offset)
     inside = around[-2].children if len(around) > 1 else []
     others = (other for other in inside if other is not around[-1] and other.tag.name == around[-1].tag.name)
     return {attribute.value for other in others for attribute in other.tag.attributes() if attribute.name == "name"}

@@ -17,7 +17,7 @@ from linkwright.descriptions.argument_sets import compared_values
 from linkwright.diagnostics import LinkwrightError, Phrase, SourceText, Span
 from linkwright.language.includes import real
 from linkwright.language.workspace import Workspace
-from linkwright.language.written import innermost, written_elements
+from linkwright.language.written import innermost_element, source_elements
 from linkwright.xacro import Expansion, expand
 from linkwright.xacro.faults import Fault
 from linkwright.xmltree import Overlay, parse
@@ -56,7 +56,7 @@ class Trial:
     reason: Phrase | None = None
 
 
-def expanded(
+def expand_with_gaps(
     project: Workspace, texts: Mapping[Path, str], entry: Path, arguments: Mapping[str, str], gaps: Gaps | None = None
 ) -> Expansion:
     """Return the expansion of a description without some elements.
@@ -71,13 +71,13 @@ def expanded(
     Raises:
         LinkwrightError: the description cannot be expanded.
     """
-    blanked: dict[str | os.PathLike[str], str] = {str(path): text for path, text in texts.items()}
+    overlay_texts: dict[str | os.PathLike[str], str] = {str(path): text for path, text in texts.items()}
     for file, ranges in (gaps or {}).items():
-        blanked[str(file)] = without(project.text(file, texts) or "", ranges)
-    return expand(entry, arguments, packages=project.finder(entry), overlay=Overlay(blanked))
+        overlay_texts[str(file)] = blank_out(project.text(file, texts) or "", ranges)
+    return expand(entry, arguments, packages=project.finder(entry), overlay=Overlay(overlay_texts))
 
 
-def without(text: str, ranges: tuple[Range, ...]) -> str:
+def blank_out(text: str, ranges: tuple[Range, ...]) -> str:
     """Replace some ranges of a text with spaces, and keep its length and lines."""
     for start, end in ranges:
         blank = "".join(letter if letter == "\n" else " " for letter in text[start:end])
@@ -99,9 +99,9 @@ def trials(
     """
     distinct: dict[tuple[str, frozenset[str]], Trial] = {}
     error: LinkwrightError | None = None
-    for arguments, _ in project.calls(entry):
+    for arguments, _ in project.argument_calls(entry):
         try:
-            expansion = expanded(project, texts, entry, arguments)
+            expansion = expand_with_gaps(project, texts, entry, arguments)
         except LinkwrightError as reason:  # noqa: PERF203 - each may fail for itself
             error = reason
         else:
@@ -118,7 +118,7 @@ def _with_gaps(project: Workspace, texts: Mapping[Path, str], entry: Path) -> It
     """Yield at most `_MAX_WITH_GAPS` expansions without the failing elements."""
     count = 0
     for arguments in project.possible_arguments(entry):
-        trial = _repaired(project, texts, entry, arguments)
+        trial = _trial_with_gaps(project, texts, entry, arguments)
         if trial is not None:
             yield trial
             count += 1
@@ -126,34 +126,36 @@ def _with_gaps(project: Workspace, texts: Mapping[Path, str], entry: Path) -> It
             return
 
 
-def _repaired(project: Workspace, texts: Mapping[Path, str], entry: Path, arguments: Mapping[str, str]) -> Trial | None:
+def _trial_with_gaps(
+    project: Workspace, texts: Mapping[Path, str], entry: Path, arguments: Mapping[str, str]
+) -> Trial | None:
     """Return an expansion without the failing elements, or None if the description has none."""
     gaps: dict[Path, tuple[Range, ...]] = {}
     reason: Phrase | None = None
-    given = dict(arguments)
+    values = dict(arguments)
     for _ in range(_MAX_GAPS):
         try:
-            return Trial(entry, given, expanded(project, texts, entry, given, gaps), gaps, reason)
+            return Trial(entry, values, expand_with_gaps(project, texts, entry, values, gaps), gaps, reason)
         except (Fault, RecursionError):
             return None
         except LinkwrightError as raised:
             error = raised
-        undeclared = [one for one in error.diagnostics if one.code == _UNDECLARED]
+        undeclared = [diagnostic for diagnostic in error.diagnostics if diagnostic.code == _UNDECLARED]
         names = [str(name) for one in undeclared if (name := one.message.arguments.get("name"))]
-        added = {name: _PLACEHOLDERS[0] for name in names if name not in given}
+        added = {name: _PLACEHOLDERS[0] for name in names if name not in values}
         if added:
-            given |= added
+            values |= added
             continue
         first = error.diagnostics[0]
-        numbers = {name: _PLACEHOLDERS[1] for name, value in given.items() if value == _PLACEHOLDERS[0]}
+        numbers = {name: _PLACEHOLDERS[1] for name, value in values.items() if value == _PLACEHOLDERS[0]}
         if not gaps and numbers and not first.code.startswith(("PKG", "XML")):
-            given |= numbers
+            values |= numbers
             continue
-        place = None if first.span is None else _element_around(project, texts, first.span, gaps)
-        if place is None:
+        element_range = None if first.span is None else _element_around(project, texts, first.span, gaps)
+        if element_range is None:
             return None
         reason = reason or first.message
-        gaps[place[0]] = (*gaps.get(place[0], ()), place[1])
+        gaps[element_range[0]] = (*gaps.get(element_range[0], ()), element_range[1])
     return None
 
 
@@ -164,7 +166,7 @@ def _element_around(project: Workspace, texts: Mapping[Path, str], span: Span, g
     if text is None:
         return None
     offset = SourceText(span.file, text).offset(span.line, span.column)
-    element = innermost(written_elements(text), offset)
+    element = innermost_element(source_elements(text), offset)
     if element is None or element.parent is None or element.end < 0:
         return None
     place = element.start, element.end
@@ -172,7 +174,7 @@ def _element_around(project: Workspace, texts: Mapping[Path, str], span: Span, g
 
 
 def _switched(project: Workspace, texts: Mapping[Path, str], base: Trial, known: set[str]) -> Iterator[Trial]:
-    """Yield the other expansions that result from another value of a single argument."""
+    """Yield the new expansions that result from another value of a single argument."""
     begin = time.monotonic()
     for name, value in _values(project, texts, base.entry):
         if base.arguments.get(name) == value:
@@ -181,7 +183,7 @@ def _switched(project: Workspace, texts: Mapping[Path, str], base: Trial, known:
             return
         arguments = {**base.arguments, name: value}
         try:
-            expansion = expanded(project, texts, base.entry, arguments, base.gaps)
+            expansion = expand_with_gaps(project, texts, base.entry, arguments, base.gaps)
         except (LinkwrightError, Fault, RecursionError):
             continue
         text = str(expansion)
@@ -198,10 +200,10 @@ def _values(project: Workspace, texts: Mapping[Path, str], entry: Path) -> list[
         text = project.text(file, texts) or ""
         for token in tokens(text):
             if token.kind is Kind.START and token.name == "xacro:arg":
-                given = {attribute.name: attribute.value or "" for attribute in token.attributes()}
-                opposite = _OPPOSITES.get(given.get("default", "").strip())
-                if opposite is not None and given.get("name"):
-                    values[given["name"], opposite] = None
+                attributes = {attribute.name: attribute.value or "" for attribute in token.attributes()}
+                opposite = _OPPOSITES.get(attributes.get("default", "").strip())
+                if opposite is not None and attributes.get("name"):
+                    values[attributes["name"], opposite] = None
         try:
             documents.append(parse(text, str(file)))
         except LinkwrightError:

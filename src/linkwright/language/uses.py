@@ -47,7 +47,10 @@ def uses_at(document: Document, known: Format, offset: int, *, in_file: bool = F
 
 
 def _documents(document: Document, file: Path) -> Iterator[Document]:
-    """Yield a document, a file, and the launch files of their packages that mention the file."""
+    """Yield a document and a file. For a launch file, also yield launch files that mention it.
+
+    These are the launch files in the packages of both.
+    """
     others: list[Path] = []
     if is_launch_file_name(file.name) or file.name.endswith(".launch"):
         packages = (enclosing_package(path.parent) for path in (document.file, file))

@@ -1,4 +1,4 @@
-"""The expansion of a description that may contain errors."""
+"""The expansion of a description, or of its valid parts if it contains errors."""
 
 from __future__ import annotations
 

@@ -43,7 +43,7 @@ class ValuedText:
 
 
 def values_in(project: Workspace, texts: Mapping[Path, str], file: Path) -> list[ValuedText]:
-    """Return the texts with expressions in a file, in no particular order.
+    """Return the values of the texts with expressions in a file, in no particular order.
 
     Args:
         project: the workspace.
@@ -52,7 +52,9 @@ def values_in(project: Workspace, texts: Mapping[Path, str], file: Path) -> list
     """
     overlay = Overlay({str(path): text for path, text in texts.items()})
     found: dict[tuple[int, int], ValuedText] = {}
-    calls = ((entry, values) for entry in project.index.entries(file, texts) for values, _ in project.calls(entry))
+    calls = (
+        (entry, values) for entry in project.index.entries(file, texts) for values, _ in project.argument_calls(entry)
+    )
     for _, (entry, values) in zip(range(_MAX_EXPANSIONS), calls, strict=False):
         inputs = Inputs(str(entry), values, project.finder(entry), overlay=overlay)
         for expression in evaluated_expressions(inputs):
@@ -69,7 +71,7 @@ def value_at(texts: Sequence[ValuedText], offset: int) -> ValuedText | None:
     return min(around, key=lambda text: text.end - text.start, default=None)
 
 
-def whole_texts(texts: Sequence[ValuedText]) -> Iterator[ValuedText]:
+def outermost_texts(texts: Sequence[ValuedText]) -> Iterator[ValuedText]:
     """Yield the texts that are not part of another text, in text order.
 
     Args:
@@ -89,31 +91,31 @@ def short_values(text: ValuedText) -> str:
     return _shortened(shown)
 
 
-def described_values(text: ValuedText, written: str) -> str:
+def describe_values(text: ValuedText, source: str) -> str:
     """Return the values of a text in Markdown, each with its macro calls or arguments.
 
     Args:
         text: the text.
-        written: its characters.
+        source: its characters.
     """
-    places: dict[tuple[str, str], list[tuple[Evaluation, Mapping[str, str]]]] = {}
+    groups: dict[tuple[str, str], list[tuple[Evaluation, Mapping[str, str]]]] = {}
     for evaluation, arguments in text.evaluations:
         names = ", ".join(f"`{name}` = `{value}`" for name, value in evaluation.names[:_SHOWN_NAMES])
-        places.setdefault((evaluation.value, names), []).append((evaluation, arguments))
-    if len(places) == 1:
-        ((value, names),) = places
-        return f"`{written}` = `{value}`" + (f" ({names})" if names else "")
+        groups.setdefault((evaluation.value, names), []).append((evaluation, arguments))
+    if len(groups) == 1:
+        ((value, names),) = groups
+        return f"`{source}` = `{value}`" + (f" ({names})" if names else "")
     lines = [
         f"- `{value}`{_origin(evaluations)}" + (f" ({names})" if names else "")
-        for (value, names), evaluations in [*places.items()][:_SHOWN_VALUES]
+        for (value, names), evaluations in [*groups.items()][:_SHOWN_VALUES]
     ]
-    if len(places) > _SHOWN_VALUES:
+    if len(groups) > _SHOWN_VALUES:
         lines.append("- ...")
-    return f"`{written}`\n\n" + "\n".join(lines)
+    return f"`{source}`\n\n" + "\n".join(lines)
 
 
 def _origin(evaluations: Sequence[tuple[Evaluation, Mapping[str, str]]]) -> str:
-    """Return the macro calls that lead to a value, and the arguments unless the defaults do."""
+    """Return the macro calls that lead to a value, and the arguments if the defaults do not."""
     calls = [call for call in dict.fromkeys(_call(evaluation.frame) for evaluation, _ in evaluations) if call]
     origin = f" {', '.join(calls[:_SHOWN_CALLS])}" + (", ..." if len(calls) > _SHOWN_CALLS else "")
     arguments = evaluations[0][1]

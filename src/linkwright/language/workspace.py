@@ -23,7 +23,7 @@ from linkwright.xmltree import Overlay
 from linkwright.xmltree.decoding import decode
 from linkwright.xmltree.reader import read_bytes
 
-_CALLERS = (
+_CHECK_INPUTS = (
     ".py",
     ".launch",
     ".launch.xml",
@@ -71,7 +71,7 @@ class Workspace:
     Attributes:
         folders: the folders.
         index: the descriptions in the folders.
-        kept: results about files that are kept until a file changes, each with the versions of the open texts.
+        cached_results: results about files until a file changes, each with the versions of the open texts.
     """
 
     def __init__(self, folders: Iterable[Path]) -> None:
@@ -81,13 +81,13 @@ class Workspace:
         self._names: dict[Path, tuple[int, tuple[NameDefinition, ...]]] = {}
         self._results: dict[Path, _Result] = {}
         self._robots: dict[Path, tuple[Mapping[Path, int], Robot | None]] = {}
-        self.kept: dict[tuple[str, Path], tuple[Mapping[Path, int], object]] = {}
+        self.cached_results: dict[tuple[str, Path], tuple[Mapping[Path, int], object]] = {}
 
     def file_saved(self, file: Path) -> None:
         """Update the stored results after a file on the disk was changed, created or removed."""
         self._robots.clear()
-        self.kept.clear()
-        if file.name.endswith(_CALLERS):
+        self.cached_results.clear()
+        if file.name.endswith(_CHECK_INPUTS):
             self._checker = Checker(folders=self.folders)
 
     def finder(self, file: Path) -> PackageFinder:
@@ -116,7 +116,7 @@ class Workspace:
         except OSError:
             return False
 
-    def calls(self, entry: Path) -> list[tuple[Mapping[str, str], Span | None]]:
+    def argument_calls(self, entry: Path) -> list[tuple[Mapping[str, str], Span | None]]:
         """Return the argument sets of a description, each with its call, or None for defaults."""
         return [({}, None), *self._checker.calls(entry, self.index.packages)]
 
@@ -139,7 +139,7 @@ class Workspace:
         found = (path for folder in self.folders for path in walk(folder, suffixes)[0])
         return [*dict.fromkeys(map(real, found))]
 
-    def neighbours(self, file: Path, known: Container[Path]) -> list[Path]:
+    def package_neighbors(self, file: Path, known: Container[Path]) -> list[Path]:
         """Return the descriptions in a file's package, except known ones."""
         package = enclosing_package(file.parent)
         if package is None:

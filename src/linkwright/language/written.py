@@ -12,7 +12,7 @@ MACRO = "xacro:macro"
 
 
 @dataclass(slots=True, eq=False)
-class WrittenElement:
+class SourceElement:
     """An element as written in a text.
 
     Attributes:
@@ -23,8 +23,8 @@ class WrittenElement:
     """
 
     tag: Token
-    parent: WrittenElement | None = None
-    children: list[WrittenElement] = field(default_factory=list)
+    parent: SourceElement | None = None
+    children: list[SourceElement] = field(default_factory=list)
     end: int = -1
 
     @property
@@ -37,41 +37,43 @@ class WrittenElement:
         """The character offset of the start tag."""
         return self.tag.start
 
-    def around(self) -> Iterator[WrittenElement]:
+    def ancestors_and_self(self) -> Iterator[SourceElement]:
         """Yield the element and the elements around it, the root last."""
-        current: WrittenElement | None = self
+        current: SourceElement | None = self
         while current is not None:
             yield current
             current = current.parent
 
     @property
-    def top(self) -> WrittenElement | None:
+    def top(self) -> SourceElement | None:
         """The child of the root that is or contains the element, or None for the root."""
-        chain = [*self.around()]
+        chain = [*self.ancestors_and_self()]
         return chain[-2] if len(chain) > 1 else None
 
     @property
-    def macro(self) -> WrittenElement | None:
+    def macro(self) -> SourceElement | None:
         """The innermost macro definition around the element, or None."""
-        return next((element for element in self.around() if element.name == MACRO and element is not self), None)
+        return next(
+            (element for element in self.ancestors_and_self() if element.name == MACRO and element is not self), None
+        )
 
-    def child_of(self, outer: WrittenElement) -> WrittenElement:
+    def child_of(self, outer: SourceElement) -> SourceElement:
         """Return the child of an outer element that is or contains this element."""
-        return next(element for element in self.around() if element.parent is outer)
+        return next(element for element in self.ancestors_and_self() if element.parent is outer)
 
     def value(self, attribute: str) -> str:
         """Return the value of an attribute as written, or empty if it is missing."""
-        return next((one.value or "" for one in self.tag.attributes() if one.name == attribute), "")
+        return next((candidate.value or "" for candidate in self.tag.attributes() if candidate.name == attribute), "")
 
 
 @lru_cache(maxsize=1)
-def written_elements(text: str) -> Sequence[WrittenElement]:
+def source_elements(text: str) -> Sequence[SourceElement]:
     """Return all elements of a text in the order of their start tags, cached for the last text."""
-    elements: list[WrittenElement] = []
-    current: WrittenElement | None = None
+    elements: list[SourceElement] = []
+    current: SourceElement | None = None
     for token in tokens(text):
         if token.kind is Kind.START and token.name:
-            element = WrittenElement(token, current)
+            element = SourceElement(token, current)
             elements.append(element)
             if current is not None:
                 current.children.append(element)
@@ -80,18 +82,18 @@ def written_elements(text: str) -> Sequence[WrittenElement]:
             else:
                 current = element
         elif token.kind is Kind.END and current is not None:
-            closed = next((outer for outer in current.around() if outer.name == token.name), None)
+            closed = next((outer for outer in current.ancestors_and_self() if outer.name == token.name), None)
             if closed is not None:
                 closed.end = token.end
                 current = closed.parent
     return elements
 
 
-def innermost(elements: Sequence[WrittenElement], offset: int) -> WrittenElement | None:
+def innermost_element(elements: Sequence[SourceElement], offset: int) -> SourceElement | None:
     """Return the smallest element around an offset, or None.
 
     Args:
-        elements: the elements of a text, as `written_elements` returns them.
+        elements: the elements of a text, as `source_elements` returns them.
         offset: the character offset.
     """
     around = [element for element in elements if element.start <= offset < element.end]

@@ -1,6 +1,6 @@
 """The content of the YAML files that properties load.
 
-It is found without an expansion, because a half-typed file cannot be expanded.
+The description is not expanded, because a file that is being typed often has errors.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ def yaml_value(document: Document, name: str, names: Sequence[NameDefinition]) -
         name: the property.
         names: the names that the files of the description define.
     """
-    written, file = _written(name, NameKind.PROPERTY, names)
+    written, file = _definition_of(name, NameKind.PROPERTY, names)
     found = _LOADED.search(written)
     if found is None or file is None:
         return None
@@ -50,7 +50,7 @@ def yaml_value(document: Document, name: str, names: Sequence[NameDefinition]) -
     return value
 
 
-def _written(name: str, kind: NameKind, names: Sequence[NameDefinition]) -> tuple[str, Path | None]:
+def _definition_of(name: str, kind: NameKind, names: Sequence[NameDefinition]) -> tuple[str, Path | None]:
     """Return the value of a property or argument as written, and the file that defines it."""
     found = next((each for each in names if each.kind is kind and each.name == name), None)
     return ("", None) if found is None else (found.detail, found.file)
@@ -66,7 +66,7 @@ def _replaced(text: str, file: Path, document: Document, names: Sequence[NameDef
         if part[1] == "dirname":
             return str(file.parent)
         kind = NameKind.ARGUMENT if part[1] == "arg" else NameKind.PROPERTY
-        written, _ = _written(part[2] or part[3], kind, names)
+        written, _ = _definition_of(part[2] or part[3], kind, names)
         return written or part[0]
 
     for _ in range(_DEEPEST):

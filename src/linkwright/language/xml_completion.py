@@ -6,8 +6,8 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from linkwright.diagnostics import phrase
 from linkwright.diagnostics.translation import localized
-from linkwright.language.completion import Completion, ItemKind, most_used, of_kind
-from linkwright.language.cursor import Cursor, Spot, cursor_at
+from linkwright.language.completion import Completion, ItemKind, definitions_of_kind, sorted_by_use
+from linkwright.language.cursor import Cursor, CursorSyntax, cursor_at
 from linkwright.language.definitions import NameDefinition, NameKind
 from linkwright.language.format import Document
 from linkwright.language.grammar import PREFIX, XACRO, has_xacro, root_of, rule_at
@@ -37,18 +37,18 @@ def _complete(document: Document, offset: int, names: Sequence[NameDefinition]) 
     if root is None:
         return
     cursor = cursor_at(document.text, offset)
-    if cursor.spot is Spot.TEXT and cursor.tags:
+    if cursor.syntax is CursorSyntax.TEXT and cursor.tags:
         rule = rule_at(root, cursor.tags, cursor.elements)
         yield from complete_text(document, cursor, rule, names)
         if cursor.typed.strip() or (rule is not None and rule.text is not None and not rule.child_rules):
             return
-    if cursor.spot is Spot.TAG or (cursor.spot is Spot.TEXT and not cursor.typed.strip()):
+    if cursor.syntax is CursorSyntax.TAG or (cursor.syntax is CursorSyntax.TEXT and not cursor.typed.strip()):
         yield from _elements(document, cursor, root, names)
-    elif cursor.spot is Spot.CLOSING_TAG and cursor.tags:
+    elif cursor.syntax is CursorSyntax.CLOSING_TAG and cursor.tags:
         yield Completion(cursor.tags[-1], ItemKind.ELEMENT, offset - len(cursor.typed))
-    elif cursor.spot is Spot.ATTRIBUTE:
+    elif cursor.syntax is CursorSyntax.ATTRIBUTE:
         yield from _attributes(cursor, root, names)
-    elif cursor.spot is Spot.VALUE:
+    elif cursor.syntax is CursorSyntax.VALUE:
         rule = None if cursor.tags[-1].startswith(PREFIX) else rule_at(root, cursor.tags, cursor.elements)
         yield from complete_value(document, cursor, rule, names)
 
@@ -59,23 +59,23 @@ def _complete(document: Document, offset: int, names: Sequence[NameDefinition]) 
 def _elements(
     document: Document, cursor: Cursor, root: ElementRule, names: Sequence[NameDefinition]
 ) -> Iterator[Completion]:
-    opens = cursor.spot is Spot.TEXT
-    start = cursor.offset if opens else cursor.offset - len(cursor.typed)
-    mark = "<" if opens else ""
+    opens_tag = cursor.syntax is CursorSyntax.TEXT
+    start = cursor.offset if opens_tag else cursor.offset - len(cursor.typed)
+    mark = "<" if opens_tag else ""
     rule = rule_at(root, cursor.tags, cursor.elements)
     in_macro_alone = bool(cursor.tags) and rule is None and all(tag.startswith(PREFIX) for tag in cursor.tags[1:])
     if not cursor.tags:
         offered: Iterable[ElementRule] = [root]
     else:
         offered = (rule or (root if in_macro_alone else None) or ElementRule("", "")).child_rules.values()
-    given = _given_elements(document.text, cursor) if cursor.tags else frozenset()
-    free = [child for child in offered if child.many or child.tag not in given]
+    present = _present_elements(document.text, cursor) if cursor.tags else frozenset()
+    free = [child for child in offered if child.many or child.tag not in present]
     for child in sorted(free, key=lambda child: not child.required):
         snippet = mark + _element_snippet(child)
         yield Completion(child.tag, ItemKind.ELEMENT, start, _unit_of(child), describe_element(child), snippet)
     if not cursor.tags or not has_xacro(root):
         return
-    for macro in most_used(of_kind(names, NameKind.MACRO), document.text):
+    for macro in sorted_by_use(definitions_of_kind(names, NameKind.MACRO), document.text):
         label = PREFIX + macro.name
         described = f"`{macro.detail}`\n\n{macro.file.name}" if macro.detail else macro.file.name
         yield Completion(label, ItemKind.MACRO, start, _one_line(macro.detail), described, mark + _call_snippet(macro))
@@ -83,7 +83,7 @@ def _elements(
         yield Completion(tag.tag, ItemKind.ELEMENT, start, "xacro", describe_element(tag), mark + _element_snippet(tag))
 
 
-def _given_elements(text: str, cursor: Cursor) -> frozenset[str]:
+def _present_elements(text: str, cursor: Cursor) -> frozenset[str]:
     """Return the existing child elements around a cursor, without the one being typed."""
     inside = Outline.of(text).elements
     around: OutlineElement | None = None
@@ -109,23 +109,27 @@ def _escaped(text: str) -> str:
 
 
 def _element_snippet(rule: ElementRule) -> str:
-    wanted = [attribute for attribute in rule.attributes if attribute.required or attribute.usual]
-    written = "".join(f' {attribute.name}="${{{number}}}"' for number, attribute in enumerate(wanted, 1))
+    shown = [attribute for attribute in rule.attributes if attribute.required or attribute.usual]
+    attributes_text = "".join(f' {attribute.name}="${{{number}}}"' for number, attribute in enumerate(shown, 1))
     if rule.text is not None and not rule.children:
         default = f":{_escaped(rule.text.default)}" if rule.text.default and len(rule.text.default) < 40 else ""
-        return f"{rule.tag}{written}>${{{len(wanted) + 1}{default}}}</{rule.tag}>"
+        return f"{rule.tag}{attributes_text}>${{{len(shown) + 1}{default}}}</{rule.tag}>"
     has_content = bool(rule.child_rules) or rule.tag in ("xacro:macro", "xacro:if", "xacro:unless")
-    return f"{rule.tag}{written}>$0</{rule.tag}>" if has_content else f"{rule.tag}{written}/>$0"
+    return f"{rule.tag}{attributes_text}>$0</{rule.tag}>" if has_content else f"{rule.tag}{attributes_text}/>$0"
 
 
 def _call_snippet(macro: NameDefinition) -> str:
     parameters = macro_parameters(macro)
-    written = "".join(
+    attributes_text = "".join(
         f' {parameter.name}="${{{number}}}"'
-        for number, parameter in enumerate((each for each in parameters if _is_required(each)), 1)
+        for number, parameter in enumerate((parameter_ for parameter_ in parameters if _is_required(parameter_)), 1)
     )
     tag = PREFIX + macro.name
-    return f"{tag}{written}>$0</{tag}>" if any(each.is_block for each in parameters) else f"{tag}{written}/>$0"
+    return (
+        f"{tag}{attributes_text}>$0</{tag}>"
+        if any(each.is_block for each in parameters)
+        else f"{tag}{attributes_text}/>$0"
+    )
 
 
 def _is_required(parameter: Parameter) -> bool:
@@ -138,14 +142,14 @@ def _is_required(parameter: Parameter) -> bool:
 def _attributes(cursor: Cursor, root: ElementRule, names: Sequence[NameDefinition]) -> Iterator[Completion]:
     tag = cursor.tags[-1]
     start = cursor.offset - len(cursor.typed)
-    given = {attribute.name for attribute in cursor.token.attributes()} if cursor.token else set()
-    given.discard(cursor.attribute.name if cursor.attribute else "")
+    present = {attribute.name for attribute in cursor.token.attributes()} if cursor.token else set()
+    present.discard(cursor.attribute.name if cursor.attribute else "")
     suffix = "" if cursor.attribute is not None and cursor.attribute.value is not None else '="$1"$0'
     if tag.startswith(PREFIX) and tag not in XACRO:
         macro = called_macro(tag, names)
         parameters = () if macro is None else macro_parameters(macro)
         for parameter in sorted(parameters, key=lambda parameter: not _is_required(parameter)):
-            if not parameter.is_block and parameter.name not in given and macro is not None:
+            if not parameter.is_block and parameter.name not in present and macro is not None:
                 yield Completion(
                     parameter.name,
                     ItemKind.ATTRIBUTE,
@@ -156,7 +160,7 @@ def _attributes(cursor: Cursor, root: ElementRule, names: Sequence[NameDefinitio
                 )
         return
     rule = XACRO.get(tag) or rule_at(root, cursor.tags, cursor.elements)
-    free = [] if rule is None else [attribute for attribute in rule.attributes if attribute.name not in given]
+    free = [] if rule is None else [attribute for attribute in rule.attributes if attribute.name not in present]
     for attribute in sorted(free, key=lambda attribute: (not attribute.required, not attribute.usual)):
         yield _attribute(attribute, start, suffix)
 

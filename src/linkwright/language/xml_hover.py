@@ -6,14 +6,14 @@ import math
 from collections.abc import Sequence
 
 from linkwright.diagnostics.translation import localized
-from linkwright.language.cursor import Cursor, Spot, cursor_at, name_at
+from linkwright.language.cursor import Cursor, CursorSyntax, cursor_at, name_at
 from linkwright.language.definitions import NameDefinition
-from linkwright.language.expression_completion import FUNCTIONS, XACRO_FUNCTIONS, parameters_in_scope, purpose_of
+from linkwright.language.expression_completion import FUNCTIONS, XACRO_FUNCTIONS, function_purpose, parameters_in_scope
 from linkwright.language.extension_schema import HARDWARE_PLUGIN, PARAMETER_NAME
 from linkwright.language.format import Document
 from linkwright.language.grammar import PREFIX, XACRO, root_of, rule_at
 from linkwright.language.hardware_plugins import hardware_parameters, hardware_plugins
-from linkwright.language.hover import Explanation, definitions_at, described_name
+from linkwright.language.hover import Explanation, definitions_at, describe_name
 from linkwright.language.parameters import called_macro, macro_parameters
 from linkwright.language.simulator_plugins import SimulatorPlugin, plugin_of
 from linkwright.language.xml_completion import describe_parameter
@@ -35,15 +35,15 @@ def explain_at(document: Document, offset: int, names: Sequence[NameDefinition] 
     if found:
         name = name_at(text, offset)
         start, end = (name[1], name[1] + len(name[0])) if name else (offset, offset)
-        return Explanation("\n\n".join(map(described_name, found)), start, end)
+        return Explanation("\n\n".join(map(describe_name, found)), start, end)
     root = root_of(document.file)
     if root is None:
         return None
-    if cursor.spot is Spot.TEXT:
+    if cursor.syntax is CursorSyntax.TEXT:
         return _explain_text(document, cursor, root)
     if cursor.token is None:
         return None
-    if cursor.spot is Spot.TAG:
+    if cursor.syntax is CursorSyntax.TAG:
         tags, elements = (*cursor.tags, cursor.token.name), (*cursor.elements, cursor.token)
         rule = XACRO.get(cursor.token.name) or rule_at(root, tags, elements)
         start = cursor.token.name_start
@@ -69,8 +69,8 @@ def _explain_attribute(
     if attribute is None:
         return None
     value = cursor.attribute.value or ""
-    if cursor.spot is Spot.VALUE:
-        known = _explained_value(document, cursor, attribute, value)
+    if cursor.syntax is CursorSyntax.VALUE:
+        known = _explain_value(document, cursor, attribute, value)
         if known:
             return Explanation(known, start, end)
         angles = _in_degrees(cursor, attribute, value)
@@ -81,8 +81,10 @@ def _explain_attribute(
 
 def _in_degrees(cursor: Cursor, rule: AttributeRule, value: str) -> str:
     """Return the angles of a value in degrees, or empty if it contains other quantities or expressions."""
-    given = {each.name: each.value for element in cursor.elements[-2:-1] for each in element.attributes()}
-    if rule.unit != "rad" and (rule.unit != "rad or m" or given.get("type") == "prismatic"):
+    parent_attributes = {
+        attribute.name: attribute.value for element in cursor.elements[-2:-1] for attribute in element.attributes()
+    }
+    if rule.unit != "rad" and (rule.unit != "rad or m" or parent_attributes.get("type") == "prismatic"):
         return ""
     try:
         angles = [math.degrees(float(word)) for word in value.split()]
@@ -91,12 +93,12 @@ def _in_degrees(cursor: Cursor, rule: AttributeRule, value: str) -> str:
     return f"{value.strip()} rad = {' '.join(f'{angle:.4g}°' for angle in angles)}" if any(angles) else ""
 
 
-def _explained_value(document: Document, cursor: Cursor, rule: AttributeRule, value: str) -> str:
+def _explain_value(document: Document, cursor: Cursor, rule: AttributeRule, value: str) -> str:
     """Return the explanation of a simulator plugin or hardware parameter, or empty."""
     if cursor.tags[-1] == "plugin" and rule.name in ("filename", "name"):
         given = {each.name: each.value or "" for each in cursor.elements[-1].attributes()}
         plugin = plugin_of(given.get("filename", ""), given.get("name", ""))
-        return "" if plugin is None else described_plugin(plugin)
+        return "" if plugin is None else describe_plugin(plugin)
     if rule.type is PARAMETER_NAME and "hardware" in cursor.tags:
         plugin_name = hardware_of(document.text, element_at(document.text, cursor.elements[:-1]))
         parameter = hardware_parameters(document, plugin_name).get(value)
@@ -104,7 +106,7 @@ def _explained_value(document: Document, cursor: Cursor, rule: AttributeRule, va
     return ""
 
 
-def described_plugin(plugin: SimulatorPlugin) -> str:
+def describe_plugin(plugin: SimulatorPlugin) -> str:
     """Return the purpose and the parameters of a simulator plugin in Markdown."""
     name = plugin.class_name or plugin.filename
     parameters = ", ".join(f"`{child.tag}`" for child in plugin.rule.children)
@@ -134,7 +136,7 @@ def _explain_text(document: Document, cursor: Cursor, root: ElementRule) -> Expl
 
 def _explain_word(cursor: Cursor) -> Explanation | None:
     """Explain the macro parameter or function at a cursor in an expression, or return None."""
-    if cursor.spot is not Spot.VALUE or not cursor.in_expression or cursor.token is None:
+    if cursor.syntax is not CursorSyntax.VALUE or not cursor.is_in_expression or cursor.token is None:
         return None
     found = name_at(cursor.token.text, cursor.offset - cursor.token.start)
     if found is None:
@@ -144,5 +146,5 @@ def _explain_word(cursor: Cursor) -> Explanation | None:
     if parameter is not None:
         default = "" if parameter.default is None else f" = `{parameter.default}`"
         return Explanation(f"**parameter {parameter.name}**{default}", start, start + len(word))
-    purpose = XACRO_FUNCTIONS.get(word) or (purpose_of(word) if word in FUNCTIONS else "")
+    purpose = XACRO_FUNCTIONS.get(word) or (function_purpose(word) if word in FUNCTIONS else "")
     return Explanation(f"`{word}`: {purpose}", start, start + len(word)) if purpose else None

@@ -8,14 +8,14 @@ from pathlib import Path
 
 from linkwright.diagnostics import phrase
 from linkwright.diagnostics.translation import localized
-from linkwright.language.completion import Completion, ItemKind, most_used, of_kind
+from linkwright.language.completion import Completion, ItemKind, definitions_of_kind, sorted_by_use
 from linkwright.language.cursor import Cursor
 from linkwright.language.definitions import NameDefinition, NameKind
 from linkwright.language.expression_completion import (
     blocks_in_scope,
     complete_expression,
     complete_substitution,
-    packages,
+    package_completions,
 )
 from linkwright.language.extension_schema import (
     HARDWARE_PLUGIN,
@@ -85,7 +85,11 @@ def complete_value(
         rule: the rule of the element, or None.
         names: the names that the files of the description define.
     """
-    if cursor.attribute is None or cursor.token is None or (yield from _computed(document, cursor, names)):
+    if (
+        cursor.attribute is None
+        or cursor.token is None
+        or (yield from _expression_completions(document, cursor, names))
+    ):
         return
     start, tag, name = cursor.offset - len(cursor.typed), cursor.tags[-1], cursor.attribute.name
     if tag == "plugin" and rule is not None:
@@ -94,20 +98,20 @@ def complete_value(
     if (tag, name) == ("xacro:insert_block", "name"):
         for block in blocks_in_scope(cursor):
             yield Completion(block.name.lstrip("*"), ItemKind.NAME, start, "block")
-        for name_of_block in of_kind([name for name in names if not name.detail], NameKind.PROPERTY):
+        for name_of_block in definitions_of_kind([name for name in names if not name.detail], NameKind.PROPERTY):
             yield Completion(name_of_block.name, ItemKind.NAME, start, "block", name_of_block.file.name)
         return
     attribute = None if rule is None else rule.attribute_rules.get(name)
-    yield from _offer(_CHOICES.get((tag, name), ()), start)
+    yield from _value_completions(_CHOICES.get((tag, name), ()), start)
     if attribute is not None:
-        yield from _of_type(document, cursor, attribute, start, names)
+        yield from _type_completions(document, cursor, attribute, start, names)
     kinds = kinds_of_reference(tag, name)
     if (tag, name) == ("joint", "name") and "ros2_control" in cursor.tags:
         kinds = (NameKind.JOINT,)
-    yield from _parts_of(document, cursor, kinds, start, names)
+    yield from _name_completions(document, cursor, kinds, start, names)
     if name in _PATH_ATTRIBUTES:
         yield from complete_path(document, cursor.typed, cursor.offset, _ENDINGS.get(tag, ()), names)
-    yield from _given(cursor.attribute.value, attribute, start)
+    yield from _default_completion(cursor.attribute.value, attribute, start)
 
 
 def complete_text(
@@ -125,25 +129,27 @@ def complete_text(
         names: the names that the files of the description define.
     """
     tag, typed = cursor.tags[-1], cursor.typed.lstrip()
-    if "\n" in typed or (yield from _computed(document, cursor, names)):
+    if "\n" in typed or (yield from _expression_completions(document, cursor, names)):
         return
     if rule is not None and rule.text is None and tag not in _PATH_TAGS:
         return
     start = cursor.offset - len(typed)
     text = None if rule is None else rule.text
     if tag == "output_type":
-        yield from _offer(_OUTPUT_TYPES, start)
+        yield from _value_completions(_OUTPUT_TYPES, start)
     if text is not None:
-        yield from _of_type(document, cursor, text, start, names)
-    yield from _parts_of(document, cursor, kinds_of_text(tag), start, names)
+        yield from _type_completions(document, cursor, text, start, names)
+    yield from _name_completions(document, cursor, kinds_of_text(tag), start, names)
     if tag in _PATH_TAGS:
         yield from complete_path(document, typed, cursor.offset, _ENDINGS.get(tag, ()), names)
-    yield from _given(None, text, start)
+    yield from _default_completion(None, text, start)
 
 
-def _computed(document: Document, cursor: Cursor, names: Sequence[NameDefinition]) -> Generator[Completion, None, bool]:
+def _expression_completions(
+    document: Document, cursor: Cursor, names: Sequence[NameDefinition]
+) -> Generator[Completion, None, bool]:
     """Yield the completions in an expression or substitution, and return whether there is one."""
-    if cursor.in_expression:
+    if cursor.is_in_expression:
         yield from complete_expression(document, cursor, names)
         return True
     if cursor.substitution is not None:
@@ -152,21 +158,21 @@ def _computed(document: Document, cursor: Cursor, names: Sequence[NameDefinition
     return False
 
 
-def _offer(values: Iterable[str], start: int, detail: str = "") -> Iterator[Completion]:
+def _value_completions(values: Iterable[str], start: int, detail: str = "") -> Iterator[Completion]:
     for value in values:
         yield Completion(value, ItemKind.VALUE, start, detail)
 
 
-def _given(written: str | None, rule: AttributeRule | None, start: int) -> Iterator[Completion]:
-    """Yield the default of a value, unless the value equals the default."""
-    if rule is not None and rule.default and rule.default != written and rule.type is not TRUTH:
+def _default_completion(value: str | None, rule: AttributeRule | None, start: int) -> Iterator[Completion]:
+    """Yield the default of a rule, unless the value equals it or the rule is a boolean."""
+    if rule is not None and rule.default and rule.default != value and rule.type is not TRUTH:
         yield Completion(rule.default, ItemKind.VALUE, start, localized(phrase("default")))
 
 
 # --- values by their type ---------------------------------------------------------------------------------------------
 
 
-def _of_type(
+def _type_completions(
     document: Document,
     cursor: Cursor,
     rule: AttributeRule,
@@ -175,12 +181,12 @@ def _of_type(
 ) -> Iterator[Completion]:
     kind = rule.type
     if kind is JOINT_TYPE:
-        yield from _offer(JOINT_TYPES, start)
+        yield from _value_completions(JOINT_TYPES, start)
     elif " | " in kind.name:
-        yield from _offer(kind.name.split(" | "), start)
+        yield from _value_completions(kind.name.split(" | "), start)
     elif kind is TRUTH:
         for word in ("true", "false"):
-            yield from _offer((word,), start, localized(phrase("default")) if word == rule.default else "")
+            yield from _value_completions((word,), start, localized(phrase("default")) if word == rule.default else "")
     elif kind is HARDWARE_PLUGIN:
         for name, about in hardware_plugins(document).items():
             yield Completion(name, ItemKind.VALUE, start, "", about)
@@ -189,31 +195,31 @@ def _of_type(
     elif kind is PARAMETER_NAME:
         yield from _parameters(document, cursor, start)
     elif kind in _KINDS_OF_TYPES:
-        yield from _parts_of(document, cursor, _KINDS_OF_TYPES[kind], start, names)
+        yield from _name_completions(document, cursor, _KINDS_OF_TYPES[kind], start, names)
 
 
 def _interfaces(document: Document, cursor: Cursor, start: int) -> Iterator[Completion]:
     """Yield the names of interfaces that the component does not have yet."""
-    around = element_at(document.text, cursor.elements[:-1])
+    component = element_at(document.text, cursor.elements[:-1])
     tag = cursor.tags[-1]
-    others = [] if around is None else [each for each in around.children if each.tag.name == tag]
+    others = [] if component is None else [each for each in component.children if each.tag.name == tag]
     given = {_attribute(each.tag, "name") for each in others if each.tag.start != cursor.elements[-1].start}
     is_joint = len(cursor.tags) < 2 or cursor.tags[-2] == "joint"
-    usual = INTERFACES if is_joint else (*_written(document.text, tag), *INTERFACES)
-    yield from _offer((name for name in dict.fromkeys(usual) if name not in given), start)
+    likely = INTERFACES if is_joint else (*_names_in_text(document.text, tag), *INTERFACES)
+    yield from _value_completions((name for name in dict.fromkeys(likely) if name not in given), start)
 
 
-def _written(text: str, tag: str) -> list[str]:
+def _names_in_text(text: str, tag: str) -> list[str]:
     return re.findall(rf"""<{tag}\s[^<>]{{0,99}}?\bname\s*=\s*["']([\w./-]+)["']""", text)
 
 
 def _parameters(document: Document, cursor: Cursor, start: int) -> Iterator[Completion]:
     """Yield the parameters of hardware or of an interface."""
-    around = element_at(document.text, cursor.elements[:-1])
-    others = [] if around is None else [child for child in around.children if child.tag.name == "param"]
+    component = element_at(document.text, cursor.elements[:-1])
+    others = [] if component is None else [child for child in component.children if child.tag.name == "param"]
     given = {_attribute(each.tag, "name") for each in others if each.tag.start != cursor.elements[-1].start}
     if cursor.tags[-2:-1] == ("hardware",):
-        plugin = hardware_of(document.text, around)
+        plugin = hardware_of(document.text, component)
         for parameter in hardware_parameters(document, plugin, start).values():
             if parameter.name not in given:
                 yield Completion(parameter.name, ItemKind.ATTRIBUTE, start, plugin, parameter.meaning)
@@ -245,18 +251,18 @@ def _attribute(token: Token, name: str) -> str:
 # --- names ------------------------------------------------------------------------------------------------------------
 
 
-def _parts_of(
+def _name_completions(
     document: Document,
     cursor: Cursor,
     kinds: Sequence[NameKind],
     start: int,
     names: Sequence[NameDefinition],
 ) -> Iterator[Completion]:
-    """Yield the names of some kinds: expanded names and, in a macro, names as written."""
+    """Yield completions of names of some kinds: expanded names and, in a macro, names as written."""
     if not kinds:
         return
     expanded = [name for name in part_names(document) if name.kind in kinds]
-    written = [name for kind in kinds for name in most_used(of_kind(names, kind), document.text)]
+    written = [name for kind in kinds for name in sorted_by_use(definitions_of_kind(names, kind), document.text)]
     near = [name for name in written if name.file == document.file]
     in_macro = cursor.macro is not None
     patterns = [name for name in near if "$" in name.name]
@@ -278,22 +284,22 @@ def _simulator_plugin(document: Document, cursor: Cursor, start: int) -> Iterato
     if name == "filename":
         named = plugin_of("", class_name)
         for plugin in ([] if named is None else [named]) + plugins:
-            spelt = _spelt(plugin.filename, cursor.typed)
+            spelt = _spelled(plugin.filename, cursor.typed)
             yield Completion(spelt, ItemKind.VALUE, start, plugin.class_name, plugin.about)
     elif name == "name":
         known = plugin_of(library)
         if known is not None and known.class_name:
-            yield Completion(_spelt(known.class_name, cursor.typed), ItemKind.VALUE, start, library, known.about)
+            yield Completion(_spelled(known.class_name, cursor.typed), ItemKind.VALUE, start, library, known.about)
         elif known is not None:
             yield Completion(known.library.removeprefix("gazebo_ros_"), ItemKind.VALUE, start, library, known.about)
         for plugin in plugins:
             if plugin.class_name and (known is None or not known.is_classic):
                 yield Completion(
-                    _spelt(plugin.class_name, cursor.typed), ItemKind.VALUE, start, plugin.filename, plugin.about
+                    _spelled(plugin.class_name, cursor.typed), ItemKind.VALUE, start, plugin.filename, plugin.about
                 )
 
 
-def _spelt(name: str, typed: str) -> str:
+def _spelled(name: str, typed: str) -> str:
     """Return the name of a plugin, with an old prefix such as ``ignition-gazebo-`` if typed."""
     if typed.startswith(("ign", "libign")):
         prefix = "lib" if typed.startswith("lib") else ""
@@ -318,11 +324,13 @@ def complete_path(
     """
     package = _PACKAGE.match(typed)
     if package is not None:
-        yield from packages(document, offset - len(package[2]))
+        yield from package_completions(document, offset - len(package[2]))
         return
     computed = _IN_EXPRESSION.match(typed)
     if computed is not None:
-        value = next((each.detail for each in of_kind(names, NameKind.PROPERTY) if each.name == computed[1]), "")
+        value = next(
+            (each.detail for each in definitions_of_kind(names, NameKind.PROPERTY) if each.name == computed[1]), ""
+        )
         typed = f"package://{value}/{typed[computed.end() :]}"
     inside = _PATH.match(typed)
     base, rest = (document.finder.find(inside[1]), inside[2]) if inside else (document.file.parent, typed)

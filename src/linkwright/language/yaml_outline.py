@@ -23,7 +23,7 @@ _KEY = lazy_pattern(r"""("(?:[^"\\\n]|\\.)*"|'[^'\n]*'|(?![\s#\[\]{},"'&!|>@`])[
 _BLOCK_TEXT = lazy_pattern(r"[|>][+-]?\d?[+-]?\s*$")
 
 
-class Place(Enum):
+class YamlPosition(Enum):
     """The kinds of cursor positions in a YAML text."""
 
     KEY = "key"
@@ -94,7 +94,9 @@ class YamlEntry:
         """Return the items of a flow or block list without quotes, each with its offset."""
         if self.value.startswith("["):
             return [*_flow_items(self.value, self.value_start)]
-        return [(unquoted(child.value), _inside(child)) for child in self.children if child.is_item and child.value]
+        return [
+            (unquoted(child.value), _content_start(child)) for child in self.children if child.is_item and child.value
+        ]
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,22 +104,22 @@ class YamlCursor:
     """A cursor position in a YAML text.
 
     Attributes:
-        place: the kind of position.
+        position: the kind of position.
         offset: the character offset.
-        within: the entry that contains the position; for a value, the entry with the value.
+        parent_entry: the entry that contains the position; for a value, the entry with the value.
         start: the offset at which the key or value at the cursor begins.
         typed: the part of the key or value before the cursor, without an opening quote.
         entry: the entry whose key is at the cursor, or None.
-        in_list: whether the value is an item of a list.
+        is_in_list: whether the value is an item of a list.
     """
 
-    place: Place
+    position: YamlPosition
     offset: int
-    within: YamlEntry
+    parent_entry: YamlEntry
     start: int
     typed: str = ""
     entry: YamlEntry | None = None
-    in_list: bool = False
+    is_in_list: bool = False
 
 
 class YamlOutline:
@@ -144,7 +146,7 @@ class YamlOutline:
         """Return the cursor at an offset."""
         start = self.text.rfind("\n", 0, offset) + 1
         line = self.text.count("\n", 0, start)
-        nothing = YamlCursor(Place.NOTHING, offset, self.root, offset)
+        nothing = YamlCursor(YamlPosition.NOTHING, offset, self.root, offset)
         if line >= len(self._last) or offset > self._comments.get(line, len(self.text)):
             return nothing
         last = self._last[line]
@@ -155,7 +157,12 @@ class YamlOutline:
         for entry in on_line:
             if entry.key and entry.start <= offset <= entry.start + _written_length(self.text, entry):
                 return YamlCursor(
-                    Place.KEY, offset, entry.parent or self.root, entry.start, self.text[entry.start : offset], entry
+                    YamlPosition.KEY,
+                    offset,
+                    entry.parent or self.root,
+                    entry.start,
+                    self.text[entry.start : offset],
+                    entry,
                 )
             if offset > entry.start and (not entry.key or offset >= entry.value_start) and entry.value_start <= offset:
                 return self._in_value(entry, offset)
@@ -170,7 +177,7 @@ class YamlOutline:
         is_word = entry.is_item and not entry.value.startswith(("[", "{", '"', "'"))
         siblings = [child for child in (entry.parent or self.root).children if child is not entry]
         if is_word and any(child.children for child in siblings):
-            return YamlCursor(Place.KEY, offset, entry, cursor.start, cursor.typed)
+            return YamlCursor(YamlPosition.KEY, offset, entry, cursor.start, cursor.typed)
         return cursor
 
     def _in_new_line(self, before: str, last: YamlEntry, line: int, offset: int) -> YamlCursor:
@@ -181,12 +188,12 @@ class YamlOutline:
         while within.parent is not None and (within.column >= column or (within.value and not within.is_item)):
             within = within.parent
         start = offset - len(typed)
-        lists = bool(within.children) and all(child.is_item for child in within.children) and within.key != ""
-        if lists and not typed.startswith("-"):
-            return YamlCursor(Place.NOTHING, offset, within, start)
+        is_list = bool(within.children) and all(child.is_item for child in within.children) and within.key != ""
+        if is_list and not typed.startswith("-"):
+            return YamlCursor(YamlPosition.NOTHING, offset, within, start)
         if typed.startswith("-"):
-            return YamlCursor(Place.VALUE, offset, within, offset, "", None, in_list=True)
-        return YamlCursor(Place.KEY, offset, within, start, typed.lstrip("\"'"))
+            return YamlCursor(YamlPosition.VALUE, offset, within, offset, "", None, is_in_list=True)
+        return YamlCursor(YamlPosition.KEY, offset, within, start, typed.lstrip("\"'"))
 
     def _before(self, last: YamlEntry, line: int) -> YamlEntry:
         while last.line >= line and last.parent is not None and line > 0:
@@ -227,7 +234,7 @@ class YamlOutline:
         for _ in range(_MAX_DASHES):
             rest = line[column:end]
             if rest.startswith("-") and rest[1:2] in ("", " ", "\t", "\r"):
-                _leave(stack, column, is_item=True)
+                _pop_to_column(stack, column, is_item=True)
                 width = len(rest) - len(rest[1:].lstrip(" \t"))
                 value = rest[width:].rstrip()
                 added = YamlEntry("", column, offset + column, value, offset + column + width, number, stack[-1])
@@ -240,7 +247,7 @@ class YamlOutline:
                 break
             if added is not None:
                 added.value = ""
-            _leave(stack, column, is_item=False)
+            _pop_to_column(stack, column, is_item=False)
             value = rest[match.end() :]
             space = len(value) - len(value.lstrip(" \t"))
             begin = offset + column + match.end() + space
@@ -273,7 +280,7 @@ def unquoted(text: str) -> str:
     return text[1:-1] if len(text) > 1 and text[0] == text[-1] and text[0] in "\"'" else text
 
 
-def _leave(stack: list[YamlEntry], column: int, *, is_item: bool) -> None:
+def _pop_to_column(stack: list[YamlEntry], column: int, *, is_item: bool) -> None:
     """Pop the entries that a line at a column does not belong to."""
     while stack[-1].column >= column:
         if is_item and stack[-1].column == column and stack[-1].key and not stack[-1].value:
@@ -352,7 +359,7 @@ def _flow_item(value: str, begin: int, end: int, start: int) -> Iterator[tuple[s
         yield unquoted(inner), start + begin + len(text) - len(text.lstrip()) + (1 if quoted else 0)
 
 
-def _inside(entry: YamlEntry) -> int:
+def _content_start(entry: YamlEntry) -> int:
     return entry.value_start + (1 if entry.value[:1] in ('"', "'") else 0)
 
 
@@ -395,11 +402,11 @@ def _value_cursor(text: str, entry: YamlEntry, offset: int) -> YamlCursor:
             key, colon, _ = text[start:offset].partition(":")
             if not colon:
                 start = max(start + len(key) - len(key.lstrip()), text.rfind("\n", 0, offset) + 1)
-                return YamlCursor(Place.KEY, offset, entry, start, key.strip())
+                return YamlCursor(YamlPosition.KEY, offset, entry, start, key.strip())
     start = max(start, text.rfind("\n", 0, offset) + 1)
     typed = text[start:offset]
     start += len(typed) - len(typed.lstrip())
     if text[start : start + 1] in ('"', "'") and offset > start:
         start += 1
     within = entry.parent if entry.is_item and entry.parent is not None else entry
-    return YamlCursor(Place.VALUE, offset, within, min(start, offset), text[start:offset], None, in_list)
+    return YamlCursor(YamlPosition.VALUE, offset, within, min(start, offset), text[start:offset], None, in_list)

@@ -15,7 +15,7 @@ _NAMING = ("Name", "name", "Class", "type", "plugin")
 
 
 def yaml_symbols(document: Document) -> list[Symbol]:
-    """Return the keys of a YAML text as symbols."""
+    """Return the keys and the list items with children of a YAML text as symbols."""
     outline = YamlOutline(document.text)
     count = sum(1 for _ in outline.root.all())
     depth = _MAX_DEPTH if count <= _MAX_SYMBOLS else 1

@@ -14,7 +14,7 @@ EXTENSIONS = frozenset({"gazebo", "transmission", "ros2_control", "sensor", "muj
 """Elements of other tools directly in ``<robot>``."""
 
 
-class Place(NamedTuple):
+class SchemaElement(NamedTuple):
     """An element that URDF defines, with its schema rule.
 
     Attributes:
@@ -52,7 +52,7 @@ class Structure:
         self._root = root
 
     @cached_property
-    def places(self) -> list[Place]:
+    def places(self) -> list[SchemaElement]:
         """The elements that URDF defines, in document order.
 
         The list is empty if the root is not a ``<robot>``.
@@ -60,7 +60,7 @@ class Structure:
         return self._classified_elements[0]
 
     @cached_property
-    def unknown_elements(self) -> list[tuple[Place, Element]]:
+    def unknown_elements(self) -> list[tuple[SchemaElement, Element]]:
         """The elements that URDF does not define in their parents, except elements of other tools.
 
         Elements of other namespaces are left out, too.
@@ -72,7 +72,7 @@ class Structure:
         ]
 
     @cached_property
-    def unknown_attributes(self) -> list[tuple[Place, str]]:
+    def unknown_attributes(self) -> list[tuple[SchemaElement, str]]:
         """The attributes that URDF does not define for their elements.
 
         Attributes of other namespaces are left out.
@@ -85,11 +85,11 @@ class Structure:
         ]
 
     @cached_property
-    def _classified_elements(self) -> tuple[list[Place], list[tuple[Place, Element]]]:
+    def _classified_elements(self) -> tuple[list[SchemaElement], list[tuple[SchemaElement, Element]]]:
         """The elements that URDF defines, and the unknown elements in them, both in document order."""
-        known_elements: list[Place] = []
-        unknown_elements: list[tuple[Place, Element]] = []
-        pending = [Place(self._root, schema.ROBOT, None, None)] if self._root.tag == schema.ROBOT.tag else []
+        known_elements: list[SchemaElement] = []
+        unknown_elements: list[tuple[SchemaElement, Element]] = []
+        pending = [SchemaElement(self._root, schema.ROBOT, None, None)] if self._root.tag == schema.ROBOT.tag else []
         while pending:
             schema_element = pending.pop()
             known_elements.append(schema_element)
@@ -100,12 +100,12 @@ class Structure:
                 if rule is None:
                     unknown_elements.append((schema_element, child))
                 else:
-                    children.append(Place(child, rule, element, owner or child))
+                    children.append(SchemaElement(child, rule, element, owner or child))
             pending.extend(reversed(children))
         return known_elements, unknown_elements
 
 
-def _is_expected(place: Place, child: Element) -> bool:
+def _is_expected(place: SchemaElement, child: Element) -> bool:
     if ":" in child.tag or (place.rule is schema.ROBOT and child.tag in EXTENSIONS):
         return True
     # The reader reports an unknown shape.

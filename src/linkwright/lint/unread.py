@@ -5,7 +5,7 @@ from __future__ import annotations
 from linkwright.diagnostics import Span, words_of
 from linkwright.diagnostics.misspellings import find_misspelt
 from linkwright.lint.extension_names import CHILDREN
-from linkwright.lint.structure import EXTENSIONS, Place
+from linkwright.lint.structure import EXTENSIONS, SchemaElement
 from linkwright.lint.subject import Subject
 from linkwright.schema import ElementRule
 from linkwright.urdf import schema
@@ -124,7 +124,7 @@ def is_misspelt(name: str, intended: str) -> bool:
     return find_misspelt(name, [intended]) is not None
 
 
-def intended_attribute(place: Place, attribute: str) -> str | None:
+def intended_attribute(place: SchemaElement, attribute: str) -> str | None:
     """Return the absent attribute that the author of an unknown attribute probably intended, or None."""
     absent_attributes = [rule.name for rule in place.rule.attributes if rule.name not in place.element.attributes]
     equivalent = _OTHER_ATTRIBUTES.get(attribute.casefold())
@@ -133,7 +133,7 @@ def intended_attribute(place: Place, attribute: str) -> str | None:
     return find_misspelt(attribute, absent_attributes)
 
 
-def location_phrase(place: Place) -> str:
+def location_phrase(place: SchemaElement) -> str:
     """Return the name of an element for messages, as the location of another element."""
     return "<robot>" if place.rule is schema.ROBOT else str(place)
 

@@ -19,7 +19,7 @@ def document_edits(server: LinkwrightServer, edits: Iterable[Edit]) -> types.Wor
     The editor rejects the edits if a file has another version.
     """
     changes: list[types.TextDocumentEdit | types.CreateFile | types.RenameFile | types.DeleteFile] = []
-    for file, own in groupby(sorted(edits), key=lambda edit: edit.file):
+    for file, file_edits in groupby(sorted(edits), key=lambda edit: edit.file):
         positions = server.positions(file)
         if positions is not None:
             uri = server.uri_of(file)
@@ -28,7 +28,7 @@ def document_edits(server: LinkwrightServer, edits: Iterable[Edit]) -> types.Wor
             changes.append(
                 types.TextDocumentEdit(
                     types.OptionalVersionedTextDocumentIdentifier(uri, version),
-                    [types.TextEdit(positions.range(edit.start, edit.end), edit.text) for edit in own],
+                    [types.TextEdit(positions.range(edit.start, edit.end), edit.text) for edit in file_edits],
                 )
             )
     return types.WorkspaceEdit(document_changes=changes)
@@ -49,7 +49,7 @@ def new_file_edit(uri: str, text: str) -> types.WorkspaceEdit:
         text: the text.
     """
     start = types.Range(types.Position(0, 0), types.Position(0, 0))
-    written = types.TextDocumentEdit(
+    insertion = types.TextDocumentEdit(
         types.OptionalVersionedTextDocumentIdentifier(uri, None), [types.TextEdit(start, text)]
     )
-    return types.WorkspaceEdit(document_changes=[types.CreateFile(uri), written])
+    return types.WorkspaceEdit(document_changes=[types.CreateFile(uri), insertion])

@@ -32,52 +32,52 @@ def make_server() -> LinkwrightServer:
 
     @server.feature(types.INITIALIZED)
     async def initialized(server: LinkwrightServer, _: types.InitializedParams) -> None:
-        server.begin(_folders(server))
+        server.open_folders(_folders(server))
         await watch_files(server)
 
     @server.feature(types.WORKSPACE_DID_CHANGE_WORKSPACE_FOLDERS)
     def did_change_workspace_folders(server: LinkwrightServer, _: types.DidChangeWorkspaceFoldersParams) -> None:
-        server.begin(_folders(server))
+        server.open_folders(_folders(server))
 
     @server.feature(types.SHUTDOWN)
     def shutdown(server: LinkwrightServer, _: None) -> None:
-        server.end()
+        server.stop()
 
     @server.feature(types.TEXT_DOCUMENT_DID_OPEN)
-    def did_open(server: LinkwrightServer, opened: types.DidOpenTextDocumentParams) -> None:
-        server.file_opened(opened.text_document.uri)
+    def did_open(server: LinkwrightServer, params: types.DidOpenTextDocumentParams) -> None:
+        server.file_opened(params.text_document.uri)
 
     @server.feature(types.TEXT_DOCUMENT_DID_CHANGE)
-    def did_change(server: LinkwrightServer, changed: types.DidChangeTextDocumentParams) -> None:
-        server.file_changed(changed.text_document.uri)
+    def did_change(server: LinkwrightServer, params: types.DidChangeTextDocumentParams) -> None:
+        server.file_changed(params.text_document.uri)
 
     @server.feature(types.TEXT_DOCUMENT_DID_CLOSE)
-    def did_close(server: LinkwrightServer, closed: types.DidCloseTextDocumentParams) -> None:
-        server.file_changed(closed.text_document.uri)
+    def did_close(server: LinkwrightServer, params: types.DidCloseTextDocumentParams) -> None:
+        server.file_changed(params.text_document.uri)
 
     @server.feature(types.TEXT_DOCUMENT_DID_SAVE)
-    def did_save(server: LinkwrightServer, saved: types.DidSaveTextDocumentParams) -> None:
-        server.file_saved(saved.text_document.uri)
+    def did_save(server: LinkwrightServer, params: types.DidSaveTextDocumentParams) -> None:
+        server.file_saved(params.text_document.uri)
 
     @server.feature(types.WORKSPACE_DID_CHANGE_WATCHED_FILES)
-    def did_change_watched_files(server: LinkwrightServer, watched: types.DidChangeWatchedFilesParams) -> None:
-        for change in watched.changes:
+    def did_change_watched_files(server: LinkwrightServer, params: types.DidChangeWatchedFilesParams) -> None:
+        for change in params.changes:
             server.file_saved(change.uri)
 
     @server.feature(types.WORKSPACE_DID_CREATE_FILES, _FILES_AND_FOLDERS)
-    def did_create_files(server: LinkwrightServer, created: types.CreateFilesParams) -> None:
-        for file in created.files:
+    def did_create_files(server: LinkwrightServer, params: types.CreateFilesParams) -> None:
+        for file in params.files:
             server.file_saved(file.uri)
 
     @server.feature(types.WORKSPACE_DID_RENAME_FILES, _FILES_AND_FOLDERS)
-    def did_rename_files(server: LinkwrightServer, renamed: types.RenameFilesParams) -> None:
-        for file in renamed.files:
+    def did_rename_files(server: LinkwrightServer, params: types.RenameFilesParams) -> None:
+        for file in params.files:
             server.file_saved(file.old_uri)
             server.file_saved(file.new_uri)
 
     @server.feature(types.WORKSPACE_DID_DELETE_FILES, _FILES_AND_FOLDERS)
-    def did_delete_files(server: LinkwrightServer, deleted: types.DeleteFilesParams) -> None:
-        for file in deleted.files:
+    def did_delete_files(server: LinkwrightServer, params: types.DeleteFilesParams) -> None:
+        for file in params.files:
             server.file_saved(file.uri)
 
     for requests in (

@@ -9,7 +9,7 @@ from lsprotocol import types
 
 from linkwright.diagnostics import Diagnostic, Severity, Span
 from linkwright.diagnostics.translation import localized
-from linkwright.lsp.positions import TextOf
+from linkwright.lsp.positions import PositionsOf
 from linkwright.lsp.rule_pages import page_uri
 
 _SEVERITIES = {
@@ -22,35 +22,39 @@ _START = types.Range(types.Position(0, 0), types.Position(0, 0))
 
 
 def as_diagnostics(
-    findings: Iterable[Diagnostic], positions: TextOf, uri: Callable[[Path], str], *, links_pages: bool = False
+    findings: Iterable[Diagnostic],
+    positions_of: PositionsOf,
+    uri_of: Callable[[Path], str],
+    *,
+    links_pages: bool = False,
 ) -> list[types.Diagnostic]:
-    """Convert the findings about a file.
+    """Convert the findings about a file to diagnostics of the protocol.
 
     Args:
         findings: the findings.
-        positions: the texts of files.
-        uri: returns the URI that the editor uses for a file.
+        positions_of: returns the positions of a file's text.
+        uri_of: returns the URI that the editor uses for a file.
         links_pages: whether the editor opens the page of a rule by its URI.
     """
-    diagnostics = [_diagnostic(finding, positions, uri) for finding in findings]
+    diagnostics = [_diagnostic(finding, positions_of, uri_of) for finding in findings]
     if links_pages:
         for diagnostic in diagnostics:
             diagnostic.code_description = types.CodeDescription(page_uri(str(diagnostic.code)))
     return diagnostics
 
 
-def _diagnostic(finding: Diagnostic, positions: TextOf, uri: Callable[[Path], str]) -> types.Diagnostic:
+def _diagnostic(finding: Diagnostic, positions_of: PositionsOf, uri_of: Callable[[Path], str]) -> types.Diagnostic:
     hint = f"\n{localized(finding.hint)}" if finding.hint else ""
     notes = [f"\n{localized(note.message)}" for note in finding.notes if note.span is None]
     related = [
         types.DiagnosticRelatedInformation(
-            types.Location(uri(Path(note.span.file)), _range(note.span, positions)), localized(note.message)
+            types.Location(uri_of(Path(note.span.file)), _range(note.span, positions_of)), localized(note.message)
         )
         for note in finding.notes
         if note.span is not None
     ]
     return types.Diagnostic(
-        _START if finding.span is None else _range(finding.span, positions),
+        _START if finding.span is None else _range(finding.span, positions_of),
         localized(finding.message) + hint + "".join(notes),
         _SEVERITIES[finding.severity],
         code=finding.code,
@@ -60,9 +64,9 @@ def _diagnostic(finding: Diagnostic, positions: TextOf, uri: Callable[[Path], st
     )
 
 
-def _range(span: Span, positions: TextOf) -> types.Range:
-    found = positions(Path(span.file))
-    return _START if found is None else found.range_of(span)
+def _range(span: Span, positions_of: PositionsOf) -> types.Range:
+    text_positions = positions_of(Path(span.file))
+    return _START if text_positions is None else text_positions.range_of(span)
 
 
 def _tags(finding: Diagnostic) -> list[types.DiagnosticTag]:

@@ -1,4 +1,4 @@
-"""The folders of an editor: the progress of the search, and changes to files on the disk."""
+"""Progress of long work in an editor, and notifications of changes to files on the disk."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ async def show_progress(server: LanguageServer, title: Phrase, work: asyncio.Fut
     token = str(uuid4())
     try:
         await server.work_done_progress.create_async(token)
-    except JsonRpcException:  # the editor does not want it
+    except JsonRpcException:  # the editor rejected the progress
         return
     server.work_done_progress.begin(token, types.WorkDoneProgressBegin(localized(title)))
     await asyncio.wait([work])

@@ -12,10 +12,12 @@ from linkwright.diagnostics import Diagnostic
 from linkwright.language.workspace import Workspace
 
 
-async def findings_apart(
+async def findings_of_process(
     folders: Iterable[Path], subject: Path, texts: Mapping[Path, str]
 ) -> tuple[Diagnostic, ...] | None:
-    """Check a description or package in a new process, which a cancellation kills.
+    """Check a description or package in a new process, and return the findings.
+
+    A cancellation kills the process.
 
     Args:
         folders: the folders of the workspace.

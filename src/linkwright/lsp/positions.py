@@ -18,7 +18,7 @@ _UNITS = {
 
 
 class TextPositions:
-    """Converts between character offsets of a text and positions of the protocol.
+    """The conversion between character offsets of a text and positions of the protocol.
 
     Args:
         text: the text.
@@ -62,5 +62,5 @@ class TextPositions:
         return types.Position(line - 1, units)
 
 
-TextOf = Callable[[Path], TextPositions | None]
-"""Returns the positions of a file's text, or None if the file cannot be read."""
+PositionsOf = Callable[[Path], TextPositions | None]
+"""A function that returns the positions of a file's text, or None if the file cannot be read."""

@@ -17,22 +17,28 @@ from pygls.workspace import TextDocument
 from linkwright.lint.targets import DESCRIPTIONS
 
 _ADDRESS = re.compile(rb"https?://\S+")
-_VALUE_FILES = (".yaml", ".yml")
+_LOADED_FILES = (".yaml", ".yml")
 """Endings of files that descriptions load."""
 
 
 class TextEditor(Protocol):
     """The editor to which a page reports selected elements and edits."""
 
-    def go_to(self, file: Path, line: int, column: int) -> None:
-        """Show an element that the user has selected in a page; the line and the column count from 1."""
+    def show_location(self, file: Path, line: int, column: int) -> None:
+        """Show the source of the element that the user has selected in a page.
 
-    def replace_text(self, file: Path, number: int, text: str) -> None:
+        Args:
+            file: the file.
+            line: the line, from 1.
+            column: the column, from 1.
+        """
+
+    def replace_text(self, file: Path, version: int, text: str) -> None:
         """Replace the text of a file in which the user has edited the robot in a page.
 
         Args:
             file: the file.
-            number: the version of the document that was edited, or 0 if the file was not open.
+            version: the version of the document that was edited, or 0 if the file was not open.
             text: the new text.
         """
 
@@ -47,11 +53,11 @@ class RobotView:
     def __init__(self, editor: TextEditor) -> None:
         self._editor = editor
         self._process: asyncio.subprocess.Process | None = None
-        self._reading: asyncio.Task[None] | None = None
+        self._reader_task: asyncio.Task[None] | None = None
         self._address: asyncio.Future[str | None] = asyncio.get_running_loop().create_future()
 
     async def start(self, file: Path) -> str | None:
-        """Start the process, and return the address of the page; None if the process has ended.
+        """Start the process, and return the address of its page, or None if the process ends first.
 
         Raises:
             OSError: the process cannot be started.
@@ -63,11 +69,11 @@ class RobotView:
             stderr=asyncio.subprocess.DEVNULL,
             env={**os.environ, "PYTHONSAFEPATH": "1"},  # a file queue.py of the workspace is not to be imported
         )
-        self._reading = asyncio.get_running_loop().create_task(self._read(self._process))
+        self._reader_task = asyncio.get_running_loop().create_task(self._read(self._process))
         return await self.address()
 
     async def address(self) -> str | None:
-        """Return the address of the page, once it is served; None if the process has ended."""
+        """Wait until the page is served, and return its address, or None if the process ends first."""
         return await asyncio.shield(self._address)
 
     @property
@@ -76,7 +82,7 @@ class RobotView:
         return self._process is not None and self._process.returncode is None
 
     def send(self, message: Mapping[str, Any]) -> None:
-        """Send a message, see `linkwright.hosting.text_editor`."""
+        """Send a message to the process, in the format of `linkwright.hosting.text_editor`."""
         if self._process is not None and self._process.stdin is not None and self.is_running:
             with suppress(OSError, RuntimeError):
                 self._process.stdin.write(json.dumps(message).encode() + b"\n")
@@ -93,25 +99,25 @@ class RobotView:
             async for line in process.stdout:
                 if line.startswith(b"{"):
                     self._receive(line)
-                elif not self._address.done() and (found := _ADDRESS.search(line)):
-                    self._address.set_result(found[0].decode())
+                elif not self._address.done() and (address := _ADDRESS.search(line)):
+                    self._address.set_result(address[0].decode())
         if not self._address.done():
             self._address.set_result(None)
 
     def _receive(self, line: bytes) -> None:
         with suppress(ValueError, KeyError, TypeError):
             message = json.loads(line)
-            if (place := message.get("open")) is not None:
-                self._editor.go_to(Path(place["file"]), int(place["line"]), int(place["column"]))
+            if (location := message.get("open")) is not None:
+                self._editor.show_location(Path(location["file"]), int(location["line"]), int(location["column"]))
             if (edit := message.get("edit")) is not None:
                 self._editor.replace_text(Path(edit["file"]), int(edit["number"]), str(edit["text"]))
 
 
 class RobotViews:
-    """The running pages, by description.
+    """The pages of an editor, one for each description.
 
     Attributes:
-        editor: the editor.
+        editor: the editor to which the pages report.
     """
 
     editor: TextEditor
@@ -120,31 +126,33 @@ class RobotViews:
         self._views: dict[Path, RobotView] = {}
 
     async def address(self, file: Path, documents: Mapping[Path, TextDocument]) -> str | None:
-        """Return the address of the page of a description; None if the page cannot be shown.
+        """Start the page of a description unless it runs, and return its address.
+
+        Returns None if the process of the page has ended.
 
         Args:
-            file: the description. Its page is started unless it runs.
+            file: the description.
             documents: the open documents.
 
         Raises:
             OSError: the process cannot be started.
         """
-        known = self._views.get(file)
-        if known is not None and known.is_running:
-            return await known.address()
+        view_of_file = self._views.get(file)
+        if view_of_file is not None and view_of_file.is_running:
+            return await view_of_file.address()
         view = self._views[file] = RobotView(self.editor)
         address = await view.start(file)
         view.send(_texts(documents))
         return address
 
     def text_changed(self, file: Path, document: TextDocument | None) -> None:
-        """Show the text of a file, or the file on the disk if it is not open."""
+        """Send the new text of a file to all pages. They read a closed file from the disk."""
         message = _texts({file: document})
         for view in self._views.values() if message["texts"] else ():
             view.send(message)
 
     def cursor_moved(self, file: Path, line: int) -> None:
-        """Select the element at a line, from 1."""
+        """Select the element at a line of a file in all pages. Lines count from 1."""
         for view in self._views.values():
             view.send({"cursor": {"file": str(file), "line": line}})
 
@@ -159,6 +167,6 @@ def _texts(documents: Mapping[Path, TextDocument | None]) -> dict[str, Any]:
         "texts": {
             str(file): None if document is None else {"number": document.version or 0, "text": document.source}
             for file, document in documents.items()
-            if file.name.endswith((*DESCRIPTIONS, *_VALUE_FILES))
+            if file.name.endswith((*DESCRIPTIONS, *_LOADED_FILES))
         }
     }

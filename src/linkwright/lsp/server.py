@@ -30,7 +30,7 @@ from linkwright.language.workspace import MAX_CHARACTERS, Workspace
 from linkwright.lint.targets import XML_FILES
 from linkwright.lsp.findings import as_diagnostics
 from linkwright.lsp.folders import show_progress
-from linkwright.lsp.large_files import findings_apart
+from linkwright.lsp.large_files import findings_of_process
 from linkwright.lsp.positions import UTF_16, TextPositions
 from linkwright.lsp.protocol import LeanProtocol
 from linkwright.lsp.robot_views import RobotViews
@@ -42,15 +42,15 @@ T = TypeVar("T")
 
 _log = logging.getLogger(__name__)
 _MAX_TEXTS = 200
-"""The number of files on the disk whose lines are stored, for the positions of findings."""
+"""The maximum number of saved texts that are stored, for the positions of findings."""
 _CACHE_DIVISOR = 8
 _CHECKS_PER_COLLECTION = 50
 _IDLE_SECONDS = 1.0
 """The time without a change after which the server collects garbage."""
 
 
-class FormattedText(NamedTuple):
-    """A text in a format with its own editor functions."""
+class FormatContext(NamedTuple):
+    """A document whose format has its own editor functions."""
 
     format: Format
     document: Document
@@ -69,22 +69,22 @@ class LinkwrightServer(LanguageServer):
         super().__init__("linkwright", __version__, protocol_cls=LeanProtocol)
         self.project: Workspace | None = None
         self._uris: dict[Path, str] = {}
-        self._files: dict[Path, tuple[int, TextPositions]] = {}
+        self._saved_texts: dict[Path, tuple[int, TextPositions]] = {}
         self._values: dict[Path, tuple[dict[Path, str], list[ValuedText]]] = {}
         self._changed: dict[Path, None] = {}
         self._has_changes = asyncio.Event()
         self._is_indexed = asyncio.Event()
-        self._thread = ThreadPoolExecutor(1, thread_name_prefix="check")
-        self._preparing: dict[Format, asyncio.Future[object]] = {}
-        self._background: dict[Path, list[Future[object]]] = {}
-        self._large: dict[Path, asyncio.Task[None]] = {}
-        self._work: asyncio.Task[None] | None = None
-        self._progress: asyncio.Task[None] | None = None
+        self._check_thread = ThreadPoolExecutor(1, thread_name_prefix="check")
+        self._preparations: dict[Format, asyncio.Future[object]] = {}
+        self._submitted_work: dict[Path, list[Future[object]]] = {}
+        self._large_checks: dict[Path, asyncio.Task[None]] = {}
+        self._check_loop: asyncio.Task[None] | None = None
+        self._progress_task: asyncio.Task[None] | None = None
         self.robot_views = RobotViews()
 
     # --- files ------------------------------------------------------------------------------------------------
 
-    def begin(self, folders: Iterable[Path]) -> None:
+    def open_folders(self, folders: Iterable[Path]) -> None:
         """Open the folders of the editor, and start to check changed files."""
         BoundedCache.divisor = _CACHE_DIVISOR
         self._cancel_checks()
@@ -96,23 +96,23 @@ class LinkwrightServer(LanguageServer):
             self._publish(previous.without_findings(), {})
             for uri in self.workspace.text_documents:
                 self.file_changed(uri)
-        self._work = asyncio.get_running_loop().create_task(self._check_changes(self.project))
+        self._check_loop = asyncio.get_running_loop().create_task(self._check_changes(self.project))
 
-    def end(self) -> None:
-        """Stop checking."""
+    def stop(self) -> None:
+        """Stop the checks, and end the pages of robots."""
         self._cancel_checks()
-        self._thread.shutdown(wait=False, cancel_futures=True)
+        self._check_thread.shutdown(wait=False, cancel_futures=True)
         self.robot_views.close()
 
     def file_opened(self, uri: str) -> None:
-        """Store the editor's URI of a file, and schedule a check of the file."""
+        """Store the URI of an opened file, schedule its check, and prepare its format."""
         path = path_of(uri)
         if path is not None:
             self._uris[real(path)] = uri
             self.file_changed(uri)
-            known = format_of(path)
-            if known is not None:
-                self._prepared(known)
+            format_ = format_of(path)
+            if format_ is not None:
+                self._preparation(format_)
             if len(self.workspace.text_documents[uri].source) > MAX_CHARACTERS:
                 notice = phrase(
                     "'{file}' is too large for completions and hovers: only its findings are shown", file=path.name
@@ -120,7 +120,7 @@ class LinkwrightServer(LanguageServer):
                 self.window_show_message(types.ShowMessageParams(types.MessageType.Info, localized(notice)))
 
     def file_changed(self, uri: str) -> None:
-        """Schedule a check of a file and of the descriptions that include it."""
+        """Schedule checks of a file and of the descriptions that include it, and update robot pages."""
         path = path_of(uri)
         if path is not None:
             self._changed[real(path)] = None
@@ -135,15 +135,21 @@ class LinkwrightServer(LanguageServer):
             self._values.clear()
             self.file_changed(uri)
 
-    def text(self, document: types.TextDocumentIdentifier) -> tuple[Path, TextPositions | None]:
-        """Return the path and the text of a document, with None unless it is readable XML of usual size."""
+    def xml_text(self, document: types.TextDocumentIdentifier) -> tuple[Path, TextPositions | None]:
+        """Return the path and the text of an XML document, with None if it is large or unreadable.
+
+        For other documents, the path is empty and the text is None.
+        """
         path = path_of(document.uri)
         if path is None or not path.name.endswith((*XML_FILES, ".xml")):
             return Path(), None
         return path, self._usual_positions(path)
 
-    def readable(self, document: types.TextDocumentIdentifier) -> tuple[Path, TextPositions | None]:
-        """Return the path and the text of a document, with None if it is large or its format is not supported."""
+    def supported_text(self, document: types.TextDocumentIdentifier) -> tuple[Path, TextPositions | None]:
+        """Return the path and the text of a document in a supported format.
+
+        The text is None if it is large or unreadable. For other documents, the path is empty and the text is None.
+        """
         path = path_of(document.uri)
         if path is None or (format_of(path) is None and not path.name.endswith((*XML_FILES, ".xml"))):
             return Path(), None
@@ -152,27 +158,27 @@ class LinkwrightServer(LanguageServer):
     async def when_prepared(self, path: Path) -> None:
         """Wait for the index, and for the imports that the format of a file needs."""
         await self.when_indexed()
-        known = format_of(path)
-        if known is not None:
-            await self._prepared(known)
+        format_ = format_of(path)
+        if format_ is not None:
+            await self._preparation(format_)
 
-    def _prepared(self, known: Format) -> asyncio.Future[object]:
-        """Return a future of the preparation of a format, which runs once in its own thread."""
-        work = self._preparing.get(known)
-        if work is None:
-            work = self._preparing[known] = asyncio.ensure_future(asyncio.to_thread(known.prepare))
-        return asyncio.shield(work)
+    def _preparation(self, format_: Format) -> asyncio.Future[object]:
+        """Return the future of a format's preparation, which is started once in its own thread."""
+        preparation = self._preparations.get(format_)
+        if preparation is None:
+            preparation = self._preparations[format_] = asyncio.ensure_future(asyncio.to_thread(format_.prepare))
+        return asyncio.shield(preparation)
 
-    async def formatted(self, document: types.TextDocumentIdentifier) -> FormattedText | None:
-        """Return a document like `document`, but wait for the index if its format needs it."""
-        found = self.document(document)
-        if found is not None and found.format.needs_index:
+    async def indexed_format_context(self, document: types.TextDocumentIdentifier) -> FormatContext | None:
+        """Return the result of `format_context`, after indexing if the format needs the index."""
+        context = self.format_context(document)
+        if context is not None and context.format.needs_index:
             await self.when_indexed()
-            found = self.document(document)
-        return found
+            context = self.format_context(document)
+        return context
 
-    def document(self, document: types.TextDocumentIdentifier) -> FormattedText | None:
-        """Return a document with its format, or None if it has no format, or is large or unreadable."""
+    def format_context(self, document: types.TextDocumentIdentifier) -> FormatContext | None:
+        """Return a document with its format, or None if it has no format of its own, or is large or unreadable."""
         path = path_of(document.uri)
         format_ = None if path is None else format_of(path)
         if path is None or format_ is None or self.project is None:
@@ -180,26 +186,26 @@ class LinkwrightServer(LanguageServer):
         positions = self._usual_positions(path)
         if positions is None:
             return None
-        return FormattedText(format_, Document(self.project, self.texts(), real(path), positions.text), positions)
+        return FormatContext(format_, Document(self.project, self.texts(), real(path), positions.text), positions)
 
-    async def names(self, path: Path) -> list[NameDefinition]:
+    async def defined_names(self, path: Path) -> list[NameDefinition]:
         """Wait for the index, and return the names that a file's descriptions define."""
         if self.project is None:
             return []
         await self.when_indexed()
         return self.project.names(real(path), self.texts())
 
-    async def values(self, path: Path) -> list[ValuedText]:
+    async def expression_values(self, path: Path) -> list[ValuedText]:
         """Wait for the index, and return the values of the expressions in a file."""
         project, file, texts = self.project, real(path), self.texts()
         if project is None:
             return []
         await self.when_indexed()
-        known = self._values.get(file)
-        if known is None or known[0] != texts:
-            known = texts, await self.in_thread(partial(values_in, project, texts, file))
-            self._values = {file: known}
-        return known[1]
+        cached = self._values.get(file)
+        if cached is None or cached[0] != texts:
+            cached = texts, await self.run_in_check_thread(partial(values_in, project, texts, file))
+            self._values = {file: cached}
+        return cached[1]
 
     def check_unchanged(self, path: Path, positions: TextPositions) -> None:
         """Check that a text has not changed during a request.
@@ -228,12 +234,12 @@ class LinkwrightServer(LanguageServer):
 
     @property
     def opens_virtual_documents(self) -> bool:
-        """Whether the client requests the content of virtual documents, and shows no empty file."""
+        """Whether the client supports virtual documents (``workspace/textDocumentContent``)."""
         workspace = self.client_capabilities.workspace
         return workspace is not None and workspace.text_document_content is not None
 
     async def when_indexed(self) -> None:
-        """Wait until the folders have been searched."""
+        """Wait until the folders have been searched for descriptions and packages."""
         await self._is_indexed.wait()
 
     def positions(self, path: Path) -> TextPositions | None:
@@ -245,15 +251,15 @@ class LinkwrightServer(LanguageServer):
             return TextPositions(self.workspace.text_documents[uri].source, encoding)
         try:
             changed_ns = file.stat().st_mtime_ns
-            known = self._files.get(file)
-            if known is None or known[0] != changed_ns:
-                known = changed_ns, TextPositions(decode(read_bytes(file), str(file)), encoding)
-                self._files[file] = known
-                if len(self._files) > _MAX_TEXTS:
-                    del self._files[next(iter(self._files))]
+            cached = self._saved_texts.get(file)
+            if cached is None or cached[0] != changed_ns:
+                cached = changed_ns, TextPositions(decode(read_bytes(file), str(file)), encoding)
+                self._saved_texts[file] = cached
+                if len(self._saved_texts) > _MAX_TEXTS:
+                    del self._saved_texts[next(iter(self._saved_texts))]
         except (OSError, LinkwrightError):
             return None
-        return known[1]
+        return cached[1]
 
     def _usual_positions(self, path: Path) -> TextPositions | None:
         """Return the positions of a file's text, or None if it is large or unreadable."""
@@ -266,21 +272,24 @@ class LinkwrightServer(LanguageServer):
         return self._uris.get(file) or file.as_uri()
 
     def texts(self) -> dict[Path, str]:
-        """Return the texts of the open files."""
+        """Return the texts of the open files, by path."""
         return {path: document.source for path, document in self.documents().items()}
 
     def documents(self) -> dict[Path, TextDocument]:
-        """Return the open documents."""
+        """Return the open documents, by path."""
         found = {path: self.workspace.text_documents.get(uri) for path, uri in self._uris.items()}
         return {path: document for path, document in found.items() if document is not None}
 
     # --- checks -----------------------------------------------------------------------------------------------
 
     async def _check_changes(self, project: Workspace) -> None:
-        """Check files as they change, the newest first, and each waiting subject once."""
+        """Search the folders, then check files as they change, the newest first.
+
+        A subject that waits for its check is checked once, however often it changes.
+        """
         search = asyncio.ensure_future(self._attempt(project.index.refresh, Path()))
         title = phrase("Linkwright: searching the folders for robot descriptions")
-        self._progress = asyncio.ensure_future(show_progress(self, title, search))
+        self._progress_task = asyncio.ensure_future(show_progress(self, title, search))
         await search
         self._is_indexed.set()
         pending: dict[Path, set[Path]] = {}
@@ -288,7 +297,7 @@ class LinkwrightServer(LanguageServer):
         while True:
             # An expansion leaves its garbage in the oldest generation (see `seldom_collected`).
             if check_count >= _CHECKS_PER_COLLECTION or (check_count and not pending and await self._is_idle()):
-                await self.in_thread(gc.collect)
+                await self.run_in_check_thread(gc.collect)
                 check_count = 0
             if not pending:
                 await self._has_changes.wait()
@@ -306,7 +315,7 @@ class LinkwrightServer(LanguageServer):
                 check_count += 1
 
     async def _is_idle(self) -> bool:
-        """Wait for a change, and return whether none has come for some time."""
+        """Return whether no file changes within `_IDLE_SECONDS`."""
         try:
             await asyncio.wait_for(self._has_changes.wait(), _IDLE_SECONDS)
         except asyncio.TimeoutError:
@@ -314,21 +323,26 @@ class LinkwrightServer(LanguageServer):
         return False
 
     async def _check(self, project: Workspace, subject: Path, texts: dict[Path, str], changed: set[Path]) -> None:
-        """Check one subject, and publish its findings; those of large files when another process has found them."""
+        """Check one subject, and publish its findings.
+
+        A subject with a large file is checked in another process, which does not delay other checks.
+        """
         if any(project.is_large(file, texts) for file in (subject, *changed)):
-            previous = self._large.get(subject)
+            previous = self._large_checks.get(subject)
             if previous is not None:
                 previous.cancel()
-            check = self._check_apart(project, subject, texts, changed)
-            self._large[subject] = asyncio.get_running_loop().create_task(check)
+            check = self._check_in_process(project, subject, texts, changed)
+            self._large_checks[subject] = asyncio.get_running_loop().create_task(check)
             return
         self._publish(await self._attempt(partial(project.check, subject, texts, changed), subject) or {}, texts)
 
-    async def _check_apart(self, project: Workspace, subject: Path, texts: dict[Path, str], changed: set[Path]) -> None:
-        """Check one subject in a process of its own, and publish its findings."""
-        findings = await findings_apart(project.folders, subject, texts)
-        if self._large.get(subject) is asyncio.current_task():
-            del self._large[subject]
+    async def _check_in_process(
+        self, project: Workspace, subject: Path, texts: dict[Path, str], changed: set[Path]
+    ) -> None:
+        """Check one subject in a separate process, and publish its findings."""
+        findings = await findings_of_process(project.folders, subject, texts)
+        if self._large_checks.get(subject) is asyncio.current_task():
+            del self._large_checks[subject]
         if findings is None:
             _log.error("The check of '%s' failed", subject)
             return
@@ -336,15 +350,15 @@ class LinkwrightServer(LanguageServer):
         self._publish(found or {}, texts)
 
     def _cancel_checks(self) -> None:
-        """Cancel the checks that run and those that wait."""
-        for check in (*self._large.values(), *((self._work,) if self._work is not None else ())):
+        """Cancel the running and the waiting checks."""
+        for check in (*self._large_checks.values(), *((self._check_loop,) if self._check_loop is not None else ())):
             check.cancel()
-        self._large.clear()
+        self._large_checks.clear()
 
-    def _publish(self, found: Mapping[Path, Sequence[Diagnostic]], texts: Mapping[Path, str]) -> None:
+    def _publish(self, findings_by_file: Mapping[Path, Sequence[Diagnostic]], texts: Mapping[Path, str]) -> None:
         """Publish the findings about files, except open files that have changed since the check."""
         positions = cache(self.positions)
-        for file, findings in found.items():
+        for file, findings in findings_by_file.items():
             uri = self.uri_of(file)
             document = self.workspace.text_documents.get(uri)
             if document is not None and texts.get(file) != document.source:
@@ -358,22 +372,22 @@ class LinkwrightServer(LanguageServer):
             )
 
     async def _attempt(self, work: Callable[[], T], about: Path) -> T | None:
-        """Return the result of work in the thread, or log an unexpected error and return None."""
+        """Return the result of work in the check thread, or log an unexpected error and return None."""
         try:
-            return await self.in_thread(work)
+            return await self.run_in_check_thread(work)
         except Exception:  # noqa: BLE001 - the editor continues to work, and the log has the reason
             _log.exception("The check of '%s' failed", about)
             return None
 
-    def in_background(self, work: Iterable[Callable[[], object]], about: Path) -> None:
+    def submit_to_check_thread(self, work: Iterable[Callable[[], object]], about: Path) -> None:
         """Submit work to the check thread, and replace waiting work about the same file."""
-        for waiting in self._background.pop(about, ()):
-            waiting.cancel()
-        self._background[about] = [self._thread.submit(each) for each in work]
+        for future in self._submitted_work.pop(about, ()):
+            future.cancel()
+        self._submitted_work[about] = [self._check_thread.submit(task) for task in work]
 
-    async def in_thread(self, work: Callable[[], T]) -> T:
-        """Return the result of work in the check thread, the only one that reads the workspace."""
-        return await asyncio.get_running_loop().run_in_executor(self._thread, work)
+    async def run_in_check_thread(self, work: Callable[[], T]) -> T:
+        """Return the result of work in the check thread, which does one task after the other."""
+        return await asyncio.get_running_loop().run_in_executor(self._check_thread, work)
 
 
 def path_of(uri: str) -> Path | None:

@@ -3,14 +3,22 @@
 Changes to links, joints, origins, masses and other parts are reported with their locations in both descriptions.
 """
 
-from linkwright.descriptions.comparison.compare import Comparison, Difference, Kind, Place, Side, Subject, compare
+from linkwright.descriptions.comparison.compare import (
+    Comparison,
+    Difference,
+    DifferenceLocation,
+    Kind,
+    Side,
+    Subject,
+    compare,
+)
 from linkwright.descriptions.comparison.report import as_data, as_text, sentence
 
 __all__ = [
     "Comparison",
     "Difference",
+    "DifferenceLocation",
     "Kind",
-    "Place",
     "Side",
     "Subject",
     "as_data",

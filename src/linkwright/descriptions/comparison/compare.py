@@ -33,7 +33,7 @@ _Part = TypeVar("_Part", Link, Joint)
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class DifferenceLocation:
     """The location of a difference.
 
     `calls` are the macro calls and includes that produced the element at this location, innermost first.
@@ -67,8 +67,8 @@ class Difference:
     old: str | None = None
     new: str | None = None
     unit: str = ""
-    old_place: Place | None = None
-    new_place: Place | None = None
+    old_place: DifferenceLocation | None = None
+    new_place: DifferenceLocation | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -366,7 +366,7 @@ def _named_differences(
 def _change(
     subject: Subject, name: str, fact: str, old: tuple[Fact | None, Block], new: tuple[Fact | None, Block]
 ) -> Difference:
-    def place(pair: tuple[Fact | None, Block]) -> Place | None:
+    def place(pair: tuple[Fact | None, Block]) -> DifferenceLocation | None:
         compared_fact, block = pair
         return (
             _location(block.element)
@@ -382,7 +382,7 @@ def _change(
     )
 
 
-def _location(element: Element | None, attribute: str = "") -> Place | None:
+def _location(element: Element | None, attribute: str = "") -> DifferenceLocation | None:
     """Return the location of an element or of one of its attributes, or None if unknown."""
     if element is None:
         return None
@@ -390,7 +390,7 @@ def _location(element: Element | None, attribute: str = "") -> Place | None:
     if span is None:
         return None
     calls = (frame.site.span() for frame in frames(element.origin if isinstance(element.origin, Frame) else None))
-    return Place(span, tuple(call for call in calls if call is not None))
+    return DifferenceLocation(span, tuple(call for call in calls if call is not None))
 
 
 def _mesh_elements(shapes: Sequence[Visual | Collision]) -> dict[str, Element | None]:

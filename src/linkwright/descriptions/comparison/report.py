@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from linkwright.descriptions.comparison.compare import Comparison, Difference, Place
+from linkwright.descriptions.comparison.compare import Comparison, Difference, DifferenceLocation
 from linkwright.diagnostics import Phrase, Span, counted, phrase, term
 from linkwright.diagnostics.translation import localized
 from linkwright.loading.lean_typing import Any
@@ -73,7 +73,7 @@ def as_data(comparison: Comparison, label: Label) -> list[dict[str, Any]]:
     ]
 
 
-def _place_data(place: Place | None, label: Label) -> dict[str, Any] | None:
+def _place_data(place: DifferenceLocation | None, label: Label) -> dict[str, Any] | None:
     if place is None:
         return None
     return {**_span_data(place.span, label), "calls": [_span_data(call, label) for call in place.calls]}
@@ -83,7 +83,7 @@ def _span_data(span: Span, label: Label) -> dict[str, Any]:
     return {"file": label(span.file), "line": span.line, "column": span.column}
 
 
-def _location_text(place: Place, label: Label) -> str:
+def _location_text(place: DifferenceLocation, label: Label) -> str:
     """Return a location as text, with the innermost call or include that produced the element.
 
     Outer calls are only in the data for programs.

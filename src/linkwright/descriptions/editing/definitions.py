@@ -8,7 +8,7 @@ from pathlib import Path
 
 import yaml
 
-from linkwright.descriptions.editing.places import Candidate, Place, literal, words
+from linkwright.descriptions.editing.places import Candidate, TextRange, literal, words
 from linkwright.diagnostics import LinkwrightError, SourceText
 from linkwright.loading.lean_typing import Any
 from linkwright.xacro.faults import Fault, Frame, frames
@@ -34,15 +34,15 @@ class Definitions:
     """
 
     def __init__(self, documents: Sequence[Document], other_files: Iterable[Path], overlay: Overlay) -> None:
-        self._places_by_name: dict[str, list[Place]] = {}
+        self._places_by_name: dict[str, list[TextRange]] = {}
         self._macros: dict[str, Element] = {}
         self._other_files, self._overlay = tuple(other_files), overlay
-        self._scalars: list[tuple[tuple[str, ...], Place]] | None = None
+        self._scalars: list[tuple[tuple[str, ...], TextRange]] | None = None
         for document in documents:
             for element in document.root.walk():
                 self._collect(element)
 
-    def of_names(self, text: str, innermost: Frame | None) -> Iterator[Place]:
+    def of_names(self, text: str, innermost: Frame | None) -> Iterator[TextRange]:
         """Yield the texts that may define the names in a text, beginning with enclosing calls.
 
         Args:
@@ -87,7 +87,7 @@ class Definitions:
             if text_range is not None:
                 self._places_by_name.setdefault(name, []).append(text_range)
 
-    def _default(self, frame: Frame, name: str) -> Place | None:
+    def _default(self, frame: Frame, name: str) -> TextRange | None:
         """Return the location of the default of a macro's parameter.
 
         The result is None if the parameter or its default does not exist.
@@ -110,22 +110,22 @@ class Definitions:
             parameter.default_start + is_quoted, parameter.default_start + len(parameter.default) - is_quoted
         )
 
-    def _values(self) -> list[tuple[tuple[str, ...], Place]]:
+    def _values(self) -> list[tuple[tuple[str, ...], TextRange]]:
         """Return the locations of all scalars in the YAML files, each with its keys from the root."""
         if self._scalars is None:
             self._scalars = [item for path in self._other_files for item in _file_scalars(path, self._overlay)]
         return self._scalars
 
 
-def attribute(element: Element, name: str) -> Place | None:
+def attribute(element: Element, name: str) -> TextRange | None:
     """Return the location of an attribute's value, or None if it is not in a file."""
     if element.source is None:
         return None
     value_range = attribute_value_range(element.source.text, element.offset, name)
-    return None if value_range is None else Place(element.source, *value_range)
+    return None if value_range is None else TextRange(element.source, *value_range)
 
 
-def _argument_candidate(site: Element, name: str, default: list[Place], index: int | None) -> Candidate | None:
+def _argument_candidate(site: Element, name: str, default: list[TextRange], index: int | None) -> Candidate | None:
     tag = find_start_tag(site)
     value_index = 0 if len(default) == 1 else index
     if tag is None or site.source is None or value_index is None or value_index >= len(default):
@@ -140,7 +140,7 @@ def _argument_candidate(site: Element, name: str, default: list[Place], index: i
         return f' {name}="{escaped(" ".join(texts))}"'
 
     return Candidate(
-        Place(site.source, tag.insertion_offset, tag.insertion_offset), current.value, write, current.is_choice
+        TextRange(site.source, tag.insertion_offset, tag.insertion_offset), current.value, write, current.is_choice
     )
 
 
@@ -165,7 +165,7 @@ def _constant_keys(path: str) -> tuple[str, ...]:
     return tuple(reversed(keys))
 
 
-def _file_scalars(path: Path, overlay: Overlay) -> Iterator[tuple[tuple[str, ...], Place]]:
+def _file_scalars(path: Path, overlay: Overlay) -> Iterator[tuple[tuple[str, ...], TextRange]]:
     try:
         text = overlay.read(str(path)).text
         if len(text) > _MAX_YAML_CHARACTERS:
@@ -176,12 +176,14 @@ def _file_scalars(path: Path, overlay: Overlay) -> Iterator[tuple[tuple[str, ...
     yield from _walk(root, (), SourceText(str(path), text), 0)
 
 
-def _walk(node: Any, keys: tuple[str, ...], source: SourceText, depth: int) -> Iterator[tuple[tuple[str, ...], Place]]:
+def _walk(
+    node: Any, keys: tuple[str, ...], source: SourceText, depth: int
+) -> Iterator[tuple[tuple[str, ...], TextRange]]:
     if isinstance(node, yaml.ScalarNode):
         is_quoted = node.style in ("'", '"')
         if keys and (is_quoted or node.style is None):
             end = node.end_mark.index - is_quoted
-            yield keys, Place(source, end - len(node.value), end)  # a tag may precede the value
+            yield keys, TextRange(source, end - len(node.value), end)  # a tag may precede the value
     elif depth < 50 and isinstance(node, yaml.MappingNode):
         for key, value in node.value:
             if isinstance(key, yaml.ScalarNode):

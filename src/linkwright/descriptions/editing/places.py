@@ -17,7 +17,7 @@ _LOW_PRECEDENCE = (ast.IfExp, ast.BoolOp, ast.Compare, ast.Lambda, ast.NamedExpr
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class TextRange:
     """A range of characters in a source text, from `start` to `end` (exclusive)."""
 
     source: SourceText
@@ -34,9 +34,9 @@ class Place:
         """The range as lines and columns."""
         return self.source.span(self.start, self.end)
 
-    def subrange(self, start: int, end: int) -> Place:
+    def subrange(self, start: int, end: int) -> TextRange:
         """Return a part of the range, with offsets from the start of this range."""
-        return Place(self.source, self.start + start, self.start + end)
+        return TextRange(self.source, self.start + start, self.start + end)
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,18 +50,18 @@ class Candidate:
         is_choice: whether the value is 1 or -1, which may be a factor that selects a side or a direction.
     """
 
-    text_range: Place
+    text_range: TextRange
     value: float
     write: Callable[[float, float], str]
     is_choice: bool = False
 
 
-def words(place: Place) -> list[Place]:
+def words(place: TextRange) -> list[TextRange]:
     """Return the ranges of the words in a text, each expression as a single word."""
     return [place.subrange(*match.span()) for match in _WORD.finditer(place.text)]
 
 
-def literal(place: Place) -> Candidate | None:
+def literal(place: TextRange) -> Candidate | None:
     """Return a candidate for a word that is a literal number, or None for any other word."""
     try:
         value = float(place.text)
@@ -70,7 +70,7 @@ def literal(place: Place) -> Candidate | None:
     return Candidate(place, value, shortest_text, value in (1.0, -1.0))
 
 
-def added_constants(word: Place) -> Iterator[Candidate]:
+def added_constants(word: TextRange) -> Iterator[Candidate]:
     """Yield candidates for the numbers on which an expression depends linearly.
 
     These are the terms of a sum, also inside ``radians()``.
@@ -88,7 +88,7 @@ def added_constants(word: Place) -> Iterator[Candidate]:
         yield from _terms(tree, expression_place)
 
 
-def is_constant(word: Place) -> bool:
+def is_constant(word: TextRange) -> bool:
     """Return whether a word is a constant expression.
 
     A constant expression has no names except pi and the conversions from degrees to radians.
@@ -98,7 +98,7 @@ def is_constant(word: Place) -> bool:
     return tree is not None and _used_names(tree) <= _ANGLE_NAMES
 
 
-def replacement_candidate(word: Place, value: float) -> Candidate:
+def replacement_candidate(word: TextRange, value: float) -> Candidate:
     """Return a candidate that replaces a whole word with a number.
 
     If the word contains pi or ``radians``, the number is written as a fraction of pi or in degrees, if possible.
@@ -117,7 +117,7 @@ def replacement_candidate(word: Place, value: float) -> Candidate:
     return Candidate(word, value, write)
 
 
-def addition_candidate(word: Place, *, is_angle: bool) -> Candidate | None:
+def addition_candidate(word: TextRange, *, is_angle: bool) -> Candidate | None:
     """Return a candidate that adds a number to an expression.
 
     The result is None if the word is not a single expression.
@@ -152,7 +152,7 @@ def _used_names(tree: ast.AST) -> set[str]:
     return {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)}
 
 
-def _terms(node: ast.expr, expression_place: Place) -> Iterator[Candidate]:
+def _terms(node: ast.expr, expression_place: TextRange) -> Iterator[Candidate]:
     value = _literal_value(node)
     if value is not None:
         yield _number_candidate(expression_place, node, value)
@@ -181,7 +181,7 @@ def _converts_degrees(node: ast.expr) -> bool:
     )
 
 
-def _signed_term(node: ast.BinOp, expression_place: Place) -> Candidate | None:
+def _signed_term(node: ast.BinOp, expression_place: TextRange) -> Candidate | None:
     """Return a candidate for the last number of a sum, including its sign.
 
     The result is None if the last term is not a number, or is in brackets.
@@ -213,6 +213,6 @@ def _literal_value(node: ast.AST) -> float | None:
     return None
 
 
-def _number_candidate(expression_place: Place, node: ast.expr, value: float) -> Candidate:
+def _number_candidate(expression_place: TextRange, node: ast.expr, value: float) -> Candidate:
     text_range = expression_place.subrange(node.col_offset, node.end_col_offset or node.col_offset)
     return Candidate(text_range, value, shortest_text, value in (1.0, -1.0))

@@ -15,7 +15,7 @@ from linkwright.descriptions.editing.definitions import attribute
 from linkwright.descriptions.editing.difference import Target, described, other_differences, path_to
 from linkwright.descriptions.editing.errors import EditRefusedError
 from linkwright.descriptions.editing.numbers import EXACT, are_close, parse_numbers, shortest_text
-from linkwright.descriptions.editing.places import Candidate, Place, literal, words
+from linkwright.descriptions.editing.places import Candidate, TextRange, literal, words
 from linkwright.descriptions.editing.proposals import proposals
 from linkwright.descriptions.editing.refusals import Attempt, refusal
 from linkwright.descriptions.editing.request import EditRequest
@@ -226,7 +226,7 @@ class _Planner:
         return None
 
     def _edit_together(
-        self, target: Target, place: Place, value_words: list[Place], new_numbers: dict[int, float]
+        self, target: Target, place: TextRange, value_words: list[TextRange], new_numbers: dict[int, float]
     ) -> Snapshot | None:
         """Return the description after one edit of several literal numbers in an attribute.
 
@@ -250,7 +250,7 @@ class _Planner:
         is_exact = all(map(are_close, values, requested)) and not self._differences(trial, target)
         return trial if is_exact else None
 
-    def _try_text(self, place: Place, text: str) -> Snapshot | None:
+    def _try_text(self, place: TextRange, text: str) -> Snapshot | None:
         try:
             return self._now.with_text(place, text)
         except LinkwrightError:
@@ -293,12 +293,12 @@ class _Planner:
             )
         self._now = trial
 
-    def _insertion(self, target: Target, element: Element | None, text: str) -> tuple[Place, str]:
+    def _insertion(self, target: Target, element: Element | None, text: str) -> tuple[TextRange, str]:
         if element is not None:
             source_element = self._source_element(element)
             tag = find_start_tag(source_element)
             if tag is not None and source_element.source is not None:
-                return Place(
+                return TextRange(
                     source_element.source, tag.insertion_offset, tag.insertion_offset
                 ), f' {target.attribute}="{text}"'
             raise EditRefusedError(_not_written_finding(element))
@@ -314,7 +314,7 @@ class _Planner:
         edit = insertion(source_element, [new_element], after=previous, first=previous is None)
         if edit is None or source_element.source is None:
             raise EditRefusedError(_not_written_finding(owner))
-        return Place(source_element.source, edit.start, edit.end), edit.text
+        return TextRange(source_element.source, edit.start, edit.end), edit.text
 
     def _source_element(self, element: Element) -> Element:
         """Return the unexpanded element in the file for an element of the expansion."""
@@ -345,7 +345,7 @@ class _Planner:
             return list(defaults)
         return parse_numbers(element.attributes[target.attribute], 4 if target.attribute == "quat_xyzw" else 3)
 
-    def _attribute_place(self, element: Element, name: str) -> Place:
+    def _attribute_place(self, element: Element, name: str) -> TextRange:
         """Return the range of an attribute's text, on its element or in an ``<xacro:attribute>``."""
         text_range = attribute(element, name)
         if text_range is not None:
@@ -359,7 +359,7 @@ class _Planner:
         if origin is None or origin.span is None or element.source is None or origin.span.file != element.source.name:
             raise EditRefusedError(_not_written_finding(element))
         source, span = element.source, origin.span
-        return Place(source, source.offset(span.line, span.column), source.offset(span.end_line, span.end_column))
+        return TextRange(source, source.offset(span.line, span.column), source.offset(span.end_line, span.end_column))
 
 
 def _not_written_finding(element: Element) -> Diagnostic:

@@ -8,7 +8,7 @@ from linkwright.descriptions.editing.definitions import Definitions
 from linkwright.descriptions.editing.numbers import shortest_text
 from linkwright.descriptions.editing.places import (
     Candidate,
-    Place,
+    TextRange,
     added_constants,
     addition_candidate,
     is_constant,
@@ -22,7 +22,7 @@ _MAX_DEPTH = 8
 
 
 def proposals(
-    place: Place,
+    place: TextRange,
     index: int,
     frame: Frame | None,
     definitions: Definitions,
@@ -56,13 +56,15 @@ def proposals(
         yield _whole_candidate(place, index, present)
 
 
-def _determining_words(place: Place, index: int, frame: Frame | None, definitions: Definitions) -> Iterator[Place]:
+def _determining_words(
+    place: TextRange, index: int, frame: Frame | None, definitions: Definitions
+) -> Iterator[TextRange]:
     """Yield the ranges of the words that determine a number.
 
     These are the word in the attribute itself, then the words in the definitions of its names, recursively.
     """
     visited: set[tuple[str, int]] = set()
-    pending: list[tuple[Place, int]] = [(place, 0)]
+    pending: list[tuple[TextRange, int]] = [(place, 0)]
     while pending:
         text, depth = pending.pop(0)
         if (text.source.name, text.start) in visited:
@@ -77,7 +79,7 @@ def _determining_words(place: Place, index: int, frame: Frame | None, definition
                 pending.extend((definition, depth + 1) for definition in definitions.of_names(word.text, frame))
 
 
-def _numbers_in(word: Place, value: float) -> Iterator[Candidate]:
+def _numbers_in(word: TextRange, value: float) -> Iterator[Candidate]:
     """Yield candidates for the literal numbers in a word."""
     literal_number = literal(word)
     if literal_number is not None:
@@ -89,7 +91,7 @@ def _numbers_in(word: Place, value: float) -> Iterator[Candidate]:
     yield from candidates
 
 
-def _whole_candidate(place: Place, index: int, present: Sequence[float]) -> Candidate:
+def _whole_candidate(place: TextRange, index: int, present: Sequence[float]) -> Candidate:
     """Return a candidate that replaces a single expression with all numbers of the attribute."""
 
     def write(number: float, tolerance: float) -> str:

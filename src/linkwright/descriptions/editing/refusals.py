@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from linkwright.descriptions.editing.places import Place
+from linkwright.descriptions.editing.places import TextRange
 from linkwright.diagnostics import Diagnostic, Note, display_path, joined, phrase
 from linkwright.loading.lean_dataclasses import dataclass
 
@@ -24,7 +24,7 @@ class Attempt:
         fails_to_expand: whether the description could not be expanded with the edit.
     """
 
-    text_range: Place
+    text_range: TextRange
     side_effects: tuple[str, ...] = ()
     forbidden: Diagnostic | None = None
     is_choice: bool = False
@@ -32,7 +32,7 @@ class Attempt:
     fails_to_expand: bool = False
 
 
-def refusal(place: Place, index: int | None, attempts: Sequence[Attempt], tag: str = "") -> Diagnostic:
+def refusal(place: TextRange, index: int | None, attempts: Sequence[Attempt], tag: str = "") -> Diagnostic:
     """Return the finding with the reason why an edit is refused.
 
     Args:

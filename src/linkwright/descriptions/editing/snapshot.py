@@ -9,7 +9,7 @@ from functools import cached_property
 from pathlib import Path
 
 from linkwright.descriptions.editing.definitions import Definitions
-from linkwright.descriptions.editing.places import Place
+from linkwright.descriptions.editing.places import TextRange
 from linkwright.descriptions.service import Description
 from linkwright.diagnostics import LinkwrightError
 from linkwright.loading.lean_dataclasses import dataclass
@@ -72,7 +72,7 @@ class Snapshot:
                     documents.append(read_document(str(path), overlay))
         return Definitions(documents, other_files, overlay)
 
-    def with_text(self, place: Place, text: str) -> Snapshot:
+    def with_text(self, place: TextRange, text: str) -> Snapshot:
         """Return a snapshot in which a text replaces one range of a file.
 
         Raises:

@@ -27,17 +27,17 @@ They contain the code of its command line and of the event loop.
 """
 
 
-class Place(ABC):
-    """A location in a program (`CodePlace`), or in an XML or YAML file (`MarkupPlace`)."""
+class SourceLocation(ABC):
+    """A location in a program (`CodeLocation`), or in an XML or YAML file (`MarkupLocation`)."""
 
     __slots__ = ()
 
-    def __deepcopy__(self, _: object) -> Place:
+    def __deepcopy__(self, _: object) -> SourceLocation:
         """Return the place itself, because it is immutable."""
         return self
 
     @staticmethod
-    def of_caller() -> Place | None:
+    def of_caller() -> SourceLocation | None:
         """Return the place in the markup that is being read, or the caller's place in user code.
 
         Returns:
@@ -53,7 +53,7 @@ class Place(ABC):
             if not is_linkwright_file(filename):
                 break
             frame = frame.f_back
-        return None if frame is None else CodePlace(frame.f_code, frame.f_lasti, frame.f_lineno)
+        return None if frame is None else CodeLocation(frame.f_code, frame.f_lasti, frame.f_lineno)
 
     @property
     @abstractmethod
@@ -70,7 +70,7 @@ class Place(ABC):
 
 
 @dataclass(frozen=True, slots=True)
-class MarkupPlace(Place):
+class MarkupLocation(SourceLocation):
     """A range of text in an XML or YAML launch file.
 
     Attributes:
@@ -96,14 +96,14 @@ class MarkupPlace(Place):
         """Return the lines and columns of the range."""
         return self.text.span(self.start, self.end)
 
-    def part(self, start: int, end: int) -> MarkupPlace:
+    def part(self, start: int, end: int) -> MarkupLocation:
         """Return a subrange of this range.
 
         Args:
             start: the start of the subrange, as an offset from the start of this range.
             end: the end of the subrange, exclusive, as an offset from the start of this range.
         """
-        return MarkupPlace(self.text, min(self.start + start, self.end), min(self.start + end, self.end))
+        return MarkupLocation(self.text, min(self.start + start, self.end), min(self.start + end, self.end))
 
 
 class Placed:
@@ -113,7 +113,7 @@ class Placed:
         place: the location; None if it is unknown.
     """
 
-    place: Place | None = None
+    place: SourceLocation | None = None
 
     def __new__(cls: type[T], *_: Any, **__: Any) -> T:  # noqa: PYI019 - Self needs Python 3.11
         """Create the object, and record the place of the caller.
@@ -121,15 +121,15 @@ class Placed:
         The place is not recorded in ``__init__``, because users' classes need not call the constructor of this class.
         """
         created = super().__new__(cls)
-        created.place = Place.of_caller()
+        created.place = SourceLocation.of_caller()
         return created
 
 
-_markup_places: list[Place | None] = []
+_markup_places: list[SourceLocation | None] = []
 
 
 @contextmanager
-def reading_markup_at(place: Place | None) -> Iterator[None]:
+def reading_markup_at(place: SourceLocation | None) -> Iterator[None]:
     """Record a place in markup for the objects that are created in this context.
 
     The place is None if it is unknown.
@@ -156,7 +156,7 @@ def outside_markup() -> Iterator[None]:
 
 
 @dataclass(frozen=True, slots=True)
-class CodePlace(Place):
+class CodeLocation(SourceLocation):
     """A location in the code of a running program."""
 
     code: CodeType
@@ -202,7 +202,7 @@ def read_source(filename: str) -> SourceText | None:
         return None
 
 
-def located(error: LinkwrightError, place: Place | None) -> LinkwrightError:
+def located(error: LinkwrightError, place: SourceLocation | None) -> LinkwrightError:
     """Set the location of all findings of an error to a place, if none of them has a location.
 
     Returns:
@@ -217,7 +217,7 @@ def located(error: LinkwrightError, place: Place | None) -> LinkwrightError:
 
 
 def error_at(
-    place: Place | None,
+    place: SourceLocation | None,
     code: str,
     message: Phrase,
     hint: Phrase | None = None,

@@ -28,7 +28,7 @@ from linkwright.diagnostics import (
     quoted_names,
 )
 from linkwright.launch.errors.exceptions import as_ros_error
-from linkwright.launch.errors.places import CodePlace, Place, error_at, located, read_source
+from linkwright.launch.errors.places import CodeLocation, SourceLocation, error_at, located, read_source
 from linkwright.packages.programs.code_files import is_user_file
 
 DEEPEST = 300
@@ -42,7 +42,7 @@ _MISSING_ARGUMENT = re.compile(r"\(\) missing \d+ required .*arguments?: (.*)$")
 _UNEXPECTED_ARGUMENT = re.compile(r"([\w.]+)\(\) got an unexpected keyword argument '([^']+)'")
 
 
-def explain(error: BaseException, subject: str, fallback: Place | None = None) -> LinkwrightError:
+def explain(error: BaseException, subject: str, fallback: SourceLocation | None = None) -> LinkwrightError:
     """Return an error that reports an exception at the user's own line of code.
 
     Args:
@@ -74,7 +74,7 @@ def explain(error: BaseException, subject: str, fallback: Place | None = None) -
     return as_ros_error(error if isinstance(error, Exception) else None, diagnostic)
 
 
-def endless_nesting_error(place: Place | None) -> LinkwrightError:
+def endless_nesting_error(place: SourceLocation | None) -> LinkwrightError:
     """Return the error for launch actions that are nested more deeply than the limit."""
     message = phrase("launch actions are nested more than {count} levels deep, probably without end", count=DEEPEST)
     hint = phrase(
@@ -89,14 +89,14 @@ def too_deep_error(path: str) -> LinkwrightError:
     return error_at(None, "LAUNCH156", message)
 
 
-def _user_places(traceback: TracebackType | None) -> Iterable[Place]:
+def _user_places(traceback: TracebackType | None) -> Iterable[SourceLocation]:
     if traceback is None:
         return
     traceback_entry: TracebackType | None = traceback
     for frame, line in walk_tb(traceback):
         assert traceback_entry is not None
         if is_user_file(frame.f_code.co_filename):
-            yield CodePlace(frame.f_code, traceback_entry.tb_lasti, line)
+            yield CodeLocation(frame.f_code, traceback_entry.tb_lasti, line)
         traceback_entry = traceback_entry.tb_next
 
 

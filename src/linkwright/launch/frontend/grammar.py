@@ -11,7 +11,7 @@ import re
 from typing import Any, NoReturn
 
 from linkwright.diagnostics import Phrase, did_you_mean, phrase
-from linkwright.launch.errors.places import MarkupPlace, Place, error_at, reading_markup_at
+from linkwright.launch.errors.places import MarkupLocation, SourceLocation, error_at, reading_markup_at
 from linkwright.launch.frontend.instantiate import instantiate_substitution
 from linkwright.launch.model.markup.entity import place_of
 from linkwright.launch.model.markup.expose import substitution_parse_methods
@@ -75,7 +75,7 @@ class _Reader:
         place: the location of the text, or None.
     """
 
-    def __init__(self, text: str, place: Place | None) -> None:
+    def __init__(self, text: str, place: SourceLocation | None) -> None:
         self._text = text
         self._at = 0
         self._place = place
@@ -182,8 +182,8 @@ class _Reader:
             hint or phrase("separate arguments by spaces"),
         )
 
-    def _part(self, start: int, end: int) -> Place | None:
-        return self._place.part(start, end) if isinstance(self._place, MarkupPlace) else self._place
+    def _part(self, start: int, end: int) -> SourceLocation | None:
+        return self._place.part(start, end) if isinstance(self._place, MarkupLocation) else self._place
 
     def _fail(self, message: Phrase, hint: Phrase) -> NoReturn:
         place = self._part(self._at, self._at + 1)

@@ -15,7 +15,7 @@ from linkwright.diagnostics import (
     phrase,
     quoted_names,
 )
-from linkwright.launch.errors.places import MarkupPlace, error_at
+from linkwright.launch.errors.places import MarkupLocation, error_at
 from linkwright.launch.errors.unavailable import is_missing_third_party, mark_unavailable
 from linkwright.launch.frontend.sources import AnyLaunchDescriptionSource, LaunchDescriptionSource
 from linkwright.launch.model.action import Action
@@ -234,7 +234,7 @@ class IncludeLaunchDescription(Action):
 
     def _argument_hint(self, name: str) -> Phrase:
         """Return a hint that shows the argument in the language of the including file."""
-        if not isinstance(self.place, MarkupPlace):
+        if not isinstance(self.place, MarkupLocation):
             return phrase("add ('{name}', VALUE) to launch_arguments", name=name)
         if self.place.text.text.lstrip().startswith("<"):
             return phrase('write <arg name="{name}" value="VALUE"/> inside <include>', name=name)

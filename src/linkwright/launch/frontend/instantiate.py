@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from linkwright.diagnostics import LinkwrightError, did_you_mean, foreign, phrase
-from linkwright.launch.errors.places import Place, error_at, located, reading_markup_at
+from linkwright.launch.errors.places import SourceLocation, error_at, located, reading_markup_at
 from linkwright.launch.model.action import Action
 from linkwright.launch.model.markup.entity import Entity
 from linkwright.launch.model.markup.expose import action_parse_methods, substitution_parse_methods
@@ -61,7 +61,7 @@ def instantiate_action(entity: Entity, parser: Parser) -> Action:
 
 
 def instantiate_substitution(
-    type_name: str, args: Sequence[Any] | None = None, place: Place | None = None
+    type_name: str, args: Sequence[Any] | None = None, place: SourceLocation | None = None
 ) -> Substitution:
     """Create the substitution with a name. Each argument is a list of substitutions.
 

@@ -9,7 +9,7 @@ from collections.abc import Collection, Iterable
 from typing import Any, NoReturn
 
 from linkwright.diagnostics import Phrase, did_you_mean, nearest, phrase, quoted_names, term
-from linkwright.launch.errors.places import Place, error_at
+from linkwright.launch.errors.places import SourceLocation, error_at
 from linkwright.launch.model.markup.entity import Entity
 
 
@@ -22,7 +22,7 @@ class MarkupEntity(Entity):
         parent: the enclosing entity.
     """
 
-    def __init__(self, type_name: str, place: Place | None, parent: Entity | None) -> None:
+    def __init__(self, type_name: str, place: SourceLocation | None, parent: Entity | None) -> None:
         self._type_name = type_name
         self._place = place
         self._parent = parent
@@ -39,7 +39,7 @@ class MarkupEntity(Entity):
         return self._parent
 
     @property
-    def place(self) -> Place | None:
+    def place(self) -> SourceLocation | None:
         """The location of the entity."""
         return self._place
 
@@ -73,7 +73,7 @@ class MarkupEntity(Entity):
             ros_error=ValueError(f"{ros_text} `{self._type_name}`: {{{names_text}}}"),
         )
 
-    def _place_of_part(self, name: str) -> Place | None:
+    def _place_of_part(self, name: str) -> SourceLocation | None:
         return self._place
 
     def _missing(self, name: str, present: Collection[str], ros_error: str) -> NoReturn:

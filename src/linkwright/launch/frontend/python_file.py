@@ -22,7 +22,7 @@ from linkwright.diagnostics import (
 )
 from linkwright.files.input_files import read_text
 from linkwright.launch.errors.exceptions import InvalidPythonLaunchFileError, as_ros_error
-from linkwright.launch.errors.places import MarkupPlace, Place, error_at, outside_markup
+from linkwright.launch.errors.places import MarkupLocation, SourceLocation, error_at, outside_markup
 from linkwright.launch.errors.user_code import explain
 from linkwright.launch.model.description import LaunchDescription
 from linkwright.packages.launch_files import is_launch_file_name
@@ -70,7 +70,7 @@ def load_python_launch_file(path: Path) -> LaunchDescription:
     return description
 
 
-def _definition(function: Callable[..., Any], source: SourceText) -> Place:
+def _definition(function: Callable[..., Any], source: SourceText) -> SourceLocation:
     """Return the location of the line that defines a function in a launch file.
 
     If the function is defined in another file, the location is the first line of the launch file.
@@ -78,7 +78,7 @@ def _definition(function: Callable[..., Any], source: SourceText) -> Place:
     code = getattr(function, "__code__", None)
     line = code.co_firstlineno if code is not None and code.co_filename == source.name else 1
     start = source.offset(line, 1)
-    return MarkupPlace(source, start, start + len(source.line(line)))
+    return MarkupLocation(source, start, start + len(source.line(line)))
 
 
 def load_python_module(path: Path) -> ModuleType:

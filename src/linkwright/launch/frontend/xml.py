@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from linkwright.launch.errors.places import MarkupPlace, Place
+from linkwright.launch.errors.places import MarkupLocation, SourceLocation
 from linkwright.launch.frontend.markup_entity import MarkupEntity
 from linkwright.launch.frontend.parser import Parser as AnyParser
 from linkwright.launch.frontend.parser import read_file
@@ -79,7 +79,7 @@ class Entity(MarkupEntity):
             )
             self._fail_wrong_type(name, str(value), data_type, ros_error)
 
-    def _place_of_part(self, name: str) -> Place | None:
+    def _place_of_part(self, name: str) -> SourceLocation | None:
         element, source = self._element, self._element.source
         if name not in element.attributes:
             child = element.first(name)
@@ -89,7 +89,7 @@ class Entity(MarkupEntity):
         if name in self._read_names:
             return _attribute_place(element, name)
         name_range = attribute_name_range(source.text, element.offset, name)
-        return MarkupPlace(source, *name_range) if name_range else self.place
+        return MarkupLocation(source, *name_range) if name_range else self.place
 
 
 class Parser(AnyParser):
@@ -111,17 +111,17 @@ class Parser(AnyParser):
         return {"launch.xml"}
 
 
-def _place(element: Element) -> Place | None:
+def _place(element: Element) -> SourceLocation | None:
     if element.source is None:
         return None
-    return MarkupPlace(element.source, element.offset, element.offset + 1 + len(element.tag))
+    return MarkupLocation(element.source, element.offset, element.offset + 1 + len(element.tag))
 
 
-def _attribute_place(element: Element, name: str) -> Place | None:
+def _attribute_place(element: Element, name: str) -> SourceLocation | None:
     if element.source is None:
         return None
     value_range = attribute_value_range(element.source.text, element.offset, name)
-    return MarkupPlace(element.source, *value_range) if value_range else _place(element)
+    return MarkupLocation(element.source, *value_range) if value_range else _place(element)
 
 
 def _from_etree(element: Any) -> Element:

@@ -8,7 +8,7 @@ import yaml
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, SourceText, foreign, phrase
 from linkwright.launch.errors.exceptions import as_ros_error
-from linkwright.launch.errors.places import MarkupPlace, Place, error_at
+from linkwright.launch.errors.places import MarkupLocation, SourceLocation, error_at
 from linkwright.launch.frontend.markup_entity import MarkupEntity
 from linkwright.launch.frontend.parser import Parser as AnyParser
 from linkwright.launch.frontend.parser import read_file
@@ -129,7 +129,7 @@ class Entity(MarkupEntity):
             self._fail_wrong_type(name, value, data_type, text)
         return value
 
-    def _place_of_part(self, name: str) -> Place | None:
+    def _place_of_part(self, name: str) -> SourceLocation | None:
         for key, value in self._element.items() if isinstance(self._element, dict) else ():
             if key == name:
                 return (place_of(value) if name in self._read_names else None) or place_of(key) or self.place
@@ -156,7 +156,7 @@ class Parser(AnyParser):
         if not isinstance(tree, dict) or len(tree) != 1:
             source = SourceText(name, text)
             message = phrase("a YAML launch file must be a mapping with the single key 'launch'")
-            place = getattr(tree, "place", None) or MarkupPlace(source, 0, 0)
+            place = getattr(tree, "place", None) or MarkupLocation(source, 0, 0)
             raise error_at(place, "LAUNCH109", message, ros_error=RuntimeError("Expected only one root"))
         [(root, element)] = tree.items()
         return Entity(element, root), cls()
@@ -173,7 +173,7 @@ class Parser(AnyParser):
 class PlacedMapping(dict[Any, Any]):
     """A mapping that records its location."""
 
-    place: Place | None = None
+    place: SourceLocation | None = None
 
 
 class _Loader(yaml.SafeLoader):
@@ -205,15 +205,15 @@ class _Loader(yaml.SafeLoader):
         finally:
             self._open_anchors.pop()
 
-    def place_of_node(self, node: yaml.Node) -> Place:
-        return MarkupPlace(self.launch_text, node.start_mark.index, node.end_mark.index)
+    def place_of_node(self, node: yaml.Node) -> SourceLocation:
+        return MarkupLocation(self.launch_text, node.start_mark.index, node.end_mark.index)
 
 
 def _text(loader: _Loader, node: yaml.ScalarNode) -> PlacedText:
     start, end = node.start_mark.index, node.end_mark.index
     if node.style in ("'", '"'):
         start, end = start + 1, end - 1
-    return PlacedText(loader.construct_scalar(node), MarkupPlace(loader.launch_text, start, end))
+    return PlacedText(loader.construct_scalar(node), MarkupLocation(loader.launch_text, start, end))
 
 
 def _construct_mapping(loader: _Loader, node: yaml.MappingNode) -> Any:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, print_diagnostics
 from linkwright.launch.errors.exceptions import SubstitutionFailure
-from linkwright.launch.errors.places import Place, error_at, located
+from linkwright.launch.errors.places import SourceLocation, error_at, located
 
 if TYPE_CHECKING:
     from linkwright.hosting.xacro_calls import Descriptions
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 class Performable(Protocol):
     """The interface through which the launch context uses substitutions."""
 
-    place: Place | None
+    place: SourceLocation | None
 
     def perform(self, context: LaunchContext) -> str:
         """Evaluate the substitution, and return the resulting text."""

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
 from linkwright.diagnostics import phrase
-from linkwright.launch.errors.places import Place, error_at
+from linkwright.launch.errors.places import SourceLocation, error_at
 from linkwright.launch.model.action import Action
 from linkwright.launch.model.declared_arguments import declared_arguments
 from linkwright.launch.model.entity import LaunchDescriptionEntity
@@ -108,4 +108,4 @@ def _check_entity(entity: Any) -> Any:
     message = phrase("a launch description accepts actions, not a value of type {kind}", kind=type_name)
     hint = phrase("add each action separately") if isinstance(entity, (list, tuple)) else None
     text = f"'{type_name}' object has no attribute 'visit'"
-    raise error_at(Place.of_caller(), "LAUNCH147", message, hint, ros_error=AttributeError(text))
+    raise error_at(SourceLocation.of_caller(), "LAUNCH147", message, hint, ros_error=AttributeError(text))

@@ -6,7 +6,7 @@ import signal as signals
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Protocol
 
-from linkwright.launch.errors.places import Place
+from linkwright.launch.errors.places import SourceLocation
 
 
 class ProcessAction(Protocol):
@@ -17,7 +17,7 @@ class ProcessAction(Protocol):
         process_details: ``name``, ``cmd``, ``cwd``, ``env`` and ``pid`` of the process; None before the start.
     """
 
-    place: Place | None
+    place: SourceLocation | None
     process_details: dict[str, Any] | None
 
     def wrote(self, stream: int, text: bytes) -> None:

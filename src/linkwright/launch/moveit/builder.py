@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from linkwright.diagnostics import Note, Severity, display_path, joined, phrase, print_diagnostics
-from linkwright.launch.errors.places import Place, error_at
+from linkwright.launch.errors.places import SourceLocation, error_at
 from linkwright.launch.moveit.configs import MoveItConfigs, Parameters
 from linkwright.launch.moveit.files import (
     ParameterBuilderFileNotFoundError,
@@ -229,7 +229,7 @@ class MoveItConfigsBuilder(ParameterBuilder):
                 default=default,
                 names=joined(names),
             )
-            raise error_at(Place.of_caller(), "LAUNCH154", message, ros_error=RuntimeError(text))
+            raise error_at(SourceLocation.of_caller(), "LAUNCH154", message, ros_error=RuntimeError(text))
         parameters: Parameters = {"planning_pipelines": names, "default_planning_pipeline": default}
         for name in names:
             file = next((path for folder in folders if (path := folder / f"{name}{_PLANNING_SUFFIX}").exists()), None)
@@ -325,7 +325,7 @@ class MoveItConfigsBuilder(ParameterBuilder):
                     names=joined(names),
                 )
                 hint = phrase("select one with .trajectory_execution(file_path='config/NAME_controllers.yaml')")
-                raise error_at(Place.of_caller(), "LAUNCH154", message, hint, ros_error=RuntimeError(text))
+                raise error_at(SourceLocation.of_caller(), "LAUNCH154", message, hint, ros_error=RuntimeError(text))
         return folder / (names[0] + _CONTROLLERS_SUFFIX) if names else None
 
 

@@ -12,7 +12,7 @@ from typing import Any
 
 from linkwright.diagnostics import LinkwrightError, display_path, foreign, missing_file_hint, package_hint, phrase
 from linkwright.hosting.xacro_calls import Descriptions, XacroCall, current_descriptions
-from linkwright.launch.errors.places import Place, error_at, located
+from linkwright.launch.errors.places import SourceLocation, error_at, located
 from linkwright.launch.model.context import LaunchContext
 from linkwright.launch.model.markup.expose import expose_substitution
 from linkwright.launch.model.substitution import (
@@ -63,7 +63,7 @@ def load_yaml(file_path: str | Path, mappings: Mapping[str, Any] | None = None) 
         return yaml.safe_load(text)
     except yaml.YAMLError as error:
         message = phrase("parameter file '{path}' is not YAML: {error}", path=display_path(path), error=foreign(error))
-        raise error_at(Place.of_caller(), "LAUNCH153", message, ros_error=error) from error
+        raise error_at(SourceLocation.of_caller(), "LAUNCH153", message, ros_error=error) from error
 
 
 def load_xacro(file_path: str | Path, mappings: Mapping[str, Any] | None = None) -> str:
@@ -98,14 +98,14 @@ def _text(path: Path) -> str:
         message = phrase(
             "parameter file '{path}' cannot be read: {reason}", path=display_path(path), reason=foreign(reason)
         )
-        raise error_at(Place.of_caller(), "LAUNCH153", message, ros_error=error) from error
+        raise error_at(SourceLocation.of_caller(), "LAUNCH153", message, ros_error=error) from error
 
 
 def _check_exists(path: Path) -> None:
     if not path.exists():
         message = phrase("parameter file '{path}' does not exist", path=display_path(path))
         ros_error = ParameterBuilderFileNotFoundError(f"File {path} doesn't exist")
-        raise error_at(Place.of_caller(), "LAUNCH153", message, missing_file_hint(path), ros_error=ros_error)
+        raise error_at(SourceLocation.of_caller(), "LAUNCH153", message, missing_file_hint(path), ros_error=ros_error)
 
 
 def _render_template(text: str, path: Path, mappings: Mapping[str, Any]) -> str:
@@ -116,14 +116,14 @@ def _render_template(text: str, path: Path, mappings: Mapping[str, Any]) -> str:
             "parameter file '{path}' is a jinja2 template, but jinja2 is not installed",
             path=display_path(path),
         )
-        raise error_at(Place.of_caller(), "LAUNCH153", message, package_hint("jinja2")) from error
+        raise error_at(SourceLocation.of_caller(), "LAUNCH153", message, package_hint("jinja2")) from error
     try:
         template = jinja2.Template(text)
         template.globals.update(radians=math.radians, degrees=math.degrees)
         return str(template.render(mappings))
     except jinja2.TemplateError as error:
         message = phrase("template '{path}' cannot be rendered: {error}", path=display_path(path), error=foreign(error))
-        raise error_at(Place.of_caller(), "LAUNCH153", message, ros_error=error) from error
+        raise error_at(SourceLocation.of_caller(), "LAUNCH153", message, ros_error=error) from error
 
 
 @expose_substitution("xacro")

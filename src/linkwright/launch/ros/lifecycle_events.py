@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import Any
 
 from linkwright.diagnostics import phrase
-from linkwright.launch.errors.places import Place, error_at
+from linkwright.launch.errors.places import SourceLocation, error_at
 from linkwright.launch.model.event_handlers import EventHandler
 from linkwright.launch.model.events import Event
 
@@ -68,7 +68,7 @@ class ChangeState(Event):
                 "there is no lifecycle transition with the ID {transition_id}", transition_id=repr(transition_id)
             )
             raise error_at(
-                Place.of_caller(),
+                SourceLocation.of_caller(),
                 "LAUNCH138",
                 message,
                 phrase("the available transitions are {listed}", listed=transitions_text),
@@ -145,7 +145,7 @@ class OnStateTransition(EventHandler):
                 "OnStateTransition requires a 'LifecycleNode' action as the target, not a {type}",
                 type=type(target_lifecycle_node).__name__,
             )
-            raise error_at(Place.of_caller(), "LAUNCH138", message, ros_error=RuntimeError(text))
+            raise error_at(SourceLocation.of_caller(), "LAUNCH138", message, ros_error=RuntimeError(text))
         self._target = target_lifecycle_node
         expected_values = {"transition": transition, "start_state": start_state, "goal_state": goal_state}
 

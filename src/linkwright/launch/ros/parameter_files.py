@@ -20,7 +20,7 @@ from linkwright.diagnostics import (
 )
 from linkwright.files.input_files import read_text
 from linkwright.launch.errors.exceptions import SubstitutionFailure
-from linkwright.launch.errors.places import MarkupPlace, Place, Placed, error_at, located
+from linkwright.launch.errors.places import MarkupLocation, Placed, SourceLocation, error_at, located
 from linkwright.launch.frontend.grammar import parse_substitution
 from linkwright.launch.frontend.parser import Parser
 from linkwright.launch.model.context import LaunchContext
@@ -162,7 +162,7 @@ class ParameterFile(Placed):
             raise located(error_with_place, self.place) from error
 
 
-def _read(path: Path, place: Place | None) -> SourceText:
+def _read(path: Path, place: SourceLocation | None) -> SourceText:
     name = source_of(str(path))
     shown_path = display_path(name)
     try:
@@ -200,7 +200,7 @@ def substitute_text(source: SourceText, context: LaunchContext) -> str:
         if start < end_offset or any(begin <= start < end for begin, end in comments):
             continue
         end = _substitution_end(text, start)
-        place = MarkupPlace(source, start, end)
+        place = MarkupLocation(source, start, end)
         try:
             value = perform_substitutions(context, parse_substitution(PlacedText(text[start:end], place)))
         except LinkwrightError as error:

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from linkwright.diagnostics import phrase
-from linkwright.launch.errors.places import Place, error_at
+from linkwright.launch.errors.places import SourceLocation, error_at
 from linkwright.launch.model.context import LaunchContext
 from linkwright.launch.model.substitution import (
     Substitution,
@@ -47,7 +47,7 @@ def normalize_parameters(parameters: Any) -> tuple[Any, ...]:
     Raises:
         LinkwrightError: LAUNCH132, the parameters are not a list, or an item is not valid; also a TypeError.
     """
-    place = Place.of_caller()
+    place = SourceLocation.of_caller()
     if isinstance(parameters, (str, Mapping)) or not isinstance(parameters, Sequence):
         ros_error = TypeError(f"Expecting list of parameters, got {parameters}")
         hint = phrase("put the parameters into a list: parameters=[...]")
@@ -110,7 +110,7 @@ def evaluate_parameter_dict(context: LaunchContext, parameters: NormalizedDict) 
 # --- normalization ----------------------------------------------------------------------------------------------
 
 
-def _normalize_item(item: Any, place: Place | None) -> Any:
+def _normalize_item(item: Any, place: SourceLocation | None) -> Any:
     if isinstance(item, Mapping):
         return normalize_parameter_dict(item)
     if isinstance(item, (Parameter, ParameterFile)):
@@ -127,7 +127,7 @@ def _normalize_name(key: Any) -> Name:
         return tuple(normalize_to_list_of_substitutions(key))
     except TypeError as error:
         message = phrase("the name of a parameter must be a string, not {key}", key=repr(key))
-        raise error_at(Place.of_caller(), "LAUNCH132", message, ros_error=error) from error
+        raise error_at(SourceLocation.of_caller(), "LAUNCH132", message, ros_error=error) from error
 
 
 def _normalize_value(value: Any, key: Any) -> Any:
@@ -143,7 +143,7 @@ def _normalize_value(value: Any, key: Any) -> Any:
     if isinstance(value, Path):
         message = phrase("the value of parameter '{shown}' is a Path, which is not a parameter type", shown=shown_name)
         raise error_at(
-            Place.of_caller(),
+            SourceLocation.of_caller(),
             "LAUNCH132",
             message,
             phrase("pass it as a string: str(PATH)"),
@@ -155,7 +155,7 @@ def _normalize_value(value: Any, key: Any) -> Any:
         name=type(value).__name__,
     )
     ros_error = TypeError(f"Unexpected type for parameter value {value!r}")
-    raise error_at(Place.of_caller(), "LAUNCH132", message, ros_error=ros_error)
+    raise error_at(SourceLocation.of_caller(), "LAUNCH132", message, ros_error=ros_error)
 
 
 def _normalize_sequence(items: Sequence[Any], key: Any) -> tuple[Any, ...]:
@@ -188,7 +188,7 @@ def _item_kind(item: Any, key: Any) -> type:
         "the list of parameter '{shown}' contains an item of type {name}", shown=shown_name, name=type(item).__name__
     )
     hint = phrase("items must be of type bool, int, float or str")
-    raise error_at(Place.of_caller(), "LAUNCH132", message, hint, ros_error=TypeError(message))
+    raise error_at(SourceLocation.of_caller(), "LAUNCH132", message, hint, ros_error=TypeError(message))
 
 
 # --- evaluation -------------------------------------------------------------------------------------------------

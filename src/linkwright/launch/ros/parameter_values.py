@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from linkwright.diagnostics import LinkwrightError, Phrase, foreign, joined, phrase
-from linkwright.launch.errors.places import Place, Placed, error_at, located
+from linkwright.launch.errors.places import Placed, SourceLocation, error_at, located
 from linkwright.launch.model.context import LaunchContext
 from linkwright.launch.model.markup.values import normalize_typed_substitution, perform_typed_substitution
 from linkwright.launch.model.substitution import (
@@ -118,7 +118,7 @@ class Parameter:
         self._rule: tuple[str, Any] | None = None
 
     @property
-    def place(self) -> Place | None:
+    def place(self) -> SourceLocation | None:
         """The location of the parameter in the launch file, or None."""
         return self._parameter_value.place
 
@@ -149,7 +149,7 @@ class Parameter:
         return self._rule
 
 
-def parse_yaml_value(text: str, name: str, place: Place | None) -> Any:
+def parse_yaml_value(text: str, name: str, place: SourceLocation | None) -> Any:
     """Return the value of a parameter without a type.
 
     As in launch_ros, the text is read as YAML.
@@ -180,7 +180,7 @@ def parse_yaml_value(text: str, name: str, place: Place | None) -> Any:
     raise error_at(place, "LAUNCH132", message, STRING_HINT, ros_error=ros_error)
 
 
-def uniform(items: Sequence[Any], name: str, place: Place | None) -> tuple[Any, ...]:
+def uniform(items: Sequence[Any], name: str, place: SourceLocation | None) -> tuple[Any, ...]:
     """Return the items of a list parameter as a tuple, if they all have the same valid type.
 
     Raises:
@@ -208,7 +208,7 @@ def uniform(items: Sequence[Any], name: str, place: Place | None) -> tuple[Any, 
     )
 
 
-def _load_yaml(text: str, name: str, place: Place | None) -> Any:
+def _load_yaml(text: str, name: str, place: SourceLocation | None) -> Any:
     import yaml
 
     try:

@@ -22,7 +22,7 @@ from linkwright.diagnostics import (
     phrase,
 )
 from linkwright.graph.parameters.parameter import ParameterRules
-from linkwright.launch.errors.places import Place
+from linkwright.launch.errors.places import SourceLocation
 from linkwright.launch.model.context import LaunchContext
 from linkwright.launch.ros.parameter_files import ParameterFile
 from linkwright.launch.ros.parameter_lists import evaluate_parameters
@@ -54,7 +54,7 @@ class NodeParameters:
 
     sources: list[FileSource | dict[str, Any] | tuple[str, Any]] = field(default_factory=list)
 
-    def without_missing_files(self, context: LaunchContext, place: Place | None) -> NodeParameters:
+    def without_missing_files(self, context: LaunchContext, place: SourceLocation | None) -> NodeParameters:
         """Return the parameters without missing files, and warn about each missing file.
 
         launch_ros also ignores files that do not exist.
@@ -72,7 +72,7 @@ class NodeParameters:
                 node_parameters.sources.append(source)
         return node_parameters
 
-    def check(self, context: LaunchContext, node: str | None, place: Place | None) -> None:
+    def check(self, context: LaunchContext, node: str | None, place: SourceLocation | None) -> None:
         """Report errors and warnings about the files before the node reads them.
 
         Args:
@@ -155,7 +155,9 @@ class NodeParameters:
         return arguments
 
 
-def _warn(context: LaunchContext, code: str, message: Phrase, hint: Phrase | None, place: Place | None) -> None:
+def _warn(
+    context: LaunchContext, code: str, message: Phrase, hint: Phrase | None, place: SourceLocation | None
+) -> None:
     source = place.source() if place else None
     span = place.span(source) if place else None
     context.warn(Diagnostic(code, message, span, severity=Severity.WARNING, hint=hint, source=source))

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from linkwright.diagnostics import Diagnostic, Severity, phrase
 from linkwright.lint.fix import rename_element
 from linkwright.lint.rule import Rule
-from linkwright.lint.structure import Place
+from linkwright.lint.structure import SchemaElement
 from linkwright.lint.subject import Subject
 from linkwright.lint.unread import (
     INNER_EXTENSIONS,
@@ -126,7 +126,7 @@ def _is_zero(origin: Element) -> bool:
     return not any(float(value) for name in ("xyz", "rpy") for value in values(origin, name))
 
 
-def _nearest_parents(parent_tags: Sequence[str], place: Place) -> Sequence[str]:
+def _nearest_parents(parent_tags: Sequence[str], place: SchemaElement) -> Sequence[str]:
     """Return the allowed parents of a misplaced element that are closest to its current parent.
 
     The closest parents are children of the current parent, then the parent of the current parent, then all allowed

@@ -28,7 +28,7 @@ _KINDS = (
 )
 
 
-def _name(kind: types.CodeActionKind | str) -> str:
+def _kind_name(kind: types.CodeActionKind | str) -> str:
     return kind.value if isinstance(kind, types.CodeActionKind) else kind
 
 
@@ -39,12 +39,14 @@ def is_requested(kind: str, only: Sequence[types.CodeActionKind | str] | None) -
         kind: the kind, such as ``refactor.extract``.
         only: the kinds that the editor requests, or None for all.
     """
-    return only is None or any(f"{kind}.".startswith(f"{outer}." if outer else "") for outer in map(_name, only))
+    return only is None or any(
+        f"{kind}.".startswith(f"{requested}." if requested else "") for requested in map(_kind_name, only)
+    )
 
 
 def _may_be_requested(kinds: Iterable[types.CodeActionKind], only: Sequence[types.CodeActionKind | str] | None) -> bool:
     """Return whether the editor requests some kinds, their parents or their subkinds."""
-    names = [_name(outer) for outer in only or ()]
+    names = [_kind_name(requested) for requested in only or ()]
     return any(
         is_requested(kind.value, only) or any(name.startswith(f"{kind.value}.") for name in names) for kind in kinds
     )
@@ -57,7 +59,7 @@ def _resolves_edits(server: LinkwrightServer) -> bool:
     return resolve is not None and "edit" in resolve.properties and bool(actions and actions.data_support)
 
 
-def _makes_files(server: LinkwrightServer) -> bool:
+def _can_create_files(server: LinkwrightServer) -> bool:
     capabilities = server.client_capabilities.workspace
     edits = None if capabilities is None else capabilities.workspace_edit
     return edits is not None and types.ResourceOperationKind.Create in (edits.resource_operations or ())
@@ -81,7 +83,7 @@ async def _refactoring_edit(
     project = server.project
     assert project is not None
     await server.when_indexed()
-    result = await server.in_thread(lambda: refactor(project, texts, action, real(path), start, end))
+    result = await server.run_in_check_thread(lambda: refactor(project, texts, action, real(path), start, end))
     if server.texts() != texts:
         raise _modified()
     return _workspace_edit(server, result)
@@ -95,19 +97,19 @@ def _modified() -> JsonRpcException:
 async def _refactorings(
     server: LinkwrightServer, offers: Iterable[Offer], path: Path, positions: TextPositions, selection: tuple[int, int]
 ) -> list[types.CodeAction]:
-    """Return the actions of refactorings, with edits unless the editor resolves them later."""
+    """Return the code actions of refactorings, with edits unless the editor resolves them later."""
     actions = []
     for offer in offers:
         title, kind = localized(offer.title), offer.action.value
         if _resolves_edits(server):
-            data = {
+            resolve_data = {
                 "action": offer.action.value,
                 "uri": server.uri_of(path),
                 "start": selection[0],
                 "end": selection[1],
                 "checksum": crc32(positions.text.encode()),
             }
-            actions.append(types.CodeAction(title, kind, data=data))
+            actions.append(types.CodeAction(title, kind, data=resolve_data))
             continue
         try:
             edit = await _refactoring_edit(server, offer.action, path, *selection, server.texts())
@@ -117,7 +119,7 @@ async def _refactorings(
     return actions
 
 
-async def _resolved(server: LinkwrightServer, action: types.CodeAction) -> types.CodeAction:
+async def _with_edit(server: LinkwrightServer, action: types.CodeAction) -> types.CodeAction:
     """Return an action with its proved edit."""
     data = action.data if isinstance(action.data, dict) else {}
     path, texts = path_of(str(data.get("uri", ""))), server.texts()
@@ -128,11 +130,11 @@ async def _resolved(server: LinkwrightServer, action: types.CodeAction) -> types
     if data.get("checksum") != crc32(positions.text.encode()):
         raise _modified()
     try:
-        kind = Action(data.get("action"))
+        refactoring = Action(data.get("action"))
     except ValueError:
         return action
     try:
-        action.edit = await _refactoring_edit(server, kind, path, start, end, texts)
+        action.edit = await _refactoring_edit(server, refactoring, path, start, end, texts)
     except LinkwrightError as error:
         message = "\n".join(localized(diagnostic.message) for diagnostic in error.diagnostics)
         raise JsonRpcException(message, code=int(types.LSPErrorCodes.RequestFailed)) from None
@@ -143,20 +145,20 @@ def add_requests(server: LinkwrightServer) -> None:
     """Register the request handlers of this module."""
 
     @server.feature(types.TEXT_DOCUMENT_CODE_ACTION, types.CodeActionOptions([*_KINDS], resolve_provider=True))
-    async def code_action(server: LinkwrightServer, asked: types.CodeActionParams) -> list[types.CodeAction] | None:
-        path = path_of(asked.text_document.uri)
+    async def code_action(server: LinkwrightServer, params: types.CodeActionParams) -> list[types.CodeAction] | None:
+        path = path_of(params.text_document.uri)
         positions = None if path is None else server.positions(path)
-        project, only = server.project, asked.context.only
+        project, only = server.project, params.context.only
         if path is None or positions is None or project is None:
             return None
         texts = server.texts()
         actions: list[types.CodeAction] = []
         if _may_be_requested(_KINDS[:2], only):
-            actions += fixes(server, project.fixable(real(path), texts), asked, positions)
-            actions += suppressions(server, project.findings(real(path), texts), asked, path, positions)
+            actions += fixes(server, project.fixable(real(path), texts), params, positions)
+            actions += suppressions(server, project.findings(real(path), texts), params, path, positions)
         if _may_be_requested(_KINDS[2:], only):
-            start, end = positions.offset(asked.range.start), positions.offset(asked.range.end)
-            names = await server.names(path)
+            start, end = positions.offset(params.range.start), positions.offset(params.range.end)
+            names = await server.defined_names(path)
             server.check_unchanged(path, positions)
             if end == start + 1 and selected_value(positions.text, start, end) is None:
                 end = start  # ALE and Helix send the character under their block cursor
@@ -164,11 +166,11 @@ def add_requests(server: LinkwrightServer) -> None:
                 offer
                 for offer in offers_at(positions.text, path, start, end, names)
                 if is_requested(offer.action.value, only)
-                and (offer.action is not Action.CONVERT_TO_XACRO or _makes_files(server))
+                and (offer.action is not Action.CONVERT_TO_XACRO or _can_create_files(server))
             ]
             actions += await _refactorings(server, offers, path, positions, (start, end))
-        return [action for action in actions if is_requested(_name(action.kind or ""), only)]
+        return [action for action in actions if is_requested(_kind_name(action.kind or ""), only)]
 
     @server.feature(types.CODE_ACTION_RESOLVE)
     async def code_action_resolve(server: LinkwrightServer, action: types.CodeAction) -> types.CodeAction:
-        return await _resolved(server, action)
+        return await _with_edit(server, action)

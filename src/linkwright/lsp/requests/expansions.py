@@ -56,7 +56,7 @@ def _expansions(
     The expansion uses the first argument set without an error.
     """
     for entry in project.index.entries(file, texts):
-        for arguments, _ in project.calls(entry):
+        for arguments, _ in project.argument_calls(entry):
             try:
                 yield entry, arguments, expanded_text(project, texts, entry, arguments)
             except LinkwrightError:
@@ -76,17 +76,18 @@ def implementations(
         offset: the character offset in its text.
         encoding: the encoding of the positions.
     """
-    found = []
+    locations = []
     for entry, arguments, expansion in _expansions(project, texts, file):
         positions = TextPositions(expansion.text, encoding)
         uri = expansion_uri(entry, arguments)
-        found += [
-            types.Location(uri, positions.range(element.start, element.end)) for element in expansion.of(file, offset)
+        locations += [
+            types.Location(uri, positions.range(element.start, element.end))
+            for element in expansion.elements_from(file, offset)
         ]
-    return found
+    return locations
 
 
-def source_of(server: LinkwrightServer, uri: str, place: types.Position) -> list[types.Location] | None:
+def source_locations(server: LinkwrightServer, uri: str, position: types.Position) -> list[types.Location] | None:
     """Return the source of the element at a position in an expansion, or None for other URIs."""
     description = description_of(uri)
     if description is None or server.project is None:
@@ -96,14 +97,14 @@ def source_of(server: LinkwrightServer, uri: str, place: types.Position) -> list
     except LinkwrightError:  # the document shows its text from before the error
         return []
     encoding = server.workspace.position_encoding or UTF_16
-    element = expansion.at(TextPositions(expansion.text, encoding).offset(place))
+    element = expansion.element_at(TextPositions(expansion.text, encoding).offset(position))
     source = None if element is None else server.positions(element.file)
     if element is None or source is None:
         return []
     return [types.Location(server.uri_of(element.file), source.range(element.source_start, element.source_end))]
 
 
-async def content(server: LinkwrightServer, uri: str) -> str | None:
+async def expansion_content(server: LinkwrightServer, uri: str) -> str | None:
     """Return the text of an expansion, or None for the URI of another document.
 
     Raises:
@@ -113,7 +114,7 @@ async def content(server: LinkwrightServer, uri: str) -> str | None:
     if description is None or project is None:
         return None
     try:
-        expansion = await server.in_thread(lambda: expanded_text(project, texts, *description))
+        expansion = await server.run_in_check_thread(lambda: expanded_text(project, texts, *description))
     except LinkwrightError as error:
         message = "\n".join(localized(diagnostic.message) for diagnostic in error.diagnostics)
         raise JsonRpcException(message, code=int(types.LSPErrorCodes.RequestFailed)) from None
@@ -125,12 +126,12 @@ def add_requests(server: LinkwrightServer) -> None:
 
     @server.feature(types.TEXT_DOCUMENT_IMPLEMENTATION)
     async def implementation(
-        server: LinkwrightServer, asked: types.ImplementationParams
+        server: LinkwrightServer, params: types.ImplementationParams
     ) -> list[types.Location] | None:
-        path, positions = server.text(asked.text_document)
+        path, positions = server.xml_text(params.text_document)
         project, texts = server.project, server.texts()
         if positions is None or project is None or not is_expanded(path) or not server.opens_virtual_documents:
             return None
         await server.when_indexed()
-        offset, encoding = positions.offset(asked.position), server.workspace.position_encoding or UTF_16
-        return await server.in_thread(lambda: implementations(project, texts, real(path), offset, encoding))
+        offset, encoding = positions.offset(params.position), server.workspace.position_encoding or UTF_16
+        return await server.run_in_check_thread(lambda: implementations(project, texts, real(path), offset, encoding))

@@ -20,25 +20,25 @@ from linkwright.lsp.server import LinkwrightServer
 
 
 def fixes(
-    server: LinkwrightServer, findings: Sequence[Finding], asked: types.CodeActionParams, positions: TextPositions
+    server: LinkwrightServer, findings: Sequence[Finding], params: types.CodeActionParams, positions: TextPositions
 ) -> Iterator[types.CodeAction]:
     """Yield a fix for each finding in a range, and one action for all safe fixes.
 
     Args:
         server: the server.
         findings: the findings about the file that have a fix.
-        asked: the request, with the range and the diagnostics that the editor shows there.
+        params: the request, with the range and the diagnostics that the editor shows there.
         positions: the text of the file.
     """
     for finding in findings:
         edits = _edits([finding.fix] if finding.fix is not None else [])
-        if finding.fix is None or not edits or not _touches(finding.span, asked.range, positions):
+        if finding.fix is None or not edits or not _is_on_lines(finding.span, params.range, positions):
             continue
         title = localized(finding.hint) if finding.hint else localized(phrase("fix {code}", code=finding.code))
         yield types.CodeAction(
             title,
             types.CodeActionKind.QuickFix,
-            _reported(asked, finding) or None,
+            _shown_diagnostics(params, finding) or None,
             is_preferred=finding.fix.safe,
             edit=document_edits(server, edits),
         )
@@ -51,7 +51,7 @@ def fixes(
 def suppressions(
     server: LinkwrightServer,
     findings: Iterable[Diagnostic],
-    asked: types.CodeActionParams,
+    params: types.CodeActionParams,
     path: Path,
     positions: TextPositions,
 ) -> Iterator[types.CodeAction]:
@@ -60,41 +60,42 @@ def suppressions(
     Args:
         server: the server.
         findings: the findings about the file.
-        asked: the request, with the range and the diagnostics that the editor shows there.
+        params: the request, with the range and the diagnostics that the editor shows there.
         path: the file.
         positions: the text of the file.
     """
     edits: dict[Edit, tuple[str, list[types.Diagnostic]]] = {}
     for finding in findings:
-        if finding.span is not None and _touches(finding.span, asked.range, positions):
+        if finding.span is not None and _is_on_lines(finding.span, params.range, positions):
             offset = positions.offset(positions.range_of(finding.span).start)
             edit = suppression(positions.text, real(path), finding.code, offset)
             if edit is not None:
-                edits.setdefault(edit, (finding.code, []))[1].extend(_reported(asked, finding))
-    for edit, (code, reported) in edits.items():
+                edits.setdefault(edit, (finding.code, []))[1].extend(_shown_diagnostics(params, finding))
+    for edit, (code, shown) in edits.items():
         title = localized(phrase("ignore {code} here, with a reason", code=code))
-        yield types.CodeAction(
-            title, types.CodeActionKind.QuickFix, reported or None, edit=document_edits(server, [edit])
-        )
+        yield types.CodeAction(title, types.CodeActionKind.QuickFix, shown or None, edit=document_edits(server, [edit]))
 
 
-def _touches(span: Span | None, wanted: types.Range, positions: TextPositions) -> bool:
+def _is_on_lines(span: Span | None, range_: types.Range, positions: TextPositions) -> bool:
     """Return whether a finding is on the lines of a range."""
     if span is None:
         return False
-    place = positions.range_of(span)
-    return place.end.line >= wanted.start.line and place.start.line <= wanted.end.line
+    finding_range = positions.range_of(span)
+    return finding_range.end.line >= range_.start.line and finding_range.start.line <= range_.end.line
 
 
-def _reported(asked: types.CodeActionParams, finding: Diagnostic) -> list[types.Diagnostic]:
-    return [diagnostic for diagnostic in asked.context.diagnostics if diagnostic.code == finding.code]
+def _shown_diagnostics(params: types.CodeActionParams, finding: Diagnostic) -> list[types.Diagnostic]:
+    return [diagnostic for diagnostic in params.context.diagnostics if diagnostic.code == finding.code]
 
 
 def _edits(fixes: Iterable[Fix]) -> list[Edit]:
     """Return the edits of the fixes, except fixes that overlap earlier ones."""
     edits: list[Edit] = []
     for fix in fixes:
-        new = [Edit(real(one.source_file), one.start, one.end, one.replacement) for one in fix.edits]
+        new = [
+            Edit(real(replacement.source_file), replacement.start, replacement.end, replacement.replacement)
+            for replacement in fix.edits
+        ]
         if all(_fits(edit, edits) for edit in new):
             edits += new
     return edits

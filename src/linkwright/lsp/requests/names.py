@@ -20,13 +20,13 @@ from linkwright.language.includes import real
 from linkwright.language.links import file_references
 from linkwright.language.renaming import occurrence_at, references
 from linkwright.language.suppressing import code_at
-from linkwright.language.values import ValuedText, described_values, value_at
+from linkwright.language.values import ValuedText, describe_values, value_at
 from linkwright.language.xml_completion import complete
 from linkwright.language.xml_hover import explain_at
 from linkwright.lint.explain import find_page
-from linkwright.lsp.positions import TextOf, TextPositions
-from linkwright.lsp.requests.expansions import source_of
-from linkwright.lsp.server import FormattedText, LinkwrightServer, path_of
+from linkwright.lsp.positions import PositionsOf, TextPositions
+from linkwright.lsp.requests.expansions import source_locations
+from linkwright.lsp.server import FormatContext, LinkwrightServer, path_of
 
 _KINDS = {
     ItemKind.ELEMENT: types.CompletionItemKind.Class,
@@ -53,25 +53,27 @@ def completions_at(document: Document, offset: int, names: Sequence[NameDefiniti
     Raises:
         NotYetKnownError: they need results that no request has found, and the document does not wait.
     """
-    own = format_of(document.file)
-    return complete(document, offset, names) if own is None else [*own.complete(document, offset)]
+    format_ = format_of(document.file)
+    return complete(document, offset, names) if format_ is None else [*format_.complete(document, offset)]
 
 
-def items(
-    found: Iterable[Completion], positions: TextPositions, place: types.Position, *, takes_snippets: bool
+def completion_items(
+    completions: Iterable[Completion], positions: TextPositions, position: types.Position, *, supports_snippets: bool
 ) -> list[types.CompletionItem]:
     """Convert completions to the protocol, with sort texts that keep their order."""
-    offset = positions.offset(place)
-    listed = [_item(item, positions, offset, takes_snippets=takes_snippets) for item in found]
-    for number, item in enumerate(listed):
+    offset = positions.offset(position)
+    converted = [_completion_item(item, positions, offset, supports_snippets=supports_snippets) for item in completions]
+    for number, item in enumerate(converted):
         item.sort_text = f"{number:05}"
-    return listed
+    return converted
 
 
-def _item(item: Completion, positions: TextPositions, offset: int, *, takes_snippets: bool) -> types.CompletionItem:
-    is_snippet = bool(item.snippet) and takes_snippets
-    opens = item.snippet.startswith("<")
-    plain = f"<{item.label}" if opens else item.label
+def _completion_item(
+    item: Completion, positions: TextPositions, offset: int, *, supports_snippets: bool
+) -> types.CompletionItem:
+    is_snippet = bool(item.snippet) and supports_snippets
+    opens_tag = item.snippet.startswith("<")
+    plain = f"<{item.label}" if opens_tag else item.label
     edit = types.TextEdit(positions.range(item.start, offset), item.snippet if is_snippet else plain)
     return types.CompletionItem(
         item.label,
@@ -80,7 +82,7 @@ def _item(item: Completion, positions: TextPositions, offset: int, *, takes_snip
         documentation=_markdown(item.description) if item.description else None,
         insert_text_format=types.InsertTextFormat.Snippet if is_snippet else types.InsertTextFormat.PlainText,
         # Without this text, Neovim offers the item regardless of the typed text.
-        filter_text=f"<{item.label}" if opens else item.label,
+        filter_text=f"<{item.label}" if opens_tag else item.label,
         text_edit=edit,
     )
 
@@ -91,7 +93,7 @@ def hover(
     values: Sequence[ValuedText],
     facts: Iterable[str],
     positions: TextPositions,
-    place: types.Position,
+    position: types.Position,
 ) -> types.Hover | None:
     """Return the hover at a position, or None if nothing is known.
 
@@ -101,14 +103,14 @@ def hover(
         values: the values of the expressions in the file.
         facts: the facts about the link, joint, mesh or package at the position.
         positions: the text of the file.
-        place: the position.
+        position: the position.
     """
-    offset = positions.offset(place)
-    found, valued = explain_at(document, offset, names), value_at(values, offset)
-    parts = [] if found is None else [localized(found.text)]
-    span = None if found is None else (found.start, found.end)
+    offset = positions.offset(position)
+    explanation, valued = explain_at(document, offset, names), value_at(values, offset)
+    parts = [] if explanation is None else [localized(explanation.text)]
+    span = None if explanation is None else (explanation.start, explanation.end)
     if valued is not None:
-        parts.append(described_values(valued, positions.text[valued.start : valued.end]))
+        parts.append(describe_values(valued, positions.text[valued.start : valued.end]))
         span = valued.start, valued.end
     parts += facts
     if not parts:
@@ -116,73 +118,77 @@ def hover(
     return types.Hover(_markdown("\n\n".join(parts)), None if span is None else positions.range(*span))
 
 
-def suppression_hover(server: LinkwrightServer, asked: types.HoverParams) -> types.Hover | None:
+def suppression_hover(server: LinkwrightServer, params: types.HoverParams) -> types.Hover | None:
     """Return the page of the rule in the suppression comment at a position, or None."""
-    path = path_of(asked.text_document.uri)
+    path = path_of(params.text_document.uri)
     positions = None if path is None else server.positions(path)
-    suppressed = None if positions is None else code_at(positions.text, positions.offset(asked.position))
-    page = None if suppressed is None else find_page(suppressed[0])
-    if positions is None or suppressed is None or page is None:
+    code_and_start = None if positions is None else code_at(positions.text, positions.offset(params.position))
+    page = None if code_and_start is None else find_page(code_and_start[0])
+    if positions is None or code_and_start is None or page is None:
         return None
-    code, start = suppressed
+    code, start = code_and_start
     return types.Hover(_markdown(page.markdown), positions.range(start, start + len(code)))
 
 
 def definitions(
     names: Sequence[NameDefinition],
     positions: TextPositions,
-    place: types.Position,
-    text_of: TextOf,
-    uri: Callable[[Path], str],
+    position: types.Position,
+    positions_of: PositionsOf,
+    uri_of: Callable[[Path], str],
 ) -> list[types.Location]:
     """Return the definitions of the name at a position."""
-    found = definitions_at(positions.text, positions.offset(place), names)
-    return [*_locations(found, text_of, uri)]
+    matches = definitions_at(positions.text, positions.offset(position), names)
+    return [*_locations(matches, positions_of, uri_of)]
 
 
 async def parameter_definitions(
-    server: LinkwrightServer, path: Path, positions: TextPositions, place: types.Position
+    server: LinkwrightServer, path: Path, positions: TextPositions, position: types.Position
 ) -> list[types.Location]:
     """Return the declaration of the macro parameter at a position, or an empty list."""
     project, texts = server.project, server.texts()
-    name = occurrence_at(positions.text, real(path), positions.offset(place))
+    name = occurrence_at(positions.text, real(path), positions.offset(position))
     if project is None or name is None or name.kind is not NameKind.PARAMETER:
         return []
     await server.when_indexed()
-    uses = await server.in_thread(lambda: references(project, texts, name))
+    uses = await server.run_in_check_thread(lambda: references(project, texts, name))
     declared = (Target(use.file, use.start, use.end) for use in uses if use.is_definition)
     return [*target_locations(declared, server.positions, server.uri_of)]
 
 
 def _locations(
-    names: Iterable[NameDefinition], text_of: TextOf, uri: Callable[[Path], str]
+    names: Iterable[NameDefinition], positions_of: PositionsOf, uri_of: Callable[[Path], str]
 ) -> Iterable[types.Location]:
     for name in names:
-        own = text_of(name.file)
-        if own is not None:
-            yield types.Location(uri(name.file), own.range(name.start, name.start + len(name.name)))
+        text_positions = positions_of(name.file)
+        if text_positions is not None:
+            yield types.Location(uri_of(name.file), text_positions.range(name.start, name.start + len(name.name)))
 
 
-def explained(own: FormattedText, place: types.Position) -> types.Hover | None:
+def format_hover(context: FormatContext, position: types.Position) -> types.Hover | None:
     """Return the hover of a format at a position, or None if nothing is known."""
-    found = own.format.explain(own.document, own.positions.offset(place))
-    return None if found is None else types.Hover(_markdown(found.text), own.positions.range(found.start, found.end))
+    explanation = context.format.explain(context.document, context.positions.offset(position))
+    return (
+        None
+        if explanation is None
+        else types.Hover(_markdown(explanation.text), context.positions.range(explanation.start, explanation.end))
+    )
 
 
-def targets_at(own: FormattedText, place: types.Position) -> list[Target]:
+def targets_at(context: FormatContext, position: types.Position) -> list[Target]:
     """Return the definitions that a format finds for the name at a position."""
-    return [*own.format.define(own.document, own.positions.offset(place))]
+    return [*context.format.define(context.document, context.positions.offset(position))]
 
 
 def target_locations(
-    targets: Iterable[Target], text_of: TextOf, uri: Callable[[Path], str]
+    targets: Iterable[Target], positions_of: PositionsOf, uri_of: Callable[[Path], str]
 ) -> Iterable[types.Location]:
     """Convert targets to locations of the protocol."""
     for target in targets:
-        text = text_of(target.file)
+        text_positions = positions_of(target.file)
         start = types.Position(0, 0)
-        place = types.Range(start, start) if text is None else text.range(target.start, target.end)
-        yield types.Location(uri(target.file), place)
+        range_ = types.Range(start, start) if text_positions is None else text_positions.range(target.start, target.end)
+        yield types.Location(uri_of(target.file), range_)
 
 
 def _markdown(text: str | Phrase) -> types.MarkupContent:
@@ -194,71 +200,73 @@ def add_requests(server: LinkwrightServer) -> None:
 
     @server.feature(types.TEXT_DOCUMENT_COMPLETION, types.CompletionOptions(["<", " ", '"', "'", "/", "{", "(", ":"]))
     async def completion_request(
-        server: LinkwrightServer, asked: types.CompletionParams
+        server: LinkwrightServer, params: types.CompletionParams
     ) -> list[types.CompletionItem] | None:
         capabilities = server.client_capabilities.text_document
         item = capabilities.completion.completion_item if capabilities and capabilities.completion else None
-        takes_snippets = bool(item and item.snippet_support)
-        path, positions = server.readable(asked.text_document)
+        supports_snippets = bool(item and item.snippet_support)
+        path, positions = server.supported_text(params.text_document)
         if positions is None or server.project is None:
             return None
         await server.when_prepared(path)
-        known = await server.names(path) if format_of(path) is None else []
+        names = await server.defined_names(path) if format_of(path) is None else []
         server.check_unchanged(path, positions)
         document = Document(server.project, server.texts(), real(path), positions.text, waits=False)
-        offset = positions.offset(asked.position)
+        offset = positions.offset(params.position)
         try:
-            found = completions_at(document, offset, known)
+            completions = completions_at(document, offset, names)
         except NotYetKnownError:
             waiting = replace(document, waits=True)
-            found = await server.in_thread(lambda: completions_at(waiting, offset, known))
+            completions = await server.run_in_check_thread(lambda: completions_at(waiting, offset, names))
             server.check_unchanged(path, positions)
         if document.refreshes:
-            server.in_background(document.refreshes, document.file)
-        return items(found, positions, asked.position, takes_snippets=takes_snippets)
+            server.submit_to_check_thread(document.refreshes, document.file)
+        return completion_items(completions, positions, params.position, supports_snippets=supports_snippets)
 
     @server.feature(types.TEXT_DOCUMENT_HOVER)
-    async def hover_request(server: LinkwrightServer, asked: types.HoverParams) -> types.Hover | None:
-        suppressed = suppression_hover(server, asked)
+    async def hover_request(server: LinkwrightServer, params: types.HoverParams) -> types.Hover | None:
+        suppressed = suppression_hover(server, params)
         if suppressed is not None:
             return suppressed
-        own = await server.formatted(asked.text_document)
-        if own is not None:
-            return await server.in_thread(lambda: explained(own, asked.position))
-        path, positions = server.text(asked.text_document)
+        context = await server.indexed_format_context(params.text_document)
+        if context is not None:
+            return await server.run_in_check_thread(lambda: format_hover(context, params.position))
+        path, positions = server.xml_text(params.text_document)
         project, texts = server.project, server.texts()
         if positions is None or project is None:
             return None
-        known, values = await server.names(path), await server.values(path)
-        text, offset = positions.text, positions.offset(asked.position)
-        facts = await server.in_thread(lambda: facts_at(project, texts, real(path), text, offset, values))
+        names, values = await server.defined_names(path), await server.expression_values(path)
+        text, offset = positions.text, positions.offset(params.position)
+        facts = await server.run_in_check_thread(lambda: facts_at(project, texts, real(path), text, offset, values))
         server.check_unchanged(path, positions)
         document = Document(project, texts, real(path), text)
-        return hover(document, known, values, facts, positions, asked.position)
+        return hover(document, names, values, facts, positions, params.position)
 
     @server.feature(types.TEXT_DOCUMENT_DEFINITION)
     async def definition_request(
-        server: LinkwrightServer, asked: types.DefinitionParams
+        server: LinkwrightServer, params: types.DefinitionParams
     ) -> list[types.Location] | None:
-        own = await server.formatted(asked.text_document)
-        if own is not None:
-            targets = await server.in_thread(lambda: targets_at(own, asked.position))
+        context = await server.indexed_format_context(params.text_document)
+        if context is not None:
+            targets = await server.run_in_check_thread(lambda: targets_at(context, params.position))
             return [*target_locations(targets, server.positions, server.uri_of)]
-        source = await server.in_thread(lambda: source_of(server, asked.text_document.uri, asked.position))
-        path, positions = server.text(asked.text_document)
+        source = await server.run_in_check_thread(
+            lambda: source_locations(server, params.text_document.uri, params.position)
+        )
+        path, positions = server.xml_text(params.text_document)
         if positions is None or server.project is None:
             return source
-        known, values = await server.names(path), await server.values(path)
+        names, values = await server.defined_names(path), await server.expression_values(path)
         server.check_unchanged(path, positions)
-        found = await parameter_definitions(server, path, positions, asked.position) or definitions(
-            known, positions, asked.position, server.positions, server.uri_of
+        locations = await parameter_definitions(server, path, positions, params.position) or definitions(
+            names, positions, params.position, server.positions, server.uri_of
         )
-        offset, finder = positions.offset(asked.position), server.project.finder(real(path))
-        links = () if found else file_references(positions.text, path, finder, values)
+        offset, finder = positions.offset(params.position), server.project.finder(real(path))
+        links = () if locations else file_references(positions.text, path, finder, values)
         top = types.Range(types.Position(0, 0), types.Position(0, 0))
-        found += [
+        locations += [
             types.Location(server.uri_of(link.file), top)
             for link in links
             if link.start <= offset <= link.end and link.file.is_file()
         ]
-        return found
+        return locations

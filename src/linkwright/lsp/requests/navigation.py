@@ -28,7 +28,7 @@ _KINDS = {
 _MAX_SYMBOLS = 500
 
 
-def matching(names: Iterable[NameDefinition], query: str) -> list[NameDefinition]:
+def matching_names(names: Iterable[NameDefinition], query: str) -> list[NameDefinition]:
     """Return the names that contain the characters of a query in order, the best first.
 
     Names that contain the query as a whole come before the others, and short names before long ones.
@@ -52,13 +52,13 @@ def _symbols(server: LinkwrightServer, names: Iterable[NameDefinition]) -> Itera
     for name in names:
         positions = server.positions(name.file)
         if positions is not None and name.kind in _KINDS:
-            place = positions.range(name.start, name.start + len(name.name))
-            location = types.Location(server.uri_of(name.file), place)
+            range_ = positions.range(name.start, name.start + len(name.name))
+            location = types.Location(server.uri_of(name.file), range_)
             yield types.WorkspaceSymbol(location, name.name, _KINDS[name.kind], container_name=name.file.name)
 
 
 def uses_in_file(text: str, path: Path, offset: int) -> list[Occurrence]:
-    """Return the occurrences of the name at an offset in the same file."""
+    """Return all occurrences in a file of the name at an offset."""
     name = occurrence_at(text, path, offset)
     if name is None:
         return []
@@ -70,14 +70,14 @@ def uses_in_file(text: str, path: Path, offset: int) -> list[Occurrence]:
     ]
 
 
-def _item(server: LinkwrightServer, macro: Occurrence) -> types.CallHierarchyItem | None:
+def _macro_item(server: LinkwrightServer, macro: Occurrence) -> types.CallHierarchyItem | None:
     positions = server.positions(macro.file)
     if positions is None:
         return None
-    place = positions.range(macro.start, macro.end)
+    range_ = positions.range(macro.start, macro.end)
     uri = server.uri_of(macro.file)
     return types.CallHierarchyItem(
-        macro.name, types.SymbolKind.Function, uri, place, place, detail=macro.file.name, data={"start": macro.start}
+        macro.name, types.SymbolKind.Function, uri, range_, range_, detail=macro.file.name, data={"start": macro.start}
     )
 
 
@@ -147,7 +147,7 @@ class _MacroCalls:
             positions = self._server.positions(other)
             for name in occurrences_in("" if positions is None else positions.text, other):
                 if name.kind is NameKind.MACRO and name.is_definition and name.name == macro:
-                    return _item(self._server, name)
+                    return _macro_item(self._server, name)
         return None
 
 
@@ -155,7 +155,7 @@ def _tag_start(text: str, offset: int) -> int:
     return text.rfind("<", 0, offset)
 
 
-def _links(
+def _document_links(
     server: LinkwrightServer, positions: TextPositions, references: Iterable[FileReference]
 ) -> list[types.DocumentLink]:
     return [
@@ -170,80 +170,80 @@ def add_requests(server: LinkwrightServer) -> None:
 
     @server.feature(types.TEXT_DOCUMENT_DOCUMENT_LINK)
     async def document_links(
-        server: LinkwrightServer, asked: types.DocumentLinkParams
+        server: LinkwrightServer, params: types.DocumentLinkParams
     ) -> list[types.DocumentLink] | None:
-        own = await server.formatted(asked.text_document)
-        if own is not None:
-            found = await server.in_thread(lambda: [*own.format.links(own.document)])
-            return _links(server, own.positions, found)
-        path, positions = server.text(asked.text_document)
+        context = await server.indexed_format_context(params.text_document)
+        if context is not None:
+            found = await server.run_in_check_thread(lambda: [*context.format.links(context.document)])
+            return _document_links(server, context.positions, found)
+        path, positions = server.xml_text(params.text_document)
         if positions is None or server.project is None:
             return None
-        values = await server.values(path)
+        values = await server.expression_values(path)
         server.check_unchanged(path, positions)
         finder = server.project.finder(real(path))
-        return _links(server, positions, file_references(positions.text, path, finder, values))
+        return _document_links(server, positions, file_references(positions.text, path, finder, values))
 
     @server.feature(types.WORKSPACE_SYMBOL)
     async def workspace_symbol(
-        server: LinkwrightServer, asked: types.WorkspaceSymbolParams
+        server: LinkwrightServer, params: types.WorkspaceSymbolParams
     ) -> list[types.WorkspaceSymbol] | None:
         project, texts = server.project, server.texts()
         if project is None:
             return None
         await server.when_indexed()
-        names = await server.in_thread(lambda: project.all_names(texts))
-        return [*_symbols(server, matching(names, asked.query)[:_MAX_SYMBOLS])]
+        names = await server.run_in_check_thread(lambda: project.all_names(texts))
+        return [*_symbols(server, matching_names(names, params.query)[:_MAX_SYMBOLS])]
 
     @server.feature(types.TEXT_DOCUMENT_DOCUMENT_HIGHLIGHT)
     def document_highlight(
-        server: LinkwrightServer, asked: types.DocumentHighlightParams
+        server: LinkwrightServer, params: types.DocumentHighlightParams
     ) -> list[types.DocumentHighlight] | None:
-        place = path_of(asked.text_document.uri)
-        if place is not None:  # editors ask when the cursor has moved
-            server.robot_views.cursor_moved(real(place), asked.position.line + 1)
-        own = server.document(asked.text_document)
-        if own is not None:
-            offset = own.positions.offset(asked.position)
-            uses = uses_at(own.document, own.format, offset, in_file=True)
+        path_at_cursor = path_of(params.text_document.uri)
+        if path_at_cursor is not None:  # editors ask when the cursor has moved
+            server.robot_views.cursor_moved(real(path_at_cursor), params.position.line + 1)
+        context = server.format_context(params.text_document)
+        if context is not None:
+            offset = context.positions.offset(params.position)
+            uses = uses_at(context.document, context.format, offset, in_file=True)
             if uses:
-                return [types.DocumentHighlight(own.positions.range(use.start, use.end)) for use in uses]
-        path, positions = server.text(asked.text_document)
+                return [types.DocumentHighlight(context.positions.range(use.start, use.end)) for use in uses]
+        path, positions = server.xml_text(params.text_document)
         if positions is None:
             return None
         kinds = {True: types.DocumentHighlightKind.Write, False: types.DocumentHighlightKind.Read}
         return [
             types.DocumentHighlight(positions.range(name.start, name.end), kinds[name.is_definition])
-            for name in uses_in_file(positions.text, real(path), positions.offset(asked.position))
+            for name in uses_in_file(positions.text, real(path), positions.offset(params.position))
         ]
 
     @server.feature(types.TEXT_DOCUMENT_PREPARE_CALL_HIERARCHY)
     async def prepare_call_hierarchy(
-        server: LinkwrightServer, asked: types.CallHierarchyPrepareParams
+        server: LinkwrightServer, params: types.CallHierarchyPrepareParams
     ) -> list[types.CallHierarchyItem] | None:
-        path, positions = server.text(asked.text_document)
+        path, positions = server.xml_text(params.text_document)
         project, texts = server.project, server.texts()
         if positions is None or project is None:
             return None
-        name = occurrence_at(positions.text, real(path), positions.offset(asked.position))
+        name = occurrence_at(positions.text, real(path), positions.offset(params.position))
         if name is None or name.kind is not NameKind.MACRO:
             return None
         await server.when_indexed()
-        found = await server.in_thread(lambda: references(project, texts, name))
-        return [item for use in found if use.is_definition and (item := _item(server, use)) is not None]
+        found = await server.run_in_check_thread(lambda: references(project, texts, name))
+        return [item for use in found if use.is_definition and (item := _macro_item(server, use)) is not None]
 
     @server.feature(types.CALL_HIERARCHY_INCOMING_CALLS)
     async def incoming_calls(
-        server: LinkwrightServer, asked: types.CallHierarchyIncomingCallsParams
+        server: LinkwrightServer, params: types.CallHierarchyIncomingCallsParams
     ) -> list[types.CallHierarchyIncomingCall]:
         await server.when_indexed()
         texts = server.texts()
-        return await server.in_thread(lambda: [*_MacroCalls(server, texts, asked.item).incoming()])
+        return await server.run_in_check_thread(lambda: [*_MacroCalls(server, texts, params.item).incoming()])
 
     @server.feature(types.CALL_HIERARCHY_OUTGOING_CALLS)
     async def outgoing_calls(
-        server: LinkwrightServer, asked: types.CallHierarchyOutgoingCallsParams
+        server: LinkwrightServer, params: types.CallHierarchyOutgoingCallsParams
     ) -> list[types.CallHierarchyOutgoingCall]:
         await server.when_indexed()
         texts = server.texts()
-        return await server.in_thread(lambda: [*_MacroCalls(server, texts, asked.item).outgoing()])
+        return await server.run_in_check_thread(lambda: [*_MacroCalls(server, texts, params.item).outgoing()])

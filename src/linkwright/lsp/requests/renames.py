@@ -15,7 +15,7 @@ from linkwright.language.includes import real
 from linkwright.language.mentions import Mention
 from linkwright.language.occurrences import Occurrence
 from linkwright.language.proof import Edit
-from linkwright.language.rename_places import RenamePlace, place_at, rename_place
+from linkwright.language.rename_places import RenamableName, renamable_name_at, rename_name
 from linkwright.language.renaming import occurrence_at, references
 from linkwright.language.uses import uses_at
 from linkwright.lsp.edits import document_edits
@@ -23,15 +23,15 @@ from linkwright.lsp.requests.names import target_locations
 from linkwright.lsp.server import LinkwrightServer, path_of
 
 
-def _unchanged(server: LinkwrightServer, mentions: Iterable[Mention]) -> str:
+def _uncertain_mentions_message(server: LinkwrightServer, mentions: Iterable[Mention]) -> str:
     """Return the text of a message that lists the mentions, each with its file and line."""
-    places = []
+    locations = []
     for mention in dict.fromkeys(mentions):
         positions = server.positions(mention.file)
         line = 0 if positions is None else positions.position(mention.start).line + 1
-        places.append(f"{mention.file.name}:{line} ({mention.name})")
+        locations.append(f"{mention.file.name}:{line} ({mention.name})")
     return localized(
-        phrase("these texts are not renamed, because their meaning is uncertain: {places}", places=joined(places))
+        phrase("these texts are not renamed, because their meaning is uncertain: {places}", places=joined(locations))
     )
 
 
@@ -51,64 +51,66 @@ def file_edits(server: LinkwrightServer, files: Iterable[types.FileRename]) -> t
 def add_requests(server: LinkwrightServer) -> None:
     """Register the request handlers of this module."""
 
-    def place(
+    def texts_and_name(
         server: LinkwrightServer, document: types.TextDocumentIdentifier, position: types.Position
     ) -> tuple[Mapping[Path, str], Occurrence | None]:
-        path, positions = server.text(document)
+        path, positions = server.xml_text(document)
         if positions is None or server.project is None:
             return {}, None
         return server.texts(), occurrence_at(positions.text, real(path), positions.offset(position))
 
     @server.feature(types.TEXT_DOCUMENT_REFERENCES)
-    async def references_request(server: LinkwrightServer, asked: types.ReferenceParams) -> list[types.Location] | None:
-        own = await server.formatted(asked.text_document)
-        if own is not None:
-            offset = own.positions.offset(asked.position)
-            uses = await server.in_thread(lambda: uses_at(own.document, own.format, offset))
-            own_uses = [*target_locations(uses, server.positions, server.uri_of)]
-            if own_uses:
-                return own_uses[0 if asked.context.include_declaration else 1 :]
-        texts, name = place(server, asked.text_document, asked.position)
+    async def references_request(
+        server: LinkwrightServer, params: types.ReferenceParams
+    ) -> list[types.Location] | None:
+        context = await server.indexed_format_context(params.text_document)
+        if context is not None:
+            offset = context.positions.offset(params.position)
+            uses = await server.run_in_check_thread(lambda: uses_at(context.document, context.format, offset))
+            use_locations = [*target_locations(uses, server.positions, server.uri_of)]
+            if use_locations:
+                return use_locations[0 if params.context.include_declaration else 1 :]
+        texts, name = texts_and_name(server, params.text_document, params.position)
         if name is None or server.project is None:
             return None
         await server.when_indexed()
-        found = []
+        locations = []
         for other in references(server.project, texts, name):
             positions = server.positions(other.file)
-            if positions is not None and (asked.context.include_declaration or not other.is_definition):
-                found.append(types.Location(server.uri_of(other.file), positions.range(other.start, other.end)))
-        return found
+            if positions is not None and (params.context.include_declaration or not other.is_definition):
+                locations.append(types.Location(server.uri_of(other.file), positions.range(other.start, other.end)))
+        return locations
 
     @server.feature(types.TEXT_DOCUMENT_PREPARE_RENAME)
     async def prepare_rename_request(
-        server: LinkwrightServer, asked: types.PrepareRenameParams
+        server: LinkwrightServer, params: types.PrepareRenameParams
     ) -> types.PrepareRenamePlaceholder | None:
-        found = await rename_place_at(server, asked.text_document, asked.position)
-        positions = None if found is None else server.positions(found.file)
-        if found is None or positions is None:
+        renamable = await find_renamable_name(server, params.text_document, params.position)
+        positions = None if renamable is None else server.positions(renamable.file)
+        if renamable is None or positions is None:
             return None
-        return types.PrepareRenamePlaceholder(positions.range(found.start, found.end), found.name)
+        return types.PrepareRenamePlaceholder(positions.range(renamable.start, renamable.end), renamable.name)
 
-    async def rename_place_at(
+    async def find_renamable_name(
         server: LinkwrightServer, document: types.TextDocumentIdentifier, position: types.Position
-    ) -> RenamePlace | None:
-        path, positions = server.text(document)
+    ) -> RenamableName | None:
+        path, positions = server.xml_text(document)
         project = server.project
         if positions is None or project is None:
             return None
         await server.when_indexed()
         texts, offset = server.texts(), positions.offset(position)
-        return await server.in_thread(lambda: place_at(project, texts, real(path), offset))
+        return await server.run_in_check_thread(lambda: renamable_name_at(project, texts, real(path), offset))
 
     @server.feature(types.TEXT_DOCUMENT_RENAME, types.RenameOptions(prepare_provider=True))
-    async def rename_request(server: LinkwrightServer, asked: types.RenameParams) -> types.WorkspaceEdit | None:
+    async def rename_request(server: LinkwrightServer, params: types.RenameParams) -> types.WorkspaceEdit | None:
         texts = server.texts()
-        found = await rename_place_at(server, asked.text_document, asked.position)
+        renamable = await find_renamable_name(server, params.text_document, params.position)
         project = server.project
-        if found is None or project is None:
+        if renamable is None or project is None:
             return None
         try:
-            renaming = await server.in_thread(lambda: rename_place(project, texts, found, asked.new_name))
+            renaming = await server.run_in_check_thread(lambda: rename_name(project, texts, renamable, params.new_name))
         except LinkwrightError as error:
             message = "\n".join(localized(diagnostic.message) for diagnostic in error.diagnostics)
             raise JsonRpcException(message, code=int(types.LSPErrorCodes.RequestFailed)) from None
@@ -117,7 +119,7 @@ def add_requests(server: LinkwrightServer) -> None:
             raise JsonRpcException(message, code=int(types.LSPErrorCodes.ContentModified))
         shown = [localized(note) for note in renaming.notes]
         if renaming.unchanged:
-            shown.append(_unchanged(server, renaming.unchanged))
+            shown.append(_uncertain_mentions_message(server, renaming.unchanged))
         if shown:
             server.window_show_message(types.ShowMessageParams(types.MessageType.Info, "\n".join(shown)))
         return document_edits(server, renaming.edits)
@@ -125,12 +127,16 @@ def add_requests(server: LinkwrightServer) -> None:
     files = types.FileOperationFilter(types.FileOperationPattern("**/*"), "file")
 
     @server.feature(types.WORKSPACE_WILL_RENAME_FILES, types.FileOperationRegistrationOptions([files]))
-    async def will_rename_files(server: LinkwrightServer, asked: types.RenameFilesParams) -> types.WorkspaceEdit | None:
+    async def will_rename_files(
+        server: LinkwrightServer, params: types.RenameFilesParams
+    ) -> types.WorkspaceEdit | None:
         await server.when_indexed()
         texts = server.texts()
-        edits, unchanged = await server.in_thread(lambda: file_edits(server, asked.files))
+        edits, unchanged = await server.run_in_check_thread(lambda: file_edits(server, params.files))
         if server.texts() != texts:  # the editor renames the file without edits
             return None
         if unchanged:
-            server.window_show_message(types.ShowMessageParams(types.MessageType.Info, _unchanged(server, unchanged)))
+            server.window_show_message(
+                types.ShowMessageParams(types.MessageType.Info, _uncertain_mentions_message(server, unchanged))
+            )
         return document_edits(server, edits) if edits else None

@@ -1,4 +1,4 @@
-"""The command that shows a robot in a page, which follows the texts and the cursor of the editor."""
+"""The command that shows a robot in a page. The page follows the texts and the cursor of the editor."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ SHOW_ROBOT = "linkwright.showRobot"
 
 
 class PageEditor:
-    """The editor, as the pages of robots see it. See `linkwright.lsp.robot_views.TextEditor`.
+    """The editor to which the pages of robots report, see `linkwright.lsp.robot_views.TextEditor`.
 
     Args:
         server: the server.
@@ -27,8 +27,8 @@ class PageEditor:
     def __init__(self, server: LinkwrightServer) -> None:
         self._server = server
 
-    def go_to(self, file: Path, line: int, column: int) -> None:
-        """Show a position in the editor, provided that it can."""
+    def show_location(self, file: Path, line: int, column: int) -> None:
+        """Show a position of a file, if the editor supports it. Line and column count from 1."""
         server, window = self._server, self._server.client_capabilities.window
         if window is not None and window.show_document is not None and window.show_document.support:
             position = types.Position(line - 1, column - 1)
@@ -37,12 +37,12 @@ class PageEditor:
                 types.ShowDocumentParams(server.uri_of(file), take_focus=True, selection=selection)
             )
 
-    def replace_text(self, file: Path, number: int, text: str) -> None:
-        """Replace the text of a file. A text that has changed since, or that the editor cannot edit, stays."""
+    def replace_text(self, file: Path, version: int, text: str) -> None:
+        """Replace the text of a file, or warn if it has another version or the editor cannot edit."""
         server, workspace = self._server, self._server.client_capabilities.workspace
         document, positions = server.documents().get(file), server.positions(file)
-        version = 0 if document is None else document.version or 0
-        if positions is None or version != number or workspace is None or not workspace.apply_edit:
+        current_version = 0 if document is None else document.version or 0
+        if positions is None or current_version != version or workspace is None or not workspace.apply_edit:
             message = phrase("the edit in the page was not applied to '{file}'; repeat it", file=file.name)
             server.window_show_message(types.ShowMessageParams(types.MessageType.Warning, localized(message)))
             return
@@ -65,7 +65,7 @@ async def show_robot(server: LinkwrightServer, uri: str, *, opens: bool) -> str:
     if path is None or project is None or not path.name.endswith(DESCRIPTIONS):
         raise _failed(localized(phrase("only the robots of URDF, xacro and SDF files can be shown")))
     await server.when_indexed()
-    entry = (await server.in_thread(lambda: project.index.entries(real(path), texts)))[0]
+    entry = (await server.run_in_check_thread(lambda: project.index.entries(real(path), texts)))[0]
     try:
         address = await server.robot_views.address(entry, server.documents())
     except OSError as error:

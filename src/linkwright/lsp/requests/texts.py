@@ -78,22 +78,22 @@ def _symbols(elements: Iterable[OutlineElement], positions: TextPositions) -> It
         )
 
 
-def _own_symbol(symbol: Symbol, positions: TextPositions) -> types.DocumentSymbol:
-    place = positions.range(symbol.start, symbol.end)
-    children = [_own_symbol(child, positions) for child in symbol.children]
+def _document_symbol(symbol: Symbol, positions: TextPositions) -> types.DocumentSymbol:
+    range_ = positions.range(symbol.start, symbol.end)
+    children = [_document_symbol(child, positions) for child in symbol.children]
     kind = types.SymbolKind[symbol.kind.value]
-    return types.DocumentSymbol(symbol.name, kind, place, place, detail=symbol.detail or None, children=children)
+    return types.DocumentSymbol(symbol.name, kind, range_, range_, detail=symbol.detail or None, children=children)
 
 
 def folds(positions: TextPositions) -> list[types.FoldingRange]:
     """Return the folding ranges of elements and comments that span several lines."""
     outline = Outline.of(positions.text)
-    found = [
+    ranges = [
         types.FoldingRange(positions.position(element.tag.start).line, positions.position(closing.start).line - 1)
         for element in outline.all()
         if (closing := element.closing) is not None
     ]
-    found += [
+    ranges += [
         types.FoldingRange(
             positions.position(comment.start).line,
             positions.position(comment.end).line,
@@ -101,20 +101,20 @@ def folds(positions: TextPositions) -> list[types.FoldingRange]:
         )
         for comment in outline.comments
     ]
-    return [fold for fold in found if fold.end_line > fold.start_line]
+    return [fold for fold in ranges if fold.end_line > fold.start_line]
 
 
-def selections(positions: TextPositions, places: Iterable[types.Position]) -> list[types.SelectionRange]:
+def selections(positions: TextPositions, cursors: Iterable[types.Position]) -> list[types.SelectionRange]:
     """Return the nested selection ranges around each position.
 
     These are the attribute value, attribute, tag, content and element, and those of the enclosing elements.
     """
     outline = Outline.of(positions.text)
-    found = []
-    for place in places:
-        offset = positions.offset(place)
+    selection_ranges = []
+    for position in cursors:
+        offset = positions.offset(position)
         ranges: list[tuple[int, int]] = [(0, len(positions.text))]
-        for element in outline.around(offset):
+        for element in outline.elements_around(offset):
             ranges.append((element.tag.start, element.end))
             if element.closing is not None:
                 ranges.append((element.tag.end, element.closing.start))
@@ -126,14 +126,14 @@ def selections(positions: TextPositions, places: Iterable[types.Position]) -> li
         for start, end in ranges:
             if outer[0] <= start <= offset <= end <= outer[1]:
                 selection, outer = types.SelectionRange(positions.range(start, end), selection), (start, end)
-        found.append(selection or types.SelectionRange(positions.whole()))
-    return found
+        selection_ranges.append(selection or types.SelectionRange(positions.whole()))
+    return selection_ranges
 
 
-def linked_tags(positions: TextPositions, place: types.Position) -> types.LinkedEditingRanges | None:
+def linked_tags(positions: TextPositions, position: types.Position) -> types.LinkedEditingRanges | None:
     """Return the ranges of the start and end tag names at a position, or None."""
-    offset = positions.offset(place)
-    for element in reversed(Outline.of(positions.text).around(offset)):
+    offset = positions.offset(position)
+    for element in reversed(Outline.of(positions.text).elements_around(offset)):
         if element.closing is None:
             continue
         length = len(element.tag.name)
@@ -147,43 +147,45 @@ def add_requests(server: LinkwrightServer) -> None:
     """Register the request handlers of this module."""
 
     @server.feature(types.TEXT_DOCUMENT_FORMATTING)
-    def format_document(server: LinkwrightServer, asked: types.DocumentFormattingParams) -> list[types.TextEdit] | None:
-        path, positions = server.text(asked.text_document)
+    def format_document(
+        server: LinkwrightServer, params: types.DocumentFormattingParams
+    ) -> list[types.TextEdit] | None:
+        path, positions = server.xml_text(params.text_document)
         return None if positions is None else format_edits(positions, path)
 
     @server.feature(types.TEXT_DOCUMENT_RANGE_FORMATTING)
     def format_range(
-        server: LinkwrightServer, asked: types.DocumentRangeFormattingParams
+        server: LinkwrightServer, params: types.DocumentRangeFormattingParams
     ) -> list[types.TextEdit] | None:
-        path, positions = server.text(asked.text_document)
-        lines = (asked.range.start.line, asked.range.end.line + (asked.range.end.character > 0))
+        path, positions = server.xml_text(params.text_document)
+        lines = (params.range.start.line, params.range.end.line + (params.range.end.character > 0))
         return None if positions is None else format_edits(positions, path, lines)
 
     @server.feature(types.TEXT_DOCUMENT_DOCUMENT_SYMBOL)
     def document_symbol(
-        server: LinkwrightServer, asked: types.DocumentSymbolParams
+        server: LinkwrightServer, params: types.DocumentSymbolParams
     ) -> list[types.DocumentSymbol] | None:
-        own = server.document(asked.text_document)
-        if own is not None and own.format.symbols is not None:
-            return [_own_symbol(symbol, own.positions) for symbol in own.format.symbols(own.document)]
-        _, positions = server.text(asked.text_document)
+        context = server.format_context(params.text_document)
+        if context is not None and context.format.symbols is not None:
+            return [_document_symbol(symbol, context.positions) for symbol in context.format.symbols(context.document)]
+        _, positions = server.xml_text(params.text_document)
         return None if positions is None else symbols(positions)
 
     @server.feature(types.TEXT_DOCUMENT_FOLDING_RANGE)
-    def folding_range(server: LinkwrightServer, asked: types.FoldingRangeParams) -> list[types.FoldingRange] | None:
-        _, positions = server.text(asked.text_document)
+    def folding_range(server: LinkwrightServer, params: types.FoldingRangeParams) -> list[types.FoldingRange] | None:
+        _, positions = server.xml_text(params.text_document)
         return None if positions is None else folds(positions)
 
     @server.feature(types.TEXT_DOCUMENT_SELECTION_RANGE)
     def selection_range(
-        server: LinkwrightServer, asked: types.SelectionRangeParams
+        server: LinkwrightServer, params: types.SelectionRangeParams
     ) -> list[types.SelectionRange] | None:
-        _, positions = server.text(asked.text_document)
-        return None if positions is None else selections(positions, asked.positions)
+        _, positions = server.xml_text(params.text_document)
+        return None if positions is None else selections(positions, params.positions)
 
     @server.feature(types.TEXT_DOCUMENT_LINKED_EDITING_RANGE)
     def linked_editing_range(
-        server: LinkwrightServer, asked: types.LinkedEditingRangeParams
+        server: LinkwrightServer, params: types.LinkedEditingRangeParams
     ) -> types.LinkedEditingRanges | None:
-        _, positions = server.text(asked.text_document)
-        return None if positions is None else linked_tags(positions, asked.position)
+        _, positions = server.xml_text(params.text_document)
+        return None if positions is None else linked_tags(positions, params.position)

@@ -15,9 +15,9 @@ def add_requests(server: LinkwrightServer) -> None:
 
     @server.feature(types.WORKSPACE_TEXT_DOCUMENT_CONTENT, schemes)
     async def text_document_content(
-        server: LinkwrightServer, asked: types.TextDocumentContentParams
+        server: LinkwrightServer, params: types.TextDocumentContentParams
     ) -> types.TextDocumentContentResult | None:
-        text = rule_pages.page_text(asked.uri)
+        text = rule_pages.page_text(params.uri)
         if text is None:
-            text = await expansions.content(server, asked.uri)
+            text = await expansions.expansion_content(server, params.uri)
         return None if text is None else types.TextDocumentContentResult(text)

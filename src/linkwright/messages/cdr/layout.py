@@ -22,30 +22,30 @@ MAX_LOOP_DEPTH = 5
 """The maximum depth of nested loops in one function. Python's limit for nested blocks is 20."""
 
 
-class Place(NamedTuple):
+class Alignment(NamedTuple):
     """The known part of a position: its `remainder` after division by `modulus` (1, 2, 4 or 8)."""
 
     modulus: int
     remainder: int
 
-    def after(self, size: int) -> Place:
+    def after(self, size: int) -> Alignment:
         """Return the position that is `size` bytes further."""
-        return Place(self.modulus, (self.remainder + size) % self.modulus)
+        return Alignment(self.modulus, (self.remainder + size) % self.modulus)
 
     def padding(self, size: int) -> int | None:
         """Return the number of bytes up to the next multiple of `size`, or None if it is not known."""
         return (-self.remainder) % size if self.modulus >= size else None
 
-    def common(self, other: Place) -> Place:
+    def common(self, other: Alignment) -> Alignment:
         """Return what is known about a position that may be either of two positions."""
         modulus = min(self.modulus, other.modulus)
         while (self.remainder - other.remainder) % modulus:
             modulus //= 2
-        return Place(modulus, self.remainder % modulus)
+        return Alignment(modulus, self.remainder % modulus)
 
 
-START = Place(8, 0)
-ANYWHERE = Place(1, 0)
+START = Alignment(8, 0)
+ANYWHERE = Alignment(1, 0)
 
 
 class Facts(NamedTuple):

@@ -16,7 +16,7 @@ from itertools import count
 from typing import Any, Literal
 
 from linkwright.messages.cdr import values as cdr_values
-from linkwright.messages.cdr.layout import ANYWHERE, MAX_INLINE_LEAVES, MAX_LOOP_DEPTH, START, Place, facts
+from linkwright.messages.cdr.layout import ANYWHERE, MAX_INLINE_LEAVES, MAX_LOOP_DEPTH, START, Alignment, facts
 from linkwright.messages.definitions.interfaces import Container, Field, FieldType, Primitive, Structure
 from linkwright.messages.definitions.library import LIBRARY
 
@@ -80,7 +80,7 @@ class _ReaderCode:
     In the code, `p` is the position in the data, including the header, and `e` is the end of the data.
     """
 
-    def __init__(self, place: Place, class_of: ClassOf, order: Order, known: int | None) -> None:
+    def __init__(self, place: Alignment, class_of: ClassOf, order: Order, known: int | None) -> None:
         self.place = place
         self._known_position = known
         """The position as a number, or None once it differs between messages."""
@@ -154,7 +154,7 @@ class _ReaderCode:
         length = self._read_length()
         if kind.base == "wstring":
             self._add_line(f"{target}, p = wide(d, p, {length}, {self._order!r})")
-            self.place = Place(4, 0)
+            self.place = Alignment(4, 0)
         else:
             self._add_line(f"if {length}:")
             self._add_line(f"    q = p + {length} - 1")
@@ -224,7 +224,7 @@ class _ReaderCode:
         self._add_line("p = q")
         self._depth -= 1
         self._add_line(f"else: {target} = array({code!r})")
-        self.place = Place(min(primitive.size, 4), 0)
+        self.place = Alignment(min(primitive.size, 4), 0)
 
     def _read_small_values(self, primitive: Primitive, length: str, target: str) -> None:
         reader = "bools" if primitive.python is bool else "single_bytes"
@@ -281,7 +281,7 @@ class _ReaderCode:
         if padding is None:
             self.end_run()
             self._add_line({2: "p += p & 1", 4: "p += -p & 3", 8: "p = (p + 3 & -8) + 4"}[size])
-            self.place = Place(size, 0)
+            self.place = Alignment(size, 0)
         elif padding:
             if self._run:
                 self._run.append((f"{padding}x", ""))

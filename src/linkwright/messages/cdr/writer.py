@@ -13,7 +13,15 @@ from itertools import count
 from typing import Any
 
 from linkwright.messages.cdr import values as cdr_values
-from linkwright.messages.cdr.layout import ANYWHERE, MAX_INLINE_LEAVES, MAX_LOOP_DEPTH, START, Place, facts, field_facts
+from linkwright.messages.cdr.layout import (
+    ANYWHERE,
+    MAX_INLINE_LEAVES,
+    MAX_LOOP_DEPTH,
+    START,
+    Alignment,
+    facts,
+    field_facts,
+)
 from linkwright.messages.definitions.interfaces import EMPTY_MEMBER, Container, Field, FieldType, Primitive, Structure
 from linkwright.messages.definitions.library import LIBRARY
 
@@ -85,7 +93,7 @@ class _WriterCode:
     In the code, `p` is the position after the header, and `o` is the list of pieces.
     """
 
-    def __init__(self, place: Place) -> None:
+    def __init__(self, place: Alignment) -> None:
         self.place = place
         self.needs_position = False
         self._lines: list[str] = []
@@ -170,9 +178,9 @@ class _WriterCode:
     def _text(self, kind: FieldType, value: str, following: int) -> None:
         self.align(4)
         if kind.base == "wstring":
-            self._add_piece(self._assign_variable(f"wide({value})"), Place(4, 0))
+            self._add_piece(self._assign_variable(f"wide({value})"), Alignment(4, 0))
         elif following >= 4:
-            self._add_piece(self._assign_variable(f"TEXT4[{value}]"), Place(4, 0))
+            self._add_piece(self._assign_variable(f"TEXT4[{value}]"), Alignment(4, 0))
         else:
             self._add_piece(self._assign_variable(f"TEXT1[{value}]"), ANYWHERE)
 
@@ -216,7 +224,7 @@ class _WriterCode:
             self._unsynced_sizes.append(padding)
         self._pieces.append(values)
         self._unsynced_sizes.append(f"{primitive.size} * {length}" if primitive.size > 1 else length)
-        self.place = Place(min(primitive.size, 4), 0)
+        self.place = Alignment(min(primitive.size, 4), 0)
 
     def _values(self, field: Field, values: str, following: int) -> None:
         kind, primitive = field.type, field.type.primitive
@@ -227,7 +235,7 @@ class _WriterCode:
                 with self._loop("e", values) as item:
                     self._add_line(f"check_bound({field.name!r}, {item}, {kind.string_bound})")
             self.align(4)
-            cache_name, place = ("LIST4", Place(4, 0)) if following >= 4 else ("LIST1", ANYWHERE)
+            cache_name, place = ("LIST4", Alignment(4, 0)) if following >= 4 else ("LIST1", ANYWHERE)
             self._add_piece(self._assign_variable(f"{cache_name}[tuple({values})]"), place)
         else:
             item_type = FieldType(kind.base, kind.string_bound)
@@ -272,12 +280,12 @@ class _WriterCode:
             padding_name = self._assign_variable(f"-p & {size - 1}")
             self._pieces.append(f"PAD[{padding_name}]")
             self._unsynced_sizes.append(padding_name)
-            self.place = Place(size, 0)
+            self.place = Alignment(size, 0)
         elif padding:
             self._run.append((f"{padding}x", ""))
             self._advance(padding)
 
-    def pack(self, code: str, value: str, place: Place | None = None) -> None:
+    def pack(self, code: str, value: str, place: Alignment | None = None) -> None:
         """Add a primitive to the current run.
 
         The position must be aligned. If `place` is not None, the position does not advance.
@@ -302,7 +310,7 @@ class _WriterCode:
             self._add_line("p += " + " + ".join(terms + ([str(constant_size)] if constant_size else [])))
             self._unsynced_sizes = []
 
-    def _add_piece(self, name: str, place: Place) -> None:
+    def _add_piece(self, name: str, place: Alignment) -> None:
         self._end_run()
         self._pieces.append(name)
         self._unsynced_sizes.append(f"len({name})")

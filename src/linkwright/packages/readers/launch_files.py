@@ -21,7 +21,7 @@ _PATH_FUNCTIONS = frozenset({"join", "Path", "PurePath", "joinpath", "PathJoinSu
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class EvaluatedText:
     """An expression that evaluates to a text: the text, its syntax node and its location."""
 
     text: str
@@ -33,8 +33,8 @@ class Place:
 class StartedNode:
     """The package and executable of a ``Node`` in a launch file, each None if it is not known."""
 
-    package: Place | None
-    executable: Place | None
+    package: EvaluatedText | None
+    executable: EvaluatedText | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,7 +70,7 @@ class LaunchFile:
     has_function: bool = False
     is_test: bool = False
     nodes: list[StartedNode] = field(default_factory=list)
-    shares: list[Place] = field(default_factory=list)
+    shares: list[EvaluatedText] = field(default_factory=list)
     paths: list[SharedFile] = field(default_factory=list)
     imports: list[tuple[str, Span]] = field(default_factory=list)
     written_files: frozenset[tuple[str, str]] = frozenset()
@@ -164,11 +164,11 @@ def _written_paths(python: PythonFile) -> Iterator[ast.expr]:
         yield from call.args[1:2]
 
 
-def _place_of(python: PythonFile, node: ast.expr | None) -> Place | None:
+def _place_of(python: PythonFile, node: ast.expr | None) -> EvaluatedText | None:
     if node is None:
         return None
     text = python.text(node)
-    return None if text is None else Place(text, node, python.span(node))
+    return None if text is None else EvaluatedText(text, node, python.span(node))
 
 
 class _PathReader(ast.NodeVisitor):

@@ -19,7 +19,7 @@ from linkwright.panels.page_feature import FeatureHost, PageFeature
 from linkwright.rviz.config.rviz_config import RvizConfig
 
 if TYPE_CHECKING:
-    from linkwright.descriptions.comparison import Comparison, Difference, Place
+    from linkwright.descriptions.comparison import Comparison, Difference, DifferenceLocation
     from linkwright.descriptions.pairs import Model, Pair
     from linkwright.graph import Node
     from linkwright.rviz.displays.robot_model import RobotModelDisplay
@@ -221,7 +221,7 @@ def _element_of(difference: Difference, old: Robot, new: Robot) -> tuple[Literal
     return "link", "", False
 
 
-def _compared_place(place: Place | None, model: Model) -> ComparedPlace | None:
+def _compared_place(place: DifferenceLocation | None, model: Model) -> ComparedPlace | None:
     if place is None:
         return None
     span = place.span

@@ -11,11 +11,11 @@ from linkwright.sdf.models import Model
 from linkwright.sdf.plugins import Plugin
 from linkwright.sdf.poses import SEPARATOR
 from linkwright.sdf.worlds import World
-from linkwright.simulation.plugins.plugin import PlacedSensor, PluginPlace
+from linkwright.simulation.plugins.plugin import PlacedSensor, PluginContext
 from linkwright.simulation.plugins.registry import is_built_in
 
 
-def world_plugins(world: World, systems: Sequence[Plugin] = ()) -> Iterator[PluginPlace]:
+def world_plugins(world: World, systems: Sequence[Plugin] = ()) -> Iterator[PluginContext]:
     """Yield the plugins that are direct children of a world.
 
     Args:
@@ -23,10 +23,10 @@ def world_plugins(world: World, systems: Sequence[Plugin] = ()) -> Iterator[Plug
         systems: the plugins to use if the world does not declare any.
     """
     for plugin in world.plugins or systems:
-        yield PluginPlace(plugin.name or plugin.filename, plugin, world, None, "", None)
+        yield PluginContext(plugin.name or plugin.filename, plugin, world, None, "", None)
 
 
-def model_plugins(world: World, model: Model, path: str) -> Iterator[PluginPlace]:
+def model_plugins(world: World, model: Model, path: str) -> Iterator[PluginContext]:
     """Yield the plugins of a model and its sensors, and the sensors without a publishing plugin.
 
     The plugins and sensors of nested models follow.
@@ -40,15 +40,15 @@ def model_plugins(world: World, model: Model, path: str) -> Iterator[PluginPlace
     yield from _plugins_in_model(world, model, path, frames)
 
 
-def _plugins_in_model(world: World, model: Model, path: str, frames: Frames) -> Iterator[PluginPlace]:
+def _plugins_in_model(world: World, model: Model, path: str, frames: Frames) -> Iterator[PluginContext]:
     for plugin in model.plugins:
-        yield PluginPlace(plugin.name or plugin.filename, plugin, world, model, path, None)
+        yield PluginContext(plugin.name or plugin.filename, plugin, world, model, path, None)
     for placed_sensor in _sensors(model, path, frames):
         plugins = placed_sensor.sensor.plugins
         for plugin in plugins:
-            yield PluginPlace(plugin.name or placed_sensor.sensor.name, plugin, world, model, path, placed_sensor)
+            yield PluginContext(plugin.name or placed_sensor.sensor.name, plugin, world, model, path, placed_sensor)
         if all(is_built_in(plugin.filename) for plugin in plugins):  # true if a sensor has only systems of gz
-            yield PluginPlace(placed_sensor.sensor.name, None, world, model, path, placed_sensor)
+            yield PluginContext(placed_sensor.sensor.name, None, world, model, path, placed_sensor)
     for nested_model in model.models:
         yield from _plugins_in_model(
             world, nested_model, f"{path}{SEPARATOR}{nested_model.name}", frames.inside(nested_model.name)

@@ -73,7 +73,7 @@ class PlacedSensor:
 
 
 @dataclass(frozen=True, slots=True)
-class PluginPlace:
+class PluginContext:
     """The elements that contain a plugin, or a sensor without a plugin.
 
     Attributes:
@@ -143,7 +143,7 @@ class SimulatedPlugin(Generic[P]):
     IGNORED: ClassVar[Collection[str]] = ()
     CARRIED: ClassVar[tuple[str, ...]] = ()
 
-    def __init__(self, place: PluginPlace, node: PluginNode, parameters: P, environment: Environment) -> None:
+    def __init__(self, place: PluginContext, node: PluginNode, parameters: P, environment: Environment) -> None:
         self.place = place
         self.node = node
         self.parameters = parameters

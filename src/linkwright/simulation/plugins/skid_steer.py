@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from linkwright.simulation.plugins.diff_drive import ClassicDiffDrive, ClassicParameters
 from linkwright.simulation.plugins.node import PluginNode
 from linkwright.simulation.plugins.parameters import parameter
-from linkwright.simulation.plugins.plugin import Environment, PluginPlace
+from linkwright.simulation.plugins.plugin import Environment, PluginContext
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -64,6 +64,6 @@ class SkidSteer(ClassicDiffDrive):
     PARAMETERS = SkidSteerParameters
 
     def __init__(
-        self, place: PluginPlace, node: PluginNode, parameters: SkidSteerParameters, environment: Environment
+        self, place: PluginContext, node: PluginNode, parameters: SkidSteerParameters, environment: Environment
     ) -> None:
         super().__init__(place, node, parameters.as_diff_drive(), environment)

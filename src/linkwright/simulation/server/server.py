@@ -28,7 +28,7 @@ from linkwright.simulation.plugins.findings import error_findings
 from linkwright.simulation.plugins.node import PluginNode
 from linkwright.simulation.plugins.parameters import parameters_from
 from linkwright.simulation.plugins.places import model_plugins, world_plugins
-from linkwright.simulation.plugins.plugin import PluginClass, PluginPlace, SimulatedPlugin
+from linkwright.simulation.plugins.plugin import PluginClass, PluginContext, SimulatedPlugin
 from linkwright.simulation.plugins.registry import (
     is_built_in,
     is_gz_library,
@@ -308,7 +308,7 @@ class SimulationServer:
             self._forget_node(plugin.place, plugin.node)
             plugin.close(partial(self._log_failure, plugin.place))
 
-    def _forget_node(self, place: PluginPlace, node: PluginNode) -> None:
+    def _forget_node(self, place: PluginContext, node: PluginNode) -> None:
         if not is_shared(place):
             self._node_names.discard(node.name)
 
@@ -321,7 +321,7 @@ class SimulationServer:
     def _load(
         self,
         owner: str,
-        places: Iterable[PluginPlace],
+        places: Iterable[PluginContext],
         namespace: str,
         old_plugins: Sequence[SimulatedPlugin[object]] = (),
     ) -> None:
@@ -347,7 +347,7 @@ class SimulationServer:
             if (alternative := alternative_to(name)) is not None:
                 self.node.get_logger().info(phrase("instead of {name}, use {other}", name=name, other=alternative))
 
-    def _find_class(self, place: PluginPlace) -> PluginClass | None:
+    def _find_class(self, place: PluginContext) -> PluginClass | None:
         if place.plugin is None:
             assert place.sensor is not None
             return sensor_class(place.sensor.sensor.type)
@@ -367,7 +367,7 @@ class SimulationServer:
         self,
         owner: str,
         kind: PluginClass,
-        place: PluginPlace,
+        place: PluginContext,
         namespace: str,
         old_plugins: Sequence[SimulatedPlugin[object]],
     ) -> None:
@@ -399,7 +399,7 @@ class SimulationServer:
             self._forget_node(place, node)
             node.close()
 
-    def _failed(self, owner: str, place: PluginPlace, error: Exception) -> None:
+    def _failed(self, owner: str, place: PluginContext, error: Exception) -> None:
         """Log the error of a plugin or sensor, and end only that plugin."""
         self._log_failure(place, error)
         running = self._plugins.get(owner, [])
@@ -407,13 +407,13 @@ class SimulationServer:
         running[:] = [simulated_plugin for simulated_plugin in running if simulated_plugin.place is not place]
         self._close_plugins(failed_plugins)
 
-    def _log_failure(self, place: PluginPlace, error: Exception) -> None:
+    def _log_failure(self, place: PluginContext, error: Exception) -> None:
         self.report(error_findings(error, place.name, place.element))
         if not isinstance(error, LinkwrightError):
             for function in self.on_failure:
                 function(error)
 
-    def _node(self, place: PluginPlace, namespace: str, calls: Calls) -> PluginNode:
+    def _node(self, place: PluginContext, namespace: str, calls: Calls) -> PluginNode:
         """Return the node for a plugin or sensor.
 
         Plugins of gz and sensors without a plugin share the simulator's node; other plugins get a separate node.
@@ -466,7 +466,7 @@ class SimulationServer:
             self.node.get_logger().info(phrase("elements that are not simulated: {names}", names=joined(new_names)))
 
     @contextmanager
-    def _logging_failures(self, place: PluginPlace) -> Iterator[None]:
+    def _logging_failures(self, place: PluginContext) -> Iterator[None]:
         """Log and suppress an error in the context, so that other plugins are still started."""
         try:
             yield
@@ -506,12 +506,12 @@ class SimulationServer:
             function()
 
 
-def is_shared(place: PluginPlace) -> bool:
+def is_shared(place: PluginContext) -> bool:
     """Return whether a plugin or sensor shares the simulator's node."""
     return place.plugin is None or is_gz_library(place.plugin.filename)
 
 
-def _unsimulated_names(place: PluginPlace) -> list[str]:
+def _unsimulated_names(place: PluginContext) -> list[str]:
     """Return a list with the library or sensor type of a plugin that is not simulated.
 
     The list is empty if the simulation itself does the work of the library.

@@ -27,7 +27,7 @@ from linkwright.speech.commands.actions import (
     Values,
     fill_template,
 )
-from linkwright.speech.commands.command_set import Place
+from linkwright.speech.commands.command_set import Destination
 from linkwright.speech.commands.reading import Keys
 
 _SLOT_PATTERN = re.compile(r"\{(\w+)\}")
@@ -52,7 +52,7 @@ class ActionReader:
         *("gripper", "action", "service", "publish", "launch"),
     )
 
-    def __init__(self, document: YamlDocument, keys: Keys, places: Mapping[str, Place], samples: Values) -> None:
+    def __init__(self, document: YamlDocument, keys: Keys, places: Mapping[str, Destination], samples: Values) -> None:
         self._document, self._keys, self._places, self._samples = document, keys, places, samples
 
     def read(self) -> Action:

@@ -20,7 +20,7 @@ from linkwright.diagnostics.translation import LANGUAGES, localized
 from linkwright.files.yaml_documents import YamlDocument, read_source
 from linkwright.speech.commands.action_reading import ActionReader
 from linkwright.speech.commands.actions import MOTIONS
-from linkwright.speech.commands.command_set import ANY, ByLanguage, Command, CommandSet, Place
+from linkwright.speech.commands.command_set import ANY, ByLanguage, Command, CommandSet, Destination
 from linkwright.speech.commands.phrases import Template, TemplateError, templates
 from linkwright.speech.commands.quantities import GRAMMAR_VALUES, parse_quantity
 from linkwright.speech.commands.reading import Keys
@@ -83,11 +83,11 @@ class _Reader:
     def _entries(self, top: Keys, key: str) -> list[tuple[str, yaml.Node]]:
         return top.mapping(key) or []
 
-    def _place(self, name: str, node: yaml.Node) -> Place:
+    def _place(self, name: str, node: yaml.Node) -> Destination:
         keys = Keys(self._document, node, phrase("the place '{name}'", name=name), _PLACE_KEYS)
         self._name("place", name, keys.node("names"))
         frame = keys.text("frame") or "map"
-        return Place(keys.number("x", needed=True), keys.number("y", needed=True), keys.number("yaw"), frame)
+        return Destination(keys.number("x", needed=True), keys.number("y", needed=True), keys.number("yaw"), frame)
 
     def _name(self, slot: str, name: str, node: yaml.Node | None) -> None:
         """Read the spoken names of a place or an object.
@@ -122,7 +122,7 @@ class _Reader:
                 *(text for text, _ in entries),
             )
 
-    def _command(self, intent: str, node: yaml.Node, places: Mapping[str, Place]) -> Command:
+    def _command(self, intent: str, node: yaml.Node, places: Mapping[str, Destination]) -> Command:
         title = phrase("the command '{intent}'", intent=intent)
         keys = Keys(self._document, node, title, ("phrases", "confirm", "response", "moves", *ActionReader.KINDS))
         if keys.node("phrases") is None:

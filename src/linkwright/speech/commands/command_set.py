@@ -18,7 +18,7 @@ ByLanguage = Mapping[str, str]
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class Destination:
     """A place to which the robot can be sent.
 
     Attributes:
@@ -84,7 +84,7 @@ class CommandSet:
     commands: tuple[Command, ...]
     names: Names
     slot_values: Mapping[str, Mapping[str, tuple[str, ...]]]
-    places: Mapping[str, Place]
+    places: Mapping[str, Destination]
     answers: Mapping[str, Mapping[str, tuple[Template, ...]]]
 
     def understand(self, text: str) -> Match | None:

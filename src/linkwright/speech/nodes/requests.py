@@ -25,7 +25,7 @@ from linkwright.speech.commands.actions import (
     fill_template,
     format_value,
 )
-from linkwright.speech.commands.command_set import Place
+from linkwright.speech.commands.command_set import Destination
 
 NAVIGATE = "nav2_msgs/action/NavigateToPose"
 _QUEUE_DEPTH = 10
@@ -98,7 +98,7 @@ class Goals:
         self._on_end(is_reached, reason)
 
 
-def make_pose_goal(node: Node, place: Place) -> Any:
+def make_pose_goal(node: Node, place: Destination) -> Any:
     """Return a goal of ``navigate_to_pose`` for a place, stamped now."""
     goal = get_action(NAVIGATE).Goal()
     goal.pose.header.frame_id = place.frame
@@ -143,7 +143,7 @@ class Requests:
             message_class = get_message(action.type_name)
             self._publishers[action.topic] = self._node.create_publisher(message_class, action.topic, _QUEUE_DEPTH)
 
-    def send_pose(self, action: str, place: Place) -> bool:
+    def send_pose(self, action: str, place: Destination) -> bool:
         """Send a goal to navigate to a place, or return False if there is no server."""
         goals = self._goals[action]
         if goals.is_served:

@@ -25,7 +25,7 @@ from linkwright.perception.nodes.depthimage_to_laserscan import read_depths
 from linkwright.vision.detectors.drawing import colour_of
 from linkwright.vision.nodes.detection_reading import VISION_FORMAT, YOLO_FORMAT, DetectionFormat
 from linkwright.vision.places.camera import CameraModel, make_camera_model
-from linkwright.vision.places.positions import Place, position_from_depth, position_on_ground
+from linkwright.vision.places.positions import ObjectPosition, position_from_depth, position_on_ground
 
 _QUEUE_DEPTH = 10
 _MAX_DEPTH_IMAGES = 10
@@ -110,7 +110,7 @@ class Detect3DNode(SingleNode):
         result = self._array()
         result.header.stamp, result.header.frame_id = header.stamp, self._target_frame
         pose = self._poses.pose(self._target_frame, header.frame_id, header.stamp.nanoseconds)
-        positions: list[Place] = []
+        positions: list[ObjectPosition] = []
         if pose is not None and message.detections:
             for detection, position in zip(message.detections, self._find_positions(message), strict=True):
                 if position is not None:
@@ -120,14 +120,14 @@ class Detect3DNode(SingleNode):
         if self._markers.get_subscription_count():
             self._markers.publish(_make_markers(self.FORM, result, positions))
 
-    def _find_positions(self, message: Any) -> list[Place | None]:
+    def _find_positions(self, message: Any) -> list[ObjectPosition | None]:
         """Return each detection's position in the optical frame of its image, or None if unknown."""
         camera = self._cameras.get("colour") or self._cameras.get("depth")
         if camera is None:
             self._warn("no camera_info has arrived")
             return [None] * len(message.detections)
         depths, ground = self._matching_depths(message), self._ground_plane(message)
-        positions: list[Place | None] = []
+        positions: list[ObjectPosition | None] = []
         for box in map(self.FORM.box, message.detections):
             position = None
             if depths is not None:
@@ -174,7 +174,7 @@ class Detect3DNode(SingleNode):
         x, y, z, w = pose[3:]
         return np.array(rotate((-x, -y, -z, w), (0.0, 0.0, 1.0))), pose[2]
 
-    def _position_detection(self, detection: Any, place: Place, pose: Transform, header: Any) -> Any:
+    def _position_detection(self, detection: Any, place: ObjectPosition, pose: Transform, header: Any) -> Any:
         """Return a detection with a box in the target frame.
 
         The x axis of the box points along the view, and its z axis up.
@@ -194,7 +194,7 @@ class YoloDetect3DNode(Detect3DNode):
     FORM = YOLO_FORMAT
 
 
-def _make_markers(form: DetectionFormat, found: Any, positions: list[Place]) -> Any:
+def _make_markers(form: DetectionFormat, found: Any, positions: list[ObjectPosition]) -> Any:
     """Return a visualization_msgs/msg/MarkerArray with a box and a label for each detection."""
     marker_class = get_message("visualization_msgs/msg/Marker")
     marker_array = get_message("visualization_msgs/msg/MarkerArray")()

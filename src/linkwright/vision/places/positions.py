@@ -27,7 +27,7 @@ _MIN_DESCENT = 0.01
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class ObjectPosition:
     """The position and size of an object.
 
     Attributes:
@@ -48,7 +48,7 @@ def position_from_depth(
     *,
     max_depth_difference: float = np.inf,
     max_depth: float = np.inf,
-) -> Place | None:
+) -> ObjectPosition | None:
     """Return the position of an object from a depth image.
 
     The nearest surface in the middle of the box is used if it is large enough: behind an object there is always
@@ -87,12 +87,14 @@ def position_from_depth(
     surface_depth = front + depth / 2
     width, height = _size_in_metres(box, camera, surface_depth)
     ray = camera.rays(np.array([[(box[0] + box[2]) / 2, (box[1] + box[3]) / 2]], np.float64))[0]
-    return Place((float(ray[0]) * surface_depth, float(ray[1]) * surface_depth, surface_depth), width, height, depth)
+    return ObjectPosition(
+        (float(ray[0]) * surface_depth, float(ray[1]) * surface_depth, surface_depth), width, height, depth
+    )
 
 
 def position_on_ground(
     box: NDArray[np.floating], camera: CameraModel, normal: Floats, height: float, *, max_distance: float = np.inf
-) -> Place | None:
+) -> ObjectPosition | None:
     """Return the position of an object on the ground, from the lower edge of its box.
 
     An object is assumed to be as deep as it is wide. If its box is about square, the object touches the ground below
@@ -122,7 +124,7 @@ def position_on_ground(
         position = position + horizontal * (width / 2 / max(float(np.linalg.norm(horizontal)), 1e-9))
         width, object_height = _size_in_metres(box, camera, float(position[2]))
     centre = position + normal * (object_height / 2)
-    return Place((float(centre[0]), float(centre[1]), float(centre[2])), width, object_height, width)
+    return ObjectPosition((float(centre[0]), float(centre[1]), float(centre[2])), width, object_height, width)
 
 
 def _size_in_metres(box: NDArray[np.floating], camera: CameraModel, depth: float) -> tuple[float, float]:

@@ -21,7 +21,7 @@ from linkwright.launch.model.substitution import (
 )
 
 if TYPE_CHECKING:
-    from linkwright.launch.errors.places import Place
+    from linkwright.launch.errors.places import SourceLocation
     from linkwright.launch.model.markup.entity import Entity, Parser
 
 _LOGGER_NAME = "launch.user"
@@ -86,7 +86,7 @@ class Log(Action):
         return self._level
 
     @property
-    def _level_place(self) -> Place | None:
+    def _level_place(self) -> SourceLocation | None:
         return next((substitution.place for substitution in self._level if substitution.place is not None), self.place)
 
     def describe(self) -> str:
@@ -103,7 +103,7 @@ class Log(Action):
         context.log(_LOGGER_NAME, level, perform_substitutions(context, self._msg))
 
 
-def _level_number(level: str, place: Place | None) -> int:
+def _level_number(level: str, place: SourceLocation | None) -> int:
     if level.upper() in LEVELS:
         return LEVELS[level.upper()]
     from linkwright.diagnostics import did_you_mean

@@ -8,7 +8,7 @@ from __future__ import annotations
 import typing
 from typing import Any, Protocol
 
-from linkwright.launch.errors.places import Place
+from linkwright.launch.errors.places import SourceLocation
 from linkwright.launch.model.entity import LaunchDescriptionEntity
 from linkwright.launch.model.substitution import Substitution
 
@@ -32,7 +32,7 @@ class Entity:
         raise NotImplementedError
 
     @property
-    def place(self) -> Place | None:
+    def place(self) -> SourceLocation | None:
         """The location of the entity in its file, or None if a program created the entity."""
         return None
 
@@ -81,16 +81,16 @@ class PlacedText(str):
 
     __slots__ = ("place",)
 
-    place: Place | None
+    place: SourceLocation | None
 
-    def __new__(cls, text: str, place: Place | None) -> PlacedText:  # noqa: PYI034 - Self needs Python 3.11
+    def __new__(cls, text: str, place: SourceLocation | None) -> PlacedText:  # noqa: PYI034 - Self needs Python 3.11
         """Return a string with a location."""
         placed_text = super().__new__(cls, text)
         placed_text.place = place
         return placed_text
 
 
-def place_of(text: object) -> Place | None:
+def place_of(text: object) -> SourceLocation | None:
     """Return the location of a string, or None if it has none."""
     return text.place if isinstance(text, PlacedText) else None
 

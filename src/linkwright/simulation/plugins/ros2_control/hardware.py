@@ -21,7 +21,7 @@ from linkwright.control.hardware.interfaces import EFFORT, POSITION, VELOCITY
 from linkwright.control.motion.pid import Pid
 from linkwright.diagnostics import LinkwrightError, phrase
 from linkwright.graph.log.logger import Logger
-from linkwright.simulation.plugins.plugin import PluginPlace
+from linkwright.simulation.plugins.plugin import PluginContext
 from linkwright.simulation.plugins.ros2_control.joints import SimulatedJoint
 from linkwright.simulation.plugins.ros2_control.pids import pids_of
 from linkwright.simulation.plugins.ros2_control.sensors import SimulatedSensor, create_sensor, sensors_of
@@ -34,7 +34,7 @@ class ControlledModel(Protocol):
     """The attributes and methods of `SimulatedControl` that the hardware uses."""
 
     simulation: Simulation
-    place: PluginPlace
+    place: PluginContext
 
     def joint(self, name: str) -> str:
         """Return the full name of a movable joint of the plugin's model, as used in the simulation."""

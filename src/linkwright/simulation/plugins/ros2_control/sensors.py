@@ -11,7 +11,7 @@ import numpy as np
 
 from linkwright.control.hardware.interfaces import StateInterface
 from linkwright.simulation.plugins.places import model_plugins
-from linkwright.simulation.plugins.plugin import PlacedSensor, PluginPlace
+from linkwright.simulation.plugins.plugin import PlacedSensor, PluginContext
 from linkwright.simulation.sensors.force_torque import ForceTorqueSensor
 from linkwright.simulation.sensors.imu import ImuSensor
 from linkwright.simulation.sensors.mount import Mount
@@ -42,10 +42,10 @@ class SimulatedSensor:
             state.value = values.get(state.kind, state.value)
 
 
-def sensors_of(place: PluginPlace) -> dict[str, PlacedSensor]:
+def sensors_of(place: PluginContext) -> dict[str, PlacedSensor]:
     """Return the IMUs and force-torque sensors of the plugin's model, by sensor name."""
     assert place.model is not None
-    places: Iterator[PluginPlace] = model_plugins(place.world, place.model, place.path)
+    places: Iterator[PluginContext] = model_plugins(place.world, place.model, place.path)
     return {
         place.sensor.sensor.name: place.sensor
         for place in places
