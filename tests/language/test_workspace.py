@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from linkwright.language.definitions import definitions_in
 from linkwright.language.includes import real
 from linkwright.language.workspace import Workspace
 
@@ -71,3 +72,12 @@ def test_a_file_that_is_made_later_is_checked_with_what_includes_it(workspace, f
     parts.write_text(PARTS)
     assert workspace.subjects(parts, {}) == [main]
     assert codes(workspace, parts) == {"r.urdf.xacro": [], "parts.xacro": []}
+
+
+def test_a_material_has_its_own_color_alone():
+    text = (
+        '<material name="plain"><texture filename="a.png"/></material><material name="open">'
+        '<material name="orange"><color rgba="1 0.5 0 1"/></material>'
+    )
+    found = {name.name: name.detail for name in definitions_in(text, Path("a.urdf"))}
+    assert found == {"plain": "", "open": "", "orange": "1 0.5 0 1"}

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import asyncio
+
+import psutil
 from lsprotocol import types
 
 from linkwright.language.workspace import MAX_CHARACTERS
 from tests.lsp.conftest import MAIN, PARTS
+from tests.waiting import eventually
 
 MAIN_FILE, PARTS_FILE = "urdf/arm.urdf.xacro", "urdf/parts.xacro"
 
@@ -74,3 +78,15 @@ async def test_the_newest_text_of_a_large_file_is_checked(editor):
     while "'bar4'" not in found.message:
         editor.diagnostics.clear()
         (found,) = await editor.until(MAIN_FILE, "XAC401")
+
+
+async def test_a_burst_of_edits_of_a_large_file_leaves_no_process(editor):
+    text = MAIN.replace("</robot>", f"<!-- {'a' * MAX_CHARACTERS} -->\n</robot>")
+    editor.open(MAIN_FILE, text.replace("xacro:bar", "xacro:barr"))
+    server = psutil.Process(editor.client._server.pid)  # type: ignore[union-attr]
+    await editor.until(MAIN_FILE, "XAC401")
+    for number in range(10):
+        editor.change(MAIN_FILE, f"{text}<!-- {number} -->")
+        await asyncio.sleep(0.05 * number)  # some of them while a process starts or works
+    await editor.until(MAIN_FILE)
+    await eventually(lambda: all("spawn_main" not in " ".join(child.cmdline()) for child in server.children()))

@@ -33,7 +33,7 @@ _TAGS = {
     "joint": NameKind.JOINT,
     "material": NameKind.MATERIAL,
 }
-_COLOR = lazy_pattern(r"""(?:(?!</material).)*?<color\b[^>]*?\brgba\s*=\s*["']([^"']*)["']""", re.DOTALL)
+_COLOR = lazy_pattern(r"""(?:(?!</?material).){0,1000}?<color\b[^>]*?\brgba\s*=\s*["']([^"']*)["']""", re.DOTALL)
 _DETAILS = {NameKind.MACRO: "params", NameKind.PROPERTY: "value", NameKind.ARGUMENT: "default", NameKind.JOINT: "type"}
 
 

@@ -1,13 +1,15 @@
-"""The expansion of a description as text, with the source location of each element."""
+"""The expansion of a description as text, with the source location of each element, and as robots."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from linkwright.diagnostics import LinkwrightError
 from linkwright.language.includes import real
 from linkwright.language.workspace import Workspace
+from linkwright.urdf import Robot, read
 from linkwright.xacro import expand
 from linkwright.xmltree import Element, Overlay, parse
 from linkwright.xmltree.positions import start_tag_end
@@ -88,3 +90,32 @@ def _tag_range(element: Element) -> tuple[int, int] | None:
     if element.source is None:
         return None
     return element.offset, start_tag_end(element.source.text, element.offset)
+
+
+def expanded_robots(project: Workspace, texts: Mapping[Path, str], file: Path) -> Iterator[tuple[Path, Robot]]:
+    """Yield the robots of the descriptions that include a file, one for each valid argument set.
+
+    Args:
+        project: the workspace.
+        texts: the texts of the open files.
+        file: the file.
+
+    Yields:
+        The description and its robot.
+    """
+    overlay = Overlay({str(path): text for path, text in texts.items()})
+    for entry in project.index.entries(file, texts):
+        for arguments, _ in project.argument_calls(entry):
+            try:
+                expansion = expand(entry, arguments, packages=project.finder(entry), overlay=overlay)
+            except LinkwrightError:
+                continue
+            robot = read(expansion.document).robot
+            if robot is not None:
+                yield entry, robot
+
+
+def is_source_of(file: Path, start: int, element: Element | None) -> bool:
+    """Return whether the start tag at an offset of a file is the source of an expanded element."""
+    source = None if element is None else element.source
+    return element is not None and source is not None and (real(source.name), element.offset) == (file, start)

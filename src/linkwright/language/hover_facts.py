@@ -10,7 +10,7 @@ from linkwright.diagnostics import LinkwrightError, phrase
 from linkwright.diagnostics.translation import localized
 from linkwright.inertia.mesh_library import MeshLibrary
 from linkwright.language.definitions import NameKind
-from linkwright.language.includes import real
+from linkwright.language.expanded import expanded_robots, is_source_of
 from linkwright.language.links import file_references
 from linkwright.language.occurrences import Occurrence
 from linkwright.language.renaming import occurrence_at
@@ -22,8 +22,7 @@ from linkwright.packages.manifest import MANIFEST
 from linkwright.packages.readers.package_xml import Manifest
 from linkwright.urdf import Joint, Link, Mesh, Robot, read
 from linkwright.urdf.tree import children_of, parent_joints
-from linkwright.xacro import expand
-from linkwright.xmltree import Overlay, parse
+from linkwright.xmltree import parse
 from linkwright.xmltree.decoding import decode
 from linkwright.xmltree.reader import read_bytes
 
@@ -90,13 +89,7 @@ def _is_made_by(robot: Robot, part: Occurrence, text: str) -> bool:
     start = max(text.rfind(tag, 0, part.start) for tag in ("<link", "<joint"))
     links, joints = robot.links.values(), robot.joints.values()
     elements = (*(link.element for link in links), *(joint.element for joint in joints))
-    return any(
-        element is not None
-        and element.source is not None
-        and element.offset == start
-        and real(element.source.name) == part.file
-        for element in elements
-    )
+    return any(is_source_of(part.file, start, element) for element in elements)
 
 
 def robots_of(project: Workspace, texts: Mapping[Path, str], file: Path) -> Iterator[Robot]:
@@ -104,23 +97,16 @@ def robots_of(project: Workspace, texts: Mapping[Path, str], file: Path) -> Iter
 
     If no description can be expanded, the robots are those in the valid parts of the descriptions and of the file.
     """
-    overlay = Overlay({str(path): text for path, text in texts.items()})
-    entries, is_found = project.index.entries(file, texts), False
-    for entry in entries:
-        for arguments, _ in project.argument_calls(entry):
-            try:
-                expansion = expand(entry, arguments, packages=project.finder(entry), overlay=overlay)
-            except LinkwrightError:
-                continue
-            robot = read(expansion.document).robot
-            if robot is not None:
-                is_found = True
-                yield robot
+    is_found = False
+    for _, robot in expanded_robots(project, texts, file):
+        is_found = True
+        yield robot
+    entries = project.index.entries(file, texts)
     for entry in () if is_found else dict.fromkeys((*entries, file)):
         parts = valid_parts(project, texts, entry)
-        robot = None if parts is None else read(parts.document).robot
-        if robot is not None:
-            yield robot
+        partial_robot = None if parts is None else read(parts.document).robot
+        if partial_robot is not None:
+            yield partial_robot
 
 
 def part_facts(robot: Robot, kind: NameKind, name: str) -> str | None:

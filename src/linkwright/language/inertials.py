@@ -5,18 +5,17 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
-from linkwright.diagnostics import LinkwrightError, phrase
+from linkwright.diagnostics import phrase
 from linkwright.inertia import MeshLibrary, estimate
 from linkwright.inertia.source_edits import EXPRESSION, NotWritableError
 from linkwright.inertia.writing import edits_of_link
+from linkwright.language.expanded import expanded_robots, is_source_of
 from linkwright.language.grammar import PREFIX
-from linkwright.language.includes import real
 from linkwright.language.proof import Edit, ExpansionProof, UnprovedError
 from linkwright.language.workspace import Workspace
 from linkwright.language.written import SourceElement, innermost_element, source_elements
-from linkwright.urdf import Link, Robot, read
-from linkwright.xacro import expand
-from linkwright.xmltree import Element, Overlay
+from linkwright.urdf import Link, Robot
+from linkwright.xmltree import Element
 
 
 def link_with_shapes_at(text: str, offset: int) -> SourceElement | None:
@@ -73,26 +72,11 @@ def fill_in_inertia(
 def _expanded_link(
     project: Workspace, texts: Mapping[Path, str], file: Path, link: SourceElement
 ) -> tuple[Robot, Path, Link]:
-    overlay = Overlay({str(path): text for path, text in texts.items()})
-    for entry in project.index.entries(file, texts):
-        for arguments, _ in project.argument_calls(entry):
-            try:
-                expansion = expand(entry, arguments, packages=project.finder(entry), overlay=overlay)
-            except LinkwrightError:
-                continue
-            robot = read(expansion.document).robot
-            if robot is not None:
-                expanded = next((one for one in robot.links.values() if _is_written_at(one, file, link.start)), None)
-                if expanded is not None:
-                    return robot, entry, expanded
+    for entry, robot in expanded_robots(project, texts, file):
+        expanded = next((one for one in robot.links.values() if is_source_of(file, link.start, one.element)), None)
+        if expanded is not None:
+            return robot, entry, expanded
     raise UnprovedError(phrase("no description that can be expanded has this link"))
-
-
-def _is_written_at(link: Link, file: Path, offset: int) -> bool:
-    source = None if link.element is None else link.element.source
-    return (
-        link.element is not None and source is not None and (real(source.name), link.element.offset) == (file, offset)
-    )
 
 
 def _without_inertial(root: Element, name: str) -> list[tuple[str, tuple[tuple[str, str], ...], str]]:

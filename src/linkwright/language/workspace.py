@@ -189,13 +189,14 @@ class Workspace:
         return [name for file in dict.fromkeys((*self.index.files, *texts)) for name in self._names_in(file, texts)]
 
     def _names_in(self, file: Path, texts: Mapping[Path, str]) -> tuple[NameDefinition, ...]:
-        if self.is_large(file, texts):
-            return ()
         text = texts.get(file)
         if text is not None:
-            return tuple(definitions_in(text, file))
+            return () if len(text) > MAX_CHARACTERS else tuple(definitions_in(text, file))
         try:
-            changed_ns = file.stat().st_mtime_ns
+            status = file.stat()
+            if status.st_size > MAX_CHARACTERS:
+                return ()
+            changed_ns = status.st_mtime_ns
             known = self._names.get(file)
             if known is None or known[0] != changed_ns:
                 text = decode(read_bytes(file), str(file))

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import asyncio
 import multiprocessing
+import sys
+import threading
 from collections.abc import Iterable, Mapping
+from contextlib import redirect_stdout
 from multiprocessing.connection import Connection
 from pathlib import Path
 
@@ -30,15 +33,25 @@ async def findings_of_process(
     spawn = multiprocessing.get_context("spawn")
     receiver, sender = spawn.Pipe(duplex=False)
     process = spawn.Process(target=_check, args=(sender, [*folders], subject, dict(texts)), daemon=True)
-    try:
-        await asyncio.to_thread(process.start)
-        sender.close()
-        found: tuple[Diagnostic, ...] = await asyncio.to_thread(receiver.recv)
-    except EOFError:
-        return None
-    else:
+    is_cancelled = threading.Event()
+
+    def work() -> tuple[Diagnostic, ...] | None:
+        with receiver, sender:
+            try:
+                process.start()  # returns when the process has read the texts
+                sender.close()
+                found: tuple[Diagnostic, ...] | None = None if is_cancelled.is_set() else receiver.recv()
+            except (EOFError, OSError):
+                found = None
+        if process.pid is not None:
+            process.kill()
+            process.join()
         return found
+
+    try:
+        return await asyncio.to_thread(work)
     finally:
+        is_cancelled.set()
         if process.pid is not None:
             process.kill()
 
@@ -46,6 +59,7 @@ async def findings_of_process(
 def _check(sender: Connection, folders: list[Path], subject: Path, texts: dict[Path, str]) -> None:
     """Send the findings about a subject."""
     project = Workspace(folders)
-    project.index.refresh()
-    sender.send(project.checked(subject, texts))
+    with redirect_stdout(sys.stderr):  # standard output carries only the responses of the server
+        project.index.refresh()
+        sender.send(project.checked(subject, texts))
     sender.close()

@@ -45,6 +45,8 @@ _MAX_TEXTS = 200
 """The maximum number of saved texts that are stored, for the positions of findings."""
 _CACHE_DIVISOR = 8
 _CHECKS_PER_COLLECTION = 50
+_PAUSE_SECONDS = 0.3
+"""The time without a change of a large file after which a process checks the file."""
 _IDLE_SECONDS = 1.0
 """The time without a change after which the server collects garbage."""
 
@@ -340,6 +342,7 @@ class LinkwrightServer(LanguageServer):
         self, project: Workspace, subject: Path, texts: dict[Path, str], changed: set[Path]
     ) -> None:
         """Check one subject in a separate process, and publish its findings."""
+        await asyncio.sleep(_PAUSE_SECONDS)
         findings = await findings_of_process(project.folders, subject, texts)
         if self._large_checks.get(subject) is asyncio.current_task():
             del self._large_checks[subject]
