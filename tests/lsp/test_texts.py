@@ -115,3 +115,9 @@ async def test_a_file_of_another_kind_has_an_empty_list_of_colours_as_the_protoc
     place = types.Range(types.Position(0, 0), types.Position(0, 3))
     asked = types.ColorPresentationParams(document, types.Color(1.0, 0.0, 0.0, 1.0), place)
     assert [*await asyncio.wait_for(editor.client.text_document_color_presentation_async(asked), SECONDS)] == []
+
+
+async def test_a_file_of_one_line_has_no_folds(editor):
+    editor.open("urdf/line.urdf", '<robot name="r"><!-- a --><link name="a"></link></robot>')
+    asked = types.FoldingRangeParams(editor.document("urdf/line.urdf"))
+    assert not await editor.client.text_document_folding_range_async(asked)

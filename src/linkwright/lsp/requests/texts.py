@@ -88,20 +88,18 @@ def _document_symbol(symbol: Symbol, positions: TextPositions) -> types.Document
 def folds(positions: TextPositions) -> list[types.FoldingRange]:
     """Return the folding ranges of elements and comments that span several lines."""
     outline = Outline.of(positions.text)
-    ranges = [
-        types.FoldingRange(positions.position(element.tag.start).line, positions.position(closing.start).line - 1)
-        for element in outline.all()
-        if (closing := element.closing) is not None
+
+    def line(offset: int) -> int:
+        return positions.position(offset).line
+
+    elements = ((element.tag, element.closing) for element in outline.all() if element.closing is not None)
+    ranges = [(line(tag.start), line(closing.start) - 1) for tag, closing in elements]
+    comments = [(line(comment.start), line(comment.end)) for comment in outline.comments]
+    comment_kind = types.FoldingRangeKind.Comment
+    return [
+        *(types.FoldingRange(start, end) for start, end in ranges if end > start),
+        *(types.FoldingRange(start, end, kind=comment_kind) for start, end in comments if end > start),
     ]
-    ranges += [
-        types.FoldingRange(
-            positions.position(comment.start).line,
-            positions.position(comment.end).line,
-            kind=types.FoldingRangeKind.Comment,
-        )
-        for comment in outline.comments
-    ]
-    return [fold for fold in ranges if fold.end_line > fold.start_line]
 
 
 def selections(positions: TextPositions, cursors: Iterable[types.Position]) -> list[types.SelectionRange]:
