@@ -1,0 +1,1 @@
+"""Learning robotics step by step: lessons, exercises, and the checks of students' work."""

@@ -1,0 +1,13 @@
+"""The sandbox in which students' work is checked: a program runs confined, within limits, and is ended as a whole."""
+
+from linkwright.learning.sandbox.outcome import Exceeded, Limits, Outcome, Protection
+from linkwright.learning.sandbox.run import protections_available, run_in_sandbox
+
+__all__ = [
+    "Exceeded",
+    "Limits",
+    "Outcome",
+    "Protection",
+    "protections_available",
+    "run_in_sandbox",
+]
