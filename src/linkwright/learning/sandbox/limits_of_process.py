@@ -14,7 +14,7 @@ _OPEN_FILES = 1024
 _NICENESS = 10
 _SPARE_PROCESSES = 16
 """The kernel allows this many more processes than the limit, so that the watchdog sees that it is exceeded."""
-_GROWTH_OF_OTHERS = 1000
+_GROWTH_OF_OTHERS = 100
 """How many more threads the user's other programs may start meanwhile, so that the run does not suffer from them."""
 _OOM_SCORE = 1000
 

@@ -107,25 +107,33 @@ def _seconds_of(time: str) -> float:
 def end_descendants(user: int | None) -> None:
     """Kill all descendants of this process, and wait until none is left.
 
-    This process has adopted orphans, where the system allows that. New processes are forbidden to those found first,
-    so that they cannot be faster than the search.
+    This process has adopted orphans, where the system allows that.
 
     Args:
         user: The user of the run, if no other process has it.
     """
     while True:
-        found = [process.pid for process in descendants(os.getpid())]
-        if hasattr(resource, "prlimit"):
-            for pid in found:
-                with contextlib.suppress(OSError, ValueError):
-                    resource.prlimit(pid, resource.RLIMIT_NPROC, (0, 0))
-        for pid in found:
-            with contextlib.suppress(ProcessLookupError, PermissionError):
-                os.kill(pid, signal.SIGKILL)
         if user is not None:
             _kill_processes_of(user)
+        for pid in _stop_descendants():
+            _signal(pid, signal.SIGKILL)
         if not _wait_for_one_child():
             return
+
+
+def _stop_descendants() -> set[int]:
+    """Stop all descendants, and return them. Those that were not found at first are children of running ones."""
+    stopped: set[int] = set()
+    while found := {process.pid for process in descendants(os.getpid())} - stopped:
+        for pid in found:
+            _signal(pid, signal.SIGSTOP)
+        stopped |= found
+    return stopped
+
+
+def _signal(pid: int, number: int) -> None:
+    with contextlib.suppress(ProcessLookupError, PermissionError):
+        os.kill(pid, number)
 
 
 def _kill_processes_of(user: int) -> None:

@@ -85,7 +85,8 @@ def protections_available() -> frozenset[Protection]:
 def _make_environment(folder: Path, scratch: Path, wanted: Mapping[str, str]) -> dict[str, str]:
     passed_on = {name: os.environ[name] for name in _PASSED_ON if name in os.environ}
     places = {"HOME": str(folder), "TMPDIR": str(scratch)}
-    return {"PATH": os.defpath, **passed_on, **places, **wanted}
+    programs = os.pathsep.join([os.path.dirname(sys.executable), passed_on.get("PATH", os.defpath)])  # noqa: PTH120 - text
+    return {**passed_on, "PATH": programs, **places, **wanted}
 
 
 def _supervise(plan: Plan) -> Outcome:
