@@ -58,7 +58,7 @@ with open("large", "wb") as file:
     try:
         file.truncate(100_000_000_000)
     except OSError as error:
-        print("sparse:", error.strerror)
+        print("sparse:", error.strerror, flush=True)
     while True:
         file.write(bytes(1 << 20))
 """
@@ -129,12 +129,12 @@ while True:
 """
 
 FILL_TEMPORARY = """
-import os
+import os, sys
 for folder in ("/tmp", "/dev/shm", "/var/tmp", "/run", "/run/lock", "/run/user/%d" % os.getuid()):
     written = 0
     try:
         for number in range(64):
-            with open(f"{folder}/linkwright-fill-{number}", "wb") as file:
+            with open(f"{folder}/fill-{sys.argv[-1]}-{number}", "wb") as file:
                 written += file.write(bytes(1 << 20))
     except OSError:
         pass

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import os
 import shutil
 import tempfile
 from collections.abc import Iterator
@@ -32,9 +31,9 @@ def student(class_folder: Path) -> Path:
 def processes_with(word: str) -> list[int]:
     """The numbers of the processes that have a word among their arguments."""
     found = []
-    for name in os.listdir("/proc"):
-        if name.isdecimal():
+    for process in Path("/proc").iterdir():
+        if process.name.isdecimal():
             with contextlib.suppress(OSError):
-                if word.encode() in Path("/proc", name, "cmdline").read_bytes():
-                    found.append(int(name))
+                if word.encode() in (process / "cmdline").read_bytes():
+                    found.append(int(process.name))
     return found

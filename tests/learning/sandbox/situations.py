@@ -99,6 +99,7 @@ def run_in_situation(name: str, arguments: list[str], folder: Path, limits: Limi
         input=json.dumps(request),
         capture_output=True,
         text=True,
+        check=False,
         timeout=60,
         env={"PATH": os.environ["PATH"], "PYTHONPATH": f"{ROOT / 'src'}:{ROOT}"},
     )

@@ -65,7 +65,7 @@ def restrict(readable: Iterable[str], listable: Iterable[str], writable: Iterabl
     """Restrict this process and its descendants to paths, and return the version and whether signals are restricted.
 
     Args:
-        readable: Files, and folders with all that they contain, that may be read and executed.
+        readable: Files and whole folders that may be read and executed.
         listable: Folders whose names may be listed, with those of all folders in them.
         writable: The same as `readable`, for all accesses.
 
@@ -95,9 +95,7 @@ def _create_ruleset(version: int, handled: int) -> tuple[int, bool]:
     for scope in scopes:
         attributes = _RulesetAttributes(handled, 0, scope)
         try:
-            ruleset = system_call(
-                _CREATE_RULESET, ctypes.byref(attributes), ctypes.c_size_t(size), ctypes.c_uint(0)
-            )
+            ruleset = system_call(_CREATE_RULESET, ctypes.byref(attributes), ctypes.c_size_t(size), ctypes.c_uint(0))
         except OSError as error:
             if error.errno != errno.EINVAL or scope == 0:
                 raise
@@ -112,8 +110,6 @@ def _allow(ruleset: int, path: str, access: int) -> None:
         if not stat.S_ISDIR(os.fstat(descriptor).st_mode):
             access &= _ACCESSES_TO_FILES
         rule = _PathBeneath(access, descriptor)
-        system_call(
-            _ADD_RULE, ctypes.c_int(ruleset), ctypes.c_int(_PATH_BENEATH), ctypes.byref(rule), ctypes.c_uint(0)
-        )
+        system_call(_ADD_RULE, ctypes.c_int(ruleset), ctypes.c_int(_PATH_BENEATH), ctypes.byref(rule), ctypes.c_uint(0))
     finally:
         os.close(descriptor)

@@ -47,7 +47,7 @@ def count_threads_of_user() -> int:
     for entry in os.scandir("/proc"):
         with contextlib.suppress(OSError):
             if entry.name.isdecimal() and entry.stat().st_uid == os.getuid():
-                count += len(os.listdir(f"{entry.path}/task"))  # noqa: PTH208 - called for each process
+                count += len(os.listdir(f"{entry.path}/task"))
     return count
 
 

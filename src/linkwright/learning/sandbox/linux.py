@@ -6,6 +6,7 @@ landlock(7). The numbers of system calls newer than Linux 5.0 are the same on al
 
 from __future__ import annotations
 
+import contextlib
 import ctypes
 import os
 from functools import cache
@@ -142,11 +143,9 @@ class _CapabilityHeader(ctypes.Structure):
 
 def drop_capabilities() -> None:
     """Give up all capabilities, for this process and for the programs that it executes."""
-    for capability in range(64):
-        try:
+    with contextlib.suppress(OSError):  # until one does not exist, or if there is no right to drop any
+        for capability in range(64):
             _prctl(_PR_CAPBSET_DROP, capability)
-        except OSError:
-            break  # the capability does not exist, or there is no right to drop any
     header = _CapabilityHeader(_CAPABILITY_VERSION_3, 0)
     nothing = (ctypes.c_uint32 * 6)()
     call("capset", ctypes.byref(header), ctypes.byref(nothing))
@@ -161,6 +160,7 @@ def has_capability(number: int) -> bool:
     return False
 
 
-def set_file_user(user: int) -> None:
+def set_file_user(user: int, group: int) -> None:
     """Access files as another user, without a change of the user that signals are checked against."""
+    libc().setfsgid(ctypes.c_uint(group))
     libc().setfsuid(ctypes.c_uint(user))

@@ -64,16 +64,17 @@ def enter_namespaces() -> set[str]:
 
     That of processes holds for the next child of this process.
     """
-    entered = set()
-    for name, flag in _NAMES.items():
-        try:
-            unshare(flag)
-        except OSError as error:
-            if error.errno not in {errno.EPERM, errno.EINVAL, errno.ENOSPC, errno.ENOSYS, errno.EACCES}:
-                raise
-        else:
-            entered.add(name)
-    return entered
+    return {name for name, flag in _NAMES.items() if _can_enter(flag)}
+
+
+def _can_enter(flag: int) -> bool:
+    try:
+        unshare(flag)
+    except OSError as error:
+        if error.errno not in {errno.EPERM, errno.EINVAL, errno.ENOSPC, errno.ENOSYS, errno.EACCES}:
+            raise
+        return False
+    return True
 
 
 def bring_up_loopback() -> None:

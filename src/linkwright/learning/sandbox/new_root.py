@@ -18,7 +18,7 @@ from linkwright.learning.sandbox.linux import (
     mount,
 )
 
-_BASE = "/tmp"  # noqa: S108 - a mount point that every system has; nothing is written to the folder itself
+_BASE = "/tmp"
 _DEVICES = ("null", "zero", "full", "random", "urandom")
 _FILES_OF_PROC = ("cpuinfo", "meminfo", "stat", "version", "filesystems")
 
@@ -27,7 +27,7 @@ def enter_new_root(readable: list[str], folder: str, temporary_bytes: int, *, ow
     """Replace the root folder of this mount namespace.
 
     Args:
-        readable: Files, and folders with all that they contain, that the run may read.
+        readable: Files and whole folders that the run may read.
         folder: The folder in which the run may write.
         temporary_bytes: The size of /tmp and of /dev/shm, which are in memory and end with the run.
         own_processes: Whether this process is in a new namespace of processes.
@@ -104,15 +104,15 @@ class _Root:
         mount(f"/proc/self/fd/{source}", place, flags=MS_BIND | flags)
 
     def prepare_special_folders(self) -> None:
-        """Create the places of what is mounted later, while the root can be written."""
-        for path in ("/dev/shm", "/dev/pts", "/proc", "/tmp", "/sys"):  # noqa: S108 - in the new root
+        """Create the later mount points, while the root can be written."""
+        for path in ("/dev/shm", "/dev/pts", "/proc", "/tmp", "/sys"):
             Path(self._at(path)).mkdir(parents=True, exist_ok=True)
         for name in _DEVICES:
             Path(self._at(f"/dev/{name}")).touch()
         for name, target in (("fd", "fd"), ("stdin", "fd/0"), ("stdout", "fd/1"), ("stderr", "fd/2")):
             Path(self._at(f"/dev/{name}")).symlink_to(f"/proc/self/{target}")
         Path(self._at("/dev/ptmx")).symlink_to("pts/ptmx")
-        if not self._folder.startswith("/tmp/"):  # noqa: S108 - as above
+        if not self._folder.startswith("/tmp/"):
             with contextlib.suppress(OSError):  # it exists already, below a folder that may be read
                 Path(self._at(self._folder)).mkdir(parents=True, exist_ok=True)
 
@@ -120,14 +120,14 @@ class _Root:
         for name, source in self._devices.items():
             mount(f"/proc/self/fd/{source}", self._at(f"/dev/{name}"), flags=MS_BIND)
         options = f"mode=1777,size={temporary_bytes}"
-        for path in ("/dev/shm", "/tmp"):  # noqa: S108 - as above
+        for path in ("/dev/shm", "/tmp"):
             mount("linkwright", self._at(path), "tmpfs", MS_NOSUID | MS_NODEV, options)
         with contextlib.suppress(OSError):  # terminals are missing then
             mount("devpts", self._at("/dev/pts"), "devpts", MS_NOSUID | MS_NOEXEC, "newinstance,ptmxmode=0666,mode=620")
         self._mount_proc(own_processes=own_processes)
 
     def _mount_proc(self, *, own_processes: bool) -> None:
-        """Mount /proc of the new processes. Where that is not allowed, only files about the machine are there."""
+        """Mount /proc of the new processes. Where that is not allowed, it contains only files about the machine."""
         proc = self._at("/proc")
         if own_processes:
             with contextlib.suppress(OSError):

@@ -1,4 +1,4 @@
-"""What a run in the sandbox may use, what came of it, and the protections that were in force."""
+"""The limits of a run in the sandbox, its outcome, and the protections that were in force."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ MEBIBYTE = 1024 * 1024
 
 @dataclass(frozen=True)
 class Limits:
-    """What the processes of a run may use together. Times are in seconds, sizes in bytes."""
+    """The resources that the processes of a run may use together. Times are in seconds, sizes in bytes."""
 
     seconds: float = 120.0
     """Wall time. Generous, because it depends on the load of the machine; `cpu_seconds` does not."""
@@ -19,7 +19,7 @@ class Limits:
     file_bytes: int = 64 * MEBIBYTE
     """The size of one file."""
     disk_bytes: int = 256 * MEBIBYTE
-    """The space that the folder occupies beyond that before the run, or what was written, whichever is larger."""
+    """The space that the folder occupies beyond that before the run, or the bytes written, whichever is larger."""
     files: int = 20_000
     """The number of files and folders that a run adds."""
     processes: int = 256
@@ -42,7 +42,7 @@ class Exceeded(enum.Enum):
 
 
 class Protection(enum.Enum):
-    """What a run cannot do. `words.py` has a sentence for each."""
+    """A limitation of a run that holds for any program. `words.py` has a sentence for each."""
 
     LIMITS = "limits"
     """It cannot use more time, memory, disk space, processes or output than its limits allow."""
@@ -60,7 +60,7 @@ class Protection(enum.Enum):
 
 @dataclass(frozen=True)
 class Outcome:
-    """What came of a run."""
+    """The result of a run."""
 
     status: int
     """The exit status, or the negated number of the signal that ended the program, as in `subprocess`."""

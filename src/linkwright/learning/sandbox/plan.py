@@ -1,4 +1,4 @@
-"""What the grader tells the supervisor of a run, and what the supervisor answers: both as JSON."""
+"""Messages between the grader and the supervisor of a run, as JSON: the plan and the outcome."""
 
 from __future__ import annotations
 

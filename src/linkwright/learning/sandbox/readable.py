@@ -14,8 +14,8 @@ _SYSTEM_FOLDERS = (
 )  # fmt: skip
 _SETTINGS = (
     "alternatives", "ca-certificates", "crypto-policies", "fonts", "glvnd", "group", "host.conf", "hosts",
-    "ld.so.cache", "ld.so.conf", "ld.so.conf.d", "locale.alias", "localtime", "mime.types", "nsswitch.conf", "os-release",
-    "passwd", "pki", "protocols", "resolv.conf", "services", "ssl", "timezone",
+    "ld.so.cache", "ld.so.conf", "ld.so.conf.d", "locale.alias", "localtime", "mime.types", "nsswitch.conf",
+    "os-release", "passwd", "pki", "protocols", "resolv.conf", "services", "ssl", "timezone",
 )  # fmt: skip
 _STATES = ("/sys/devices/system", "/proc/cpuinfo", "/proc/meminfo", "/proc/stat", "/proc/version", "/proc/filesystems")
 
@@ -27,4 +27,4 @@ def readable_everywhere() -> list[str]:
     interpreter = [sys.executable, os.path.realpath(sys.executable)]
     settings = [f"/etc/{name}" for name in _SETTINGS]
     paths = dict.fromkeys([*installation, *interpreter, *packages, *_SYSTEM_FOLDERS, *settings, *_STATES])
-    return [os.path.abspath(path) for path in paths if path and Path(path).exists()]  # noqa: PTH100 - links are kept
+    return [os.path.abspath(path) for path in paths if path and Path(path).exists()]

@@ -13,6 +13,7 @@ from functools import cache
 from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, foreign, phrase
+from linkwright.learning.sandbox.contents import remove_harmful
 from linkwright.learning.sandbox.outcome import Limits, Outcome, Protection
 from linkwright.learning.sandbox.plan import Plan, outcome_from_json
 from linkwright.learning.sandbox.readable import readable_everywhere
@@ -26,12 +27,12 @@ def run_in_sandbox(
     arguments: Sequence[str],
     *,
     folder: Path,
-    limits: Limits = Limits(),
+    limits: Limits,
     readable: Sequence[Path] = (),
     environment: Mapping[str, str] | None = None,
     processors: Collection[int] = (),
 ) -> Outcome:
-    """Run a program on a copy of a student's folder, confined, and return what came of it.
+    """Run a program on a copy of a student's folder, confined, and return the outcome.
 
     After the run none of its processes is left, and the folder contains nothing that harms a reader. The folder is the
     home of the program and the place where it starts; its temporary files are in a folder there that is deleted.
@@ -39,9 +40,9 @@ def run_in_sandbox(
     Args:
         arguments: The program, such as `sys.executable`, and its arguments.
         folder: The copy. The run may change it, and nothing else.
-        limits: What the run may use.
-        readable: Files, and folders with all that they contain, that the run may read besides its folder, Python with
-            its packages, and the system's programs and libraries.
+        limits: The resources that the run may use.
+        readable: Files and whole folders that the run may read besides its folder, Python with its packages, and the
+            system's programs and libraries.
         environment: Variables of the environment, besides the path, the language and the places above. Others of this
             process are not passed on.
         processors: The numbers of the processors that the run may use. Runs at the same time that have different
@@ -79,19 +80,20 @@ def protections_available() -> frozenset[Protection]:
     """Return the protections that this system offers, found out by a run of an empty program."""
     with tempfile.TemporaryDirectory(prefix="linkwright-") as folder:
         Path(folder).chmod(0o711)
-        return run_in_sandbox([sys.executable, "-I", "-S", "-c", ""], folder=Path(folder)).protections
+        arguments = [sys.executable, "-I", "-S", "-c", ""]
+        return run_in_sandbox(arguments, folder=Path(folder), limits=Limits()).protections
 
 
 def _make_environment(folder: Path, scratch: Path, wanted: Mapping[str, str]) -> dict[str, str]:
     passed_on = {name: os.environ[name] for name in _PASSED_ON if name in os.environ}
     places = {"HOME": str(folder), "TMPDIR": str(scratch)}
-    programs = os.pathsep.join([os.path.dirname(sys.executable), passed_on.get("PATH", os.defpath)])  # noqa: PTH120 - text
+    programs = os.pathsep.join([os.path.dirname(sys.executable), passed_on.get("PATH", os.defpath)])
     return {**passed_on, "PATH": programs, **places, **wanted}
 
 
 def _supervise(plan: Plan) -> Outcome:
     """Run the supervisor to its end. If this process is interrupted, the supervisor ends the run first."""
-    search_path = json.dumps([os.path.abspath(path) for path in sys.path if path])  # noqa: PTH100 - links are kept
+    search_path = json.dumps([os.path.abspath(path) for path in sys.path if path])
     command = [sys.executable, "-I", "-S", "-c", _SUPERVISE.format(module=_MODULE), search_path]
     with subprocess.Popen(  # noqa: S603 - our own program
         command,
@@ -107,6 +109,8 @@ def _supervise(plan: Plan) -> Outcome:
         except BaseException:
             supervisor.terminate()
             raise
+    if supervisor.returncode < 0:  # the program has ended its supervisor; only where there is no protection from that
+        return Outcome(supervisor.returncode, b"", b"", None, frozenset(), remove_harmful(plan.folder))
     if supervisor.returncode != 0 or not answer:
         raise _failure(problem.strip() or f"the supervisor ended with status {supervisor.returncode}")
     return outcome_from_json(answer)

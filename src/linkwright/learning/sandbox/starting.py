@@ -2,7 +2,7 @@
 
 The supervisor forks a child. Where namespaces are allowed, the child enters them and forks twice: first the process
 number 1 of the new namespace, whose end ends all others, then the program. Elsewhere the child becomes the program.
-Each tells the supervisor through a pipe what was done.
+Each reports to the supervisor through a pipe.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ _TEMPORARY_SHARE = 8
 
 @dataclass
 class Confinement:
-    """What was applied to the run so far."""
+    """The confinement that was applied to the run so far."""
 
     namespaces: set[str] = field(default_factory=set)
     """`user`, `processes`, `mounts`, `ipc`, `network`; `root` when the run has a root folder of its own."""
@@ -164,6 +164,7 @@ class Start:
         from linkwright.learning.sandbox.linux import die_with_parent
 
         die_with_parent(signal.SIGKILL, 0)  # the parent is outside this namespace, which shows it as 0
+        _restore_signals()  # the kernel ignores those to this process that have no handler
         self._prepare_namespaces(confinement)
         program = _fork(lambda: self._become_program(confinement, 1))
         os.closerange(0, 3)
@@ -211,7 +212,7 @@ class Start:
             confinement.local_servers_forbidden = forbid_local_servers()
         if "root" in confinement.namespaces and landlock.landlock_version() < landlock.MOVE_VERSION:
             return  # it would forbid moving files between folders, and the root folder protects as well
-        special = [path for path in ("/tmp", "/dev/shm", "/dev/pts") if "root" in confinement.namespaces]  # noqa: S108
+        special = [path for path in ("/tmp", "/dev/shm", "/dev/pts") if "root" in confinement.namespaces]
         devices = [f"/dev/{name}" for name in ("null", "zero", "full", "random", "urandom", "ptmx", "tty")]
         proc = ["/proc"] if "processes" in confinement.namespaces else []
         with contextlib.suppress(OSError):

@@ -67,6 +67,7 @@ class _Supervisor:
         try:
             try:
                 self._start()
+                watchdog.user = self._confinement.user
                 exceeded = self._watch(watchdog)
             finally:
                 end_descendants(self._confinement.user)

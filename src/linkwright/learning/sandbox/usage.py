@@ -6,12 +6,13 @@ import contextlib
 import errno
 import os
 import stat
+import sys
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass
 
 from linkwright.learning.sandbox.outcome import Exceeded, Limits
-from linkwright.learning.sandbox.processes import ProcessUsage, descendants, own_memory, written_bytes
+from linkwright.learning.sandbox.processes import ProcessUsage, descendants, nameless_files, own_memory, written_bytes
 
 _INTERVAL_SECONDS = 0.04
 _SHARE_OF_TIME = 0.1
@@ -20,7 +21,7 @@ _SHARE_OF_TIME = 0.1
 
 @dataclass(frozen=True)
 class FolderUsage:
-    """What a folder contains."""
+    """The size of a folder's contents."""
 
     bytes: int
     files: int
@@ -29,7 +30,7 @@ class FolderUsage:
 
 
 def measure_folder(folder: str) -> FolderUsage:
-    """Return what a folder contains, without following links. A path that is too long counts as endless many files."""
+    """Return the size of a folder's contents, without following links. A path that is too long counts as endless many files."""
     total = files = largest = 0
     counted: set[tuple[int, int]] = set()
     for status in _walk(folder):
@@ -46,28 +47,31 @@ def measure_folder(folder: str) -> FolderUsage:
 
 
 def _walk(folder: str) -> Iterator[os.stat_result | None]:
+    """Yield the status of all that a folder contains, and None for a path that is too long."""
     waiting = [folder]
     while waiting:
-        try:
-            entries = os.scandir(waiting.pop())
-        except FileNotFoundError:
-            continue
-        except OSError as error:
-            if error.errno == errno.ENAMETOOLONG:
-                yield None
-            continue
-        with entries:
+        for path, status in _list_folder(waiting.pop()):
+            if status is not None and stat.S_ISDIR(status.st_mode):
+                waiting.append(path)
+            yield status
+
+
+def _list_folder(folder: str) -> Iterator[tuple[str, os.stat_result | None]]:
+    """Yield the paths in a folder with their status. Paths that the run deleted or made unreadable are left out."""
+    try:
+        with os.scandir(folder) as entries:
             for entry in entries:
-                with contextlib.suppress(OSError):
-                    yield entry.stat(follow_symlinks=False)
-                    if entry.is_dir(follow_symlinks=False):
-                        waiting.append(entry.path)
+                yield entry.path, entry.stat(follow_symlinks=False)
+    except OSError as error:
+        if error.errno == errno.ENAMETOOLONG:
+            yield folder, None
 
 
 class Watchdog:
-    """What a run has used since its start, compared with its limits.
+    """The resources that a run has used since its start, compared with its limits.
 
     Attributes:
+        user: the user of the run, if it is not this process's.
         cpu_seconds: the processor time of all processes so far.
     """
 
@@ -78,6 +82,10 @@ class Watchdog:
         self._start = time.monotonic()
         self._next_walk = self._next_check = self._start
         self._written_by: dict[int, int] = {}
+        self._nameless_on_disk = 0
+        self._device = os.stat(folder).st_dev
+        self._may_trace = _may_trace_all()
+        self.user: int | None = None
         self.cpu_seconds = 0.0
 
     @property
@@ -113,17 +121,37 @@ class Watchdog:
             return Exceeded.CPU_SECONDS
         if sum(process.threads for process in found) > self._limits.processes:
             return Exceeded.PROCESSES
-        if self._uses_too_much_memory(found):
-            return Exceeded.MEMORY
-        self._written_by.update({process.pid: written_bytes(process.pid) for process in found})
-        if sum(self._written_by.values()) > self._limits.disk_bytes:
-            return Exceeded.DISK_BYTES
-        return None
+        with self._access_to_processes():
+            return self._check_memory(found) or self._check_written(found)
 
-    def _uses_too_much_memory(self, found: list[ProcessUsage]) -> bool:
+    def _check_memory(self, found: list[ProcessUsage]) -> Exceeded | None:
         """Compare the memory with the limit, at first by a sum that counts shared pages more than once."""
-        limit = self._limits.memory
-        return sum(process.memory for process in found) > limit and sum(map(own_memory, found)) > limit
+        sizes: dict[tuple[int, int], int] = {}
+        for process in found:
+            sizes.update(nameless_files(process.pid))
+        self._nameless_on_disk = sum(size for (device, _), size in sizes.items() if device == self._device)
+        room = self._limits.memory - sum(sizes.values()) + self._nameless_on_disk
+        is_exceeded = sum(process.memory for process in found) > room and sum(map(own_memory, found)) > room
+        return Exceeded.MEMORY if is_exceeded else None
+
+    def _check_written(self, found: list[ProcessUsage]) -> Exceeded | None:
+        self._written_by.update({process.pid: written_bytes(process.pid) for process in found})
+        written = max(sum(self._written_by.values()), self._nameless_on_disk)
+        return Exceeded.DISK_BYTES if written > self._limits.disk_bytes else None
+
+    @contextlib.contextmanager
+    def _access_to_processes(self) -> Iterator[None]:
+        """Read /proc as the user of the run, where this process, though root, must not trace others."""
+        if self.user is None or self._may_trace:
+            yield
+            return
+        from linkwright.learning.sandbox.linux import set_file_user
+
+        set_file_user(self.user, self.user)
+        try:
+            yield
+        finally:
+            set_file_user(os.geteuid(), os.getegid())
 
     def _check_folder(self) -> Exceeded | None:
         start = time.monotonic()
@@ -139,3 +167,11 @@ class Watchdog:
         if usage.files - self._before.files > self._limits.files:
             return Exceeded.FILES
         return None
+
+
+def _may_trace_all() -> bool:
+    if sys.platform != "linux":
+        return False
+    from linkwright.learning.sandbox.linux import CAP_SYS_PTRACE, has_capability
+
+    return has_capability(CAP_SYS_PTRACE)
