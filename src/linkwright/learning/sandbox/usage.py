@@ -30,7 +30,10 @@ class FolderUsage:
 
 
 def measure_folder(folder: str) -> FolderUsage:
-    """Return the size of a folder's contents, without following links. A path that is too long counts as endless many files."""
+    """Return the size of a folder's contents, without following links.
+
+    A path that is too long counts as endlessly many files.
+    """
     total = files = largest = 0
     counted: set[tuple[int, int]] = set()
     for status in _walk(folder):
