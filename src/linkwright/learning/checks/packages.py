@@ -7,6 +7,7 @@ from pathlib import Path
 
 from linkwright.descriptions import examine
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, Severity, did_you_mean, phrase, quoted_names
+from linkwright.learning.checks.launched import LaunchCheck
 from linkwright.learning.checks.not_yet import NotYet
 from linkwright.learning.checks.robots import RobotCheck
 from linkwright.packages import PackageFinder
@@ -112,6 +113,19 @@ class PackageCheck(FileFolder):
     def __init__(self, name: str, folder: Path, finder: PackageFinder) -> None:
         super().__init__(folder, finder)
         self.name = name
+
+    def launch(self, name: str, **arguments: str) -> LaunchCheck:
+        """Return a launch of the package, to be used as a context manager.
+
+        Args:
+            name: the launch file, such as ``display.launch.py``.
+            arguments: the launch arguments.
+
+        Raises:
+            NotYet: there is no such launch file.
+        """
+        self.file(f"launch/{name}")
+        return LaunchCheck(self.name, name, arguments, self.finder)
 
 
 def _describe(finding: Diagnostic) -> Phrase:

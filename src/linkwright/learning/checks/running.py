@@ -25,6 +25,9 @@ from linkwright.learning.local_text import LocalText
 TIME_LIMIT = 120.0
 """The seconds after which the process of a step's checks is ended. Checks with simulated worlds take the longest."""
 
+_DOMAINS = 100
+"""The number of ROS domains among which the process of a check selects its own, without domain 0, the default."""
+
 MODULE = "linkwright.learning.checks.running"
 
 
@@ -148,6 +151,8 @@ def _read(output: Path) -> Any:
 
 def main(words: Sequence[str]) -> int:
     """Run the checks of a step, as `check_command` requests it."""
+    os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
+    os.environ["ROS_DOMAIN_ID"] = str(1 + os.getpid() % _DOMAINS)
     lesson_folder, step_id, workspace, output, *answers = words
     lesson = load_lesson(Path(lesson_folder))
     step = next(step for step in lesson.steps if step.id == step_id)
