@@ -10,7 +10,7 @@ from linkwright.diagnostics import phrase
 from linkwright.sdf.editing import writing
 from linkwright.sdf.editing.changing import pose_in_world
 from linkwright.sdf.editing.errors import EditError
-from linkwright.sdf.editing.shapes import ShapeKind, geometry, inertial, is_size, lengths, new_element
+from linkwright.sdf.editing.shapes import ShapeKind, format_lengths, geometry, inertial, is_size, new_element
 from linkwright.sdf.editing.text import WorldText
 from linkwright.sdf.includes import resolve_includes
 from linkwright.sdf.lights import Light
@@ -96,7 +96,7 @@ def add_shape(
             phrase("'{numbers}' is not a valid size for a {kind}", numbers=" ".join(map(str, size)), kind=kind)
         )
     name = world.free_name(kind)
-    colour = lengths((*defaults.colour, 1.0))
+    colour = format_lengths((*defaults.colour, 1.0))
     children = [
         new_element("collision", *geometry(kind, shape_size), name="collision"),
         new_element(
@@ -166,4 +166,4 @@ def add_include(world: WorldText, address: str, pose: Sequence[float]) -> tuple[
 
 
 def _insert(world: WorldText, element: Element) -> WorldText:
-    return world.edited([writing.inserted_in(world.element, [element], after=_ENTITY_TAGS)])
+    return world.apply_edits([writing.insertion_edit(world.element, [element], after=_ENTITY_TAGS)])

@@ -125,7 +125,7 @@ def ramp_pose(size: tuple[float, ...]) -> Pose:
     return Pose((0.0, size[1] / 2, 0.0), (pi / 2, 0.0, 0.0))
 
 
-def solid(kind: str, size: tuple[float, ...]) -> MassProperties:
+def solid_properties(kind: str, size: tuple[float, ...]) -> MassProperties:
     """Return the mass properties of a solid shape in the frame of its link.
 
     The density is 1 kg/m3.
@@ -144,26 +144,26 @@ def solid(kind: str, size: tuple[float, ...]) -> MassProperties:
     return MassProperties(mass, np.array([x / 6, 0.0, -z / 6]), inertia)
 
 
-def tensor(properties: MassProperties) -> dict[str, str]:
+def tensor_texts(properties: MassProperties) -> dict[str, str]:
     """Return the text of each child element of ``<inertia>``, by tag."""
     inertia = properties.inertia
     indices = {"ixx": (0, 0), "ixy": (0, 1), "ixz": (0, 2), "iyy": (1, 1), "iyz": (1, 2), "izz": (2, 2)}
-    return {tag: number(float(inertia[index])) for tag, index in indices.items()}
+    return {tag: format_number(float(inertia[index])) for tag, index in indices.items()}
 
 
-def number(value: float) -> str:
+def format_number(value: float) -> str:
     """Format a number with six significant digits, as used for masses and inertias."""
     return plain(float(f"{value:.6g}"))
 
 
-def length(value: float) -> str:
+def format_length(value: float) -> str:
     """Format a length or angle, rounded to nine decimals."""
     return plain(round(value, DIGITS))
 
 
-def lengths(values: tuple[float, ...]) -> str:
+def format_lengths(values: tuple[float, ...]) -> str:
     """Format lengths or angles, separated by spaces."""
-    return " ".join(map(length, values))
+    return " ".join(map(format_length, values))
 
 
 def new_element(tag: str, *children: Element | str, **attributes: str) -> Element:
@@ -175,12 +175,14 @@ def new_element(tag: str, *children: Element | str, **attributes: str) -> Elemen
 
 def inertial(kind: str, size: tuple[float, ...], mass: float) -> Element:
     """Return the ``<inertial>`` element of a solid shape with a mass in kg."""
-    properties = solid(kind, size).with_mass(mass)
-    children = [new_element("mass", number(mass))]
+    properties = solid_properties(kind, size).with_mass(mass)
+    children = [new_element("mass", format_number(mass))]
     if properties.center.any():
-        children.append(new_element("pose", f"{lengths(tuple(properties.center.tolist()))} 0 0 0"))
+        children.append(new_element("pose", f"{format_lengths(tuple(properties.center.tolist()))} 0 0 0"))
     children.append(
-        new_element("inertia", *(new_element(tag, text) for tag, text in tensor(properties).items() if text != "0"))
+        new_element(
+            "inertia", *(new_element(tag, text) for tag, text in tensor_texts(properties).items() if text != "0")
+        )
     )
     return new_element("inertial", *children)
 
@@ -189,18 +191,22 @@ def geometry(kind: str, size: tuple[float, ...]) -> list[Element]:
     """Return the ``<geometry>`` element of a shape, preceded by any required ``<pose>``."""
     if kind == "ramp":
         outline = wedge(size)
-        points = (new_element("point", lengths(point)) for point in outline.points)
-        shape = new_element("polyline", *points, new_element("height", length(outline.height)))
+        points = (new_element("point", format_lengths(point)) for point in outline.points)
+        shape = new_element("polyline", *points, new_element("height", format_length(outline.height)))
         pose = ramp_pose(size)
-        text = f"{lengths(pose.xyz)} {' '.join(map(plain, pose.rpy))}"
+        text = f"{format_lengths(pose.xyz)} {' '.join(map(plain, pose.rpy))}"
         return [new_element("pose", text), new_element("geometry", shape)]
     if kind == "cylinder":
         return [
             new_element(
                 "geometry",
-                new_element("cylinder", new_element("radius", length(size[0])), new_element("length", length(size[1]))),
+                new_element(
+                    "cylinder",
+                    new_element("radius", format_length(size[0])),
+                    new_element("length", format_length(size[1])),
+                ),
             )
         ]
     if kind == "sphere":
-        return [new_element("geometry", new_element("sphere", new_element("radius", length(size[0]))))]
-    return [new_element("geometry", new_element("box", new_element("size", lengths(size))))]
+        return [new_element("geometry", new_element("sphere", new_element("radius", format_length(size[0]))))]
+    return [new_element("geometry", new_element("box", new_element("size", format_lengths(size))))]

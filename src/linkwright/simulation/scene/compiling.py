@@ -55,7 +55,7 @@ def compile_scene(scene: Scene, previous: tuple[Any, Any] | None = None) -> tupl
         LinkwrightError: SIM104, MuJoCo rejects the scene; SIM105, there are too many links.
     """
     mujoco = load_mujoco()
-    scene.settle()
+    scene.set_wheel_surfaces()
     count = count_links(model.model for model in scene.models.values())
     if count > _MEMORY_THRESHOLD:
         scene.spec.memory = _BYTES_PER_PAIR * count * count + _BASE_BYTES

@@ -55,7 +55,7 @@ def _to_message(entity: Entity) -> WorldEntity:
     )
 
 
-def choices(packages: PackageFinder) -> ModelChoices:
+def model_choices(packages: PackageFinder) -> ModelChoices:
     """Return the message that lists the models on the search path, sorted by name."""
     folders = ResourceFinder(packages).models()
     names = sorted(name for name, folder in folders.items() if not isinstance(model_file(folder), Missing))
