@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from linkwright.diagnostics import Diagnostic, Note, Severity, phrase
-from linkwright.doctor.record import Observation, StampSeen, listed, nodes_of
+from linkwright.doctor.record import Observation, ObservedStamp, listed, nodes_of
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 _MAX_DIFFERENCE_NS = 5 * NANOSECONDS_PER_SECOND
@@ -19,7 +19,7 @@ _CLOCK_TOPIC = "/clock"
 def examine_clocks(observation: Observation) -> Iterator[Diagnostic]:
     """Yield findings about stamps and simulated time."""
     yield from _examine_simulated_time(observation)
-    yield from _stamps(observation)
+    yield from _examine_stamps(observation)
 
 
 def _is_hidden(node: str) -> bool:
@@ -86,11 +86,11 @@ def _examine_simulated_time(observation: Observation) -> Iterator[Diagnostic]:
         )
 
 
-def _stamps(observation: Observation) -> Iterator[Diagnostic]:
+def _examine_stamps(observation: Observation) -> Iterator[Diagnostic]:
     unset_topics: dict[str, list[str]] = {}
-    wrong_stamps: dict[str, list[StampSeen]] = {}
+    wrong_stamps: dict[str, list[ObservedStamp]] = {}
     for stamp in observation.stamps:
-        if stamp.zero:
+        if stamp.is_zero:
             unset_topics.setdefault(stamp.sender, []).append(stamp.topic)
         elif abs(stamp.behind_ns) > _MAX_DIFFERENCE_NS:
             wrong_stamps.setdefault(stamp.sender, []).append(stamp)

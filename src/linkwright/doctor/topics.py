@@ -314,13 +314,13 @@ def _examine_commands(observation: Observation) -> Iterator[Diagnostic]:
 
 def _examine_drivers(observation: Observation) -> Iterator[Diagnostic]:
     """Yield findings about nodes that published contradictory velocities on a topic."""
-    for drivers_seen in observation.disputed:
+    for observed_drivers in observation.disputed:
         yield Diagnostic(
             "DOC208",
             phrase(
                 "two nodes drive the robot: {drivers} publish contradictory velocities on '{topic}'",
-                drivers=listed(drivers_seen.drivers),
-                topic=drivers_seen.topic,
+                drivers=listed(observed_drivers.drivers),
+                topic=observed_drivers.topic,
             ),
             severity=Severity.WARNING,
             notes=(Note(phrase("the robot obeys each message in turn, so its motion is jerky")),),

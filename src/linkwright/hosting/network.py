@@ -44,7 +44,7 @@ class Network:
         self._handle: asyncio.TimerHandle | None = None
         self.domain_id: int | None = None
 
-    def offer(self, graph: Graph) -> None:
+    def set_graph(self, graph: Graph) -> None:
         """Set the graph that will join the network."""
         self._graph = graph
 
@@ -108,7 +108,7 @@ class SharedNames:
         self.findings: list[Diagnostic] = []
         """The findings for the page: one finding while names are shared, otherwise none."""
 
-    def notice(self, names: frozenset[str]) -> None:
+    def set_names(self, names: frozenset[str]) -> None:
         """Set the full names of the nodes that exist twice.
 
         Any thread may call this method.

@@ -73,8 +73,8 @@ class NodeHost:
             from linkwright.graph import Graph
 
             self._shared_names = SharedNames(self.network, self._session.log, self._show_findings)
-            self._graph = Graph(on_log=self._on_log, on_namesakes=self._shared_names.notice)
-            self.network.offer(self._graph)
+            self._graph = Graph(on_log=self._on_log, on_namesakes=self._shared_names.set_names)
+            self.network.set_graph(self._graph)
         return self._graph
 
     @property
@@ -233,13 +233,13 @@ class NodeHost:
         name, call = description
         session.fail(call)
 
-        def again(text: str) -> None:
-            session.reload.unbind(call, again)
+        def start_again(text: str) -> None:
+            session.reload.unbind(call, start_again)
             session.clear_failure(call)
             plan.parameters[name] = text
             self._start_node(plan)
 
-        session.reload.bind(call, again)
+        session.reload.bind(call, start_again)
         session.reload.report(call, error.diagnostics)
 
     def _bind_descriptions(self, process_name: str, node: RunningNode, parameters: Mapping[str, Any]) -> None:

@@ -119,7 +119,7 @@ class DriveOdometry:
         self._last_published_ns = last_ns + period_ns
         return True
 
-    def serve(self, node: ControllerNode) -> None:
+    def create_reset_service(self, node: ControllerNode) -> None:
         """Offer the service ``~/set_odometry``, which resets the pose.
 
         The service type is ``control_msgs/srv/SetOdometry``.

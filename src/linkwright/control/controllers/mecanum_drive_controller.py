@@ -148,7 +148,7 @@ class MecanumDriveController(Controller[Parameters]):
             velocity_variances=variances("twist_covariance_diagonal", parameters.twist_covariance_diagonal),
             publishes_transforms=parameters.enable_odom_tf,
         )
-        self._odometry.serve(node)
+        self._odometry.create_reset_service(node)
         self._state = node.publisher("control_msgs/msg/MecanumDriveControllerState", "~/controller_state")
 
     def on_activate(self) -> None:

@@ -306,7 +306,7 @@ class LaunchSession:
         try:
             next_entities = entity.visit(context)
         except DescriptionError as error:
-            if not (error.missing or self.ending):
+            if not (error.is_missing or self.ending):
                 self._retry_when_fixed(entity, context.snapshot(), error)
             elif not self._omissions.skip(located(error, entity.place)):
                 raise

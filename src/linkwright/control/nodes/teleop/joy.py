@@ -99,9 +99,9 @@ class JoyNode(SingleNode):
         self._message_type = get_message("sensor_msgs/msg/Joy")
         self._publisher = node.create_publisher(self._message_type, "joy", _DEPTH)
         clock = Clock(clock_type=ClockType.STEADY_TIME, timebase=node.get_clock().timebase)
-        self._soon = node.create_timer(settings.coalesce, self._publish, clock=clock, autostart=False)
+        self._publish_timer = node.create_timer(settings.coalesce, self._publish, clock=clock, autostart=False)
         is_repeated = settings.repeat_rate > 0.0
-        self._repeat = node.create_timer(
+        self._repeat_timer = node.create_timer(
             1.0 / settings.repeat_rate if is_repeated else 1.0, self._publish, clock=clock, autostart=False
         )
         self._retry_timer = node.create_timer(_RETRY_SECONDS, self._open, clock=clock)
@@ -135,7 +135,7 @@ class JoyNode(SingleNode):
             f"Opened joystick: {self._device.name or path}.  deadzone: {self._settings.deadzone:f}"
         )
         if self._settings.repeat_rate > 0.0:
-            self._repeat.reset()
+            self._repeat_timer.reset()
 
     def _wait(self, text: str) -> None:
         """Log the reason why there is no joystick, unless it was logged last."""
@@ -145,8 +145,8 @@ class JoyNode(SingleNode):
 
     def _on_unplugged(self) -> None:
         self._device = None
-        self._soon.cancel()
-        self._repeat.cancel()
+        self._publish_timer.cancel()
+        self._repeat_timer.cancel()
         self._axes, self._buttons = [0.0] * len(self._axes), [0] * len(self._buttons)
         self._send()
         self._node.get_logger().warning(localized(phrase("the joystick was disconnected; waiting for it")))
@@ -163,8 +163,8 @@ class JoyNode(SingleNode):
                 publish_now, publish_soon = publish_now or not event.is_initial, publish_soon or event.is_initial
         if publish_now or (publish_soon and self._settings.coalesce == 0.0):
             self._publish()
-        elif publish_soon and self._soon.is_canceled():
-            self._soon.reset()
+        elif publish_soon and self._publish_timer.is_canceled():
+            self._publish_timer.reset()
 
     def _update_axis(self, event: JoystickEvent) -> bool:
         axes = self._axes
@@ -183,11 +183,11 @@ class JoyNode(SingleNode):
         return event.is_initial or old_value != buttons[event.number]
 
     def _publish(self) -> None:
-        self._soon.cancel()
+        self._publish_timer.cancel()
         if self._device is None:
             return
         if self._settings.repeat_rate > 0.0:
-            self._repeat.reset()
+            self._repeat_timer.reset()
         self._send()
 
     def _send(self) -> None:
