@@ -37,8 +37,9 @@ def _examine_simulated_time(observation: Observation) -> Iterator[Diagnostic]:
         yield Diagnostic(
             "DOC602",
             phrase(
-                "use_sim_time is true for {on}, but no node publishes /clock, so their time does not advance",
-                on=listed(simulated_nodes),
+                "use_sim_time is true for {simulated_nodes}, but no node publishes /clock, "
+                "so their time does not advance",
+                simulated_nodes=listed(simulated_nodes),
             ),
             hint=phrase("start the simulation or play the bag with --clock, or set use_sim_time to false"),
         )
@@ -67,9 +68,9 @@ def _examine_simulated_time(observation: Observation) -> Iterator[Diagnostic]:
         yield Diagnostic(
             "DOC601",
             phrase(
-                "use_sim_time is true for {on}, but false for {off}",
-                on=listed(simulated_nodes),
-                off=listed(other_nodes),
+                "use_sim_time is true for {simulated_nodes}, but false for {other_nodes}",
+                simulated_nodes=listed(simulated_nodes),
+                other_nodes=listed(other_nodes),
             ),
             severity=Severity.WARNING,
             notes=(Note(phrase("the stamps of these nodes are far apart, so transforms and messages do not match")),),
@@ -112,16 +113,16 @@ def _examine_stamps(observation: Observation) -> Iterator[Diagnostic]:
         yield Diagnostic(
             "DOC605",
             phrase(
-                "the stamps of '{sender}' on {where} are {seconds:.1f} s behind the clock here",
+                "the stamps of '{sender}' on {topics} are {seconds:.1f} s behind the clock here",
                 sender=sender,
-                where=topics_text,
+                topics=topics_text,
                 seconds=farthest.behind_ns / NANOSECONDS_PER_SECOND,
             )
             if farthest.behind_ns > 0
             else phrase(
-                "the stamps of '{sender}' on {where} are {seconds:.1f} s ahead of the clock here",
+                "the stamps of '{sender}' on {topics} are {seconds:.1f} s ahead of the clock here",
                 sender=sender,
-                where=topics_text,
+                topics=topics_text,
                 seconds=-farthest.behind_ns / NANOSECONDS_PER_SECOND,
             ),
             severity=Severity.WARNING,

@@ -27,7 +27,7 @@ def examine_frames(observation: Observation, robots: Sequence[ObservedRobot]) ->
     if cycle:
         yield Diagnostic(
             "DOC307",
-            phrase("the parents of frames form a cycle: {circle}", circle=" -> ".join(cycle)),
+            phrase("the parents of frames form a cycle: {cycle}", cycle=" -> ".join(cycle)),
             hint=phrase("publish each frame's transform from one node only: two nodes disagree about the parents"),
         )
     for robot in robots:

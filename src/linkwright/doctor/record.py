@@ -202,7 +202,7 @@ def listed(names: Iterable[str], limit: int = 6) -> Phrase:
     all_names = list(names)
     shown_names = quoted_names(all_names[:limit])
     return (
-        phrase("{names} and {more} more", names=shown_names, more=len(all_names) - limit)
+        phrase("{names} and {count} more", names=shown_names, count=len(all_names) - limit)
         if len(all_names) > limit
         else shown_names
     )

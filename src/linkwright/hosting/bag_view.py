@@ -69,7 +69,7 @@ class BagView(ModelView):
 
     def _plan_description(self) -> bool:
         """Prepare the topics of the recording, and return whether the view can continue."""
-        self.log.diagnostics(self._bag.findings)
+        self.log.write_diagnostics(self._bag.findings)
         from linkwright.viewer.recorded_robot import published
 
         self._output = published(self._bag, self._player, self._robot)

@@ -91,7 +91,7 @@ class LiveReload:
         """
         findings = tuple(diagnostics)
         known_keys = {_finding_key(finding) for finding in self._findings.get(subject, ())}
-        self._log.diagnostics(
+        self._log.write_diagnostics(
             finding
             for finding in findings
             if finding.severity is Severity.ERROR or _finding_key(finding) not in known_keys
@@ -139,7 +139,7 @@ class LiveReload:
             asyncio.get_running_loop().call_later(_CATCH_UP_SECONDS, self._reload_missed)
 
     def _on_watch_failure(self, reason: str) -> None:
-        self._log.warning_line("launch", f"model files are not watched for changes: {reason}")
+        self._log.write_warning("launch", f"model files are not watched for changes: {reason}")
 
     def _reload_missed(self) -> None:
         """Reload descriptions whose files changed after they were read, but before the watch began."""
@@ -248,7 +248,7 @@ class LiveReload:
             self._watch_files()
             return
         verb = "repaired" if was_broken and not has_errors(findings) else "reloaded"
-        self._log.info_line("launch", f"{verb} {display_path(call.path)}")
+        self._log.write_info("launch", f"{verb} {display_path(call.path)}")
         self.report(call, findings)
         self._watch_files()
 

@@ -165,7 +165,7 @@ class ModelView:
                 try:
                     callback(*arguments)
                 except LinkwrightError as error:
-                    self.log.diagnostics(error.diagnostics)
+                    self.log.write_diagnostics(error.diagnostics)
                     self.fail(writer)
                     asyncio.get_running_loop().call_soon(self._end_recording)
                     asyncio.get_running_loop().call_soon(node.destroy_node)
@@ -183,7 +183,7 @@ class ModelView:
             try:
                 recorder.close()
             except LinkwrightError as error:
-                self.log.diagnostics(error.diagnostics)
+                self.log.write_diagnostics(error.diagnostics)
                 self.fail(recorder)
 
     # --- what is shown ----------------------------------------------------------------------------------------
@@ -206,7 +206,7 @@ class ModelView:
                 self.reload.report(self._call, error.diagnostics)
                 self.spawn(self._request_arguments(self._call, error))
                 return True
-            self.log.diagnostics(error.diagnostics)
+            self.log.write_diagnostics(error.diagnostics)
             self.shut_down("there is no model")
             return False
         except KeyboardInterrupt:
@@ -356,7 +356,7 @@ class ModelView:
 
     def interrupt(self, reason: str) -> None:
         """End the view because the user interrupted it."""
-        self.log.warning_line("launch", reason)
+        self.log.write_warning("launch", reason)
         self._end_event.set()
 
     def shut_down(self, reason: str) -> None:

@@ -51,7 +51,7 @@ class JointMotion:
 
     Args:
         joints: the joints. Revolute, continuous and prismatic joints move; all others stay at their origin. Axes need
-            not be of unit length (KDL normalises them). A joint with a zero axis does not move.
+            not be of unit length (KDL normalizes them). A joint with a zero axis does not move.
     """
 
     def __init__(self, joints: Sequence[Joint]) -> None:
@@ -60,9 +60,9 @@ class JointMotion:
             self._add(row, joint)
 
     def poses(self, positions: Array) -> Array:
-        """Return the poses for joint positions of shape (n,), in radians or metres.
+        """Return the poses for joint positions of shape (n,), in radians or meters.
 
-        The result has shape (n, 7): x y z in metres, and the quaternion qx qy qz qw.
+        The result has shape (n, 7): x y z in meters, and the quaternion qx qy qz qw.
         """
         half_angles = (0.5 * positions)[:, np.newaxis]
         poses: Array = self._cosine * np.cos(half_angles)

@@ -107,7 +107,7 @@ def _keyframe_at(poses: list[Transform], index: int, tangent_scale: float) -> _K
     orientation = poses[index][3:]
     inverse = quaternion_inverse(orientation)
     log_to_next, log_to_previous = (
-        _log(quaternion_multiply(inverse, neighbour[3:])) for neighbour in (next_pose, previous_pose)
+        _log(quaternion_multiply(inverse, neighbor[3:])) for neighbor in (next_pose, previous_pose)
     )
     offset = _exp(
         (

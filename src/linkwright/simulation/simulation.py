@@ -329,7 +329,9 @@ class Simulation:
             self._stepper.make_steps(count)
         except mujoco.FatalError as error:
             reason = str(error).splitlines()[0]
-            raise LinkwrightError(Diagnostic("SIM121", phrase("MuJoCo failed: {said}", said=foreign(reason)))) from None
+            raise LinkwrightError(
+                Diagnostic("SIM121", phrase("MuJoCo failed: {reason}", reason=foreign(reason)))
+            ) from None
         self._is_current = False
         dot = mujoco.mju_dot  # takes half the time of a comparison; numpy's dot warns of overflows
         if (
@@ -555,7 +557,7 @@ class Simulation:
         *,
         by: str = "",
     ) -> None:
-        """Set the force in N and the torque in N m on the centre of mass of a link, in world axes.
+        """Set the force in N and the torque in N m on the center of mass of a link, in world axes.
 
         Force and torque act until they are set again. The forces of several callers add up; `by` identifies the caller.
         """

@@ -26,7 +26,10 @@ def variances(name: str, values: tuple[float, ...]) -> Variances:
     if len(values) != _AXES:
         raise ControllerError(
             phrase(
-                "'{name}' must have {needed} numbers, but it has {count}", name=name, needed=_AXES, count=len(values)
+                "'{name}' must have {expected_count} numbers, but it has {count}",
+                name=name,
+                expected_count=_AXES,
+                count=len(values),
             )
         )
     return values

@@ -184,10 +184,11 @@ class SteeringController(Controller[P], Generic[P]):
             if len(names) != needed:
                 raise ControllerError(
                     phrase(
-                        "{kind} configuration requires exactly {needed} {what} joint(s), but {count} were provided",
+                        "{kind} configuration requires exactly {expected_count} {role} joint(s), "
+                        "but {count} were provided",
                         kind=self.KIND,
-                        needed=needed,
-                        what=role,
+                        expected_count=needed,
+                        role=role,
                         count=len(names),
                     )
                 )

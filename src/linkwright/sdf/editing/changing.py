@@ -51,7 +51,7 @@ class Change:
         size: the size of a model that consists of one simple shape, as in `SimpleShape`.
         new_name: the new name.
         static: whether the model is fixed and never moves.
-        colour: the colour of a simple shape or a light: red, green, blue and alpha, from 0 to 1.
+        color: the color of a simple shape or a light: red, green, blue and alpha, from 0 to 1.
     """
 
     name: str
@@ -59,7 +59,7 @@ class Change:
     size: tuple[float, ...] | None = None
     new_name: str | None = None
     static: bool | None = None
-    colour: tuple[float, ...] | None = None
+    color: tuple[float, ...] | None = None
 
 
 def change(world: WorldText, changes: Iterable[Change]) -> WorldText:
@@ -230,8 +230,8 @@ def _property_edits(entity: Entity, change: Change) -> list[Replacement]:
     edits: list[Replacement] = []
     if change.size is not None and (entity.shape is None or tuple(change.size) != entity.shape.size):
         edits += _size_edits(entity, tuple(change.size))
-    if change.colour is not None:
-        edits += _color_edits(entity, change.colour)
+    if change.color is not None:
+        edits += _color_edits(entity, change.color)
     if change.static is not None and change.static != entity.static:
         edits += _static_edits(entity, change.static, change.size)
     return edits
@@ -308,28 +308,28 @@ def _copy_values(owner: Element, new: Element) -> list[Replacement]:
     return edits
 
 
-def _color_edits(entity: Entity, colour: Sequence[float]) -> list[Replacement]:
-    if len(colour) != 4 or not all(isfinite(value) and 0 <= value <= 1 for value in colour):
-        raise EditError(phrase("a colour has four numbers from 0 to 1: red green blue alpha"))
+def _color_edits(entity: Entity, color: Sequence[float]) -> list[Replacement]:
+    if len(color) != 4 or not all(isfinite(value) and 0 <= value <= 1 for value in color):
+        raise EditError(phrase("a color has four numbers from 0 to 1: red green blue alpha"))
     if entity.kind == "light" and not isinstance(entity.written, Include):
-        return writing.child_edits(entity.element, "diffuse", colour)
+        return writing.child_edits(entity.element, "diffuse", color)
     if entity.shape is None or not isinstance(entity.written, Model):
-        raise EditError(phrase("the colour of '{name}' cannot be changed: it is not a simple shape", name=entity.name))
+        raise EditError(phrase("the color of '{name}' cannot be changed: it is not a simple shape", name=entity.name))
     edits: list[Replacement] = []
     for visual in entity.written.links[0].visuals:
         assert visual.element is not None, "it was read from the text"
         material = visual.element.first("material")
         if material is None:
-            text = format_lengths(tuple(colour))
+            text = format_lengths(tuple(color))
             parts = (new_element("ambient", text), new_element("diffuse", text))
             edits.append(writing.insertion_edit(visual.element, [new_element("material", *parts)]))
             continue
-        script = material.first("script")  # the script would override the colours
+        script = material.first("script")  # the script would override the colors
         missing = [tag for tag in ("ambient", "diffuse") if material.first(tag) is None]
         for tag in ("ambient", "diffuse"):
             if tag not in missing:
-                edits += writing.child_edits(material, tag, colour)
-        new = [new_element(tag, format_lengths(tuple(colour))) for tag in missing]
+                edits += writing.child_edits(material, tag, color)
+        new = [new_element(tag, format_lengths(tuple(color))) for tag in missing]
         if script is not None:
             edits.append(writing.replacement_edit(script, new))
         elif new:

@@ -114,5 +114,5 @@ def _parse_number(name: str, value: Any) -> float:
     except ValueError:
         message = phrase("'{value}' for '{name}' is not a number", value=str(value), name=name)
         raise LinkwrightError(
-            Diagnostic("NODE812", message, hint=phrase("write a number in metres or radians"))
+            Diagnostic("NODE812", message, hint=phrase("write a number in meters or radians"))
         ) from None

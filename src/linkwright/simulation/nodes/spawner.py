@@ -28,7 +28,7 @@ class Entity:
 
     Attributes:
         name: the name of the model in the world.
-        xyz: the position in metres.
+        xyz: the position in meters.
         rpy: the roll, pitch and yaw in radians.
         namespace: the ROS namespace of the model's plugins.
         reference_frame: the frame of the pose; the world if empty.

@@ -62,7 +62,7 @@ class _Drag:
     Attributes:
         model: the name of the model.
         initial_state: the state of the model when the drag began; None until the simulator has returned it.
-        pending_offset: the newest offset that was not sent yet, in metres; None if all were sent.
+        pending_offset: the newest offset that was not sent yet, in meters; None if all were sent.
         is_calling: whether a request to move the model is in progress.
     """
 
@@ -301,10 +301,10 @@ def _report_added(page: Page, name: str, actual_name: str, response: Any) -> Non
     page.send(ModelAdded(actual_name))
     if actual_name != name:
         notice = phrase(
-            "A model '{name}' already exists: the new one is named '{free}', and the topics of its "
-            "plugins begin with /{free}. The frames of both models have the same names.",
+            "A model '{name}' already exists: the new one is named '{free_name}', and the topics of its "
+            "plugins begin with /{free_name}. The frames of both models have the same names.",
             name=name,
-            free=actual_name,
+            free_name=actual_name,
         )
         page.send(SimulationNotice(notice))
 

@@ -103,7 +103,7 @@ class ClassicAckermann(SimulatedPlugin[AckermannParameters]):
         self._time = self.simulation.time
 
     def reset(self) -> None:
-        """Stop the car, and reset its steering angle and the travelled distance."""
+        """Stop the car, and reset its steering angle and the traveled distance."""
         self._reset_motion()
         for servo in self._servos:
             servo.restart()

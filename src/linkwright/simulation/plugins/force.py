@@ -1,7 +1,7 @@
 """A force on a link, commanded on a topic: ``libgazebo_ros_force.so``.
 
 Source: gazebo_ros_pkgs for ROS 2 and ROS 1 (parameters, topic; before each step, the force of the last message acts at
-the centre of mass, in the axes of the world or of the link).
+the center of mass, in the axes of the world or of the link).
 """
 
 from __future__ import annotations

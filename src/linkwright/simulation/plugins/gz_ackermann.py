@@ -195,8 +195,8 @@ class GzAckermann(SimulatedPlugin[SteeringParameters]):
         return tuple(self.simulation.joint_state(joint)[0] for joint in self._odometry_joints)
 
     @property
-    def _yaw_per_metre(self) -> float:
-        """The change of yaw in rad per metre driven, at the measured steering angles."""
+    def _yaw_per_meter(self) -> float:
+        """The change of yaw in rad per meter driven, at the measured steering angles."""
         left, right = (self.simulation.joint_state(joint)[0] for joint in self._steering_joints)
         return tan((left + right) / 2.0) / self.parameters.wheel_base
 
@@ -208,10 +208,10 @@ class GzAckermann(SimulatedPlugin[SteeringParameters]):
             / 2.0
             * self.parameters.wheel_radius
         )
-        self._pose.advance(distance, 0.0, distance * self._yaw_per_metre)
+        self._pose.advance(distance, 0.0, distance * self._yaw_per_meter)
 
     def _publish(self) -> None:
         self._update_odometry()
         speeds = [self.simulation.joint_state(joint)[1] for joint in self._odometry_joints]
         forward = sum(speeds) / 2.0 * self.parameters.wheel_radius
-        self._topics.publish(self.stamp(), self._pose.transform, forward, 0.0, forward * self._yaw_per_metre)
+        self._topics.publish(self.stamp(), self._pose.transform, forward, 0.0, forward * self._yaw_per_meter)

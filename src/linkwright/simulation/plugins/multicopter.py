@@ -243,7 +243,7 @@ class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
     def _mass_and_inertia(self) -> tuple[float, Array]:
         """Return the model's mass in kg, and its inertia tensor in kg m2.
 
-        The tensor is about the centre of mass, in the axes of the body.
+        The tensor is about the center of mass, in the axes of the body.
         """
         simulation = self.simulation
         model, data = simulation.model, simulation.data
@@ -251,10 +251,10 @@ class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
         root = int(model.body_rootid[body])
         bodies = [index for index in range(model.nbody) if int(model.body_rootid[index]) == root]
         masses = model.body_mass[bodies]
-        centre = masses @ data.xipos[bodies] / masses.sum()
+        center = masses @ data.xipos[bodies] / masses.sum()
         total = np.zeros((3, 3))
         for part in bodies:
-            axes, offset = data.ximat[part].reshape(3, 3), data.xipos[part] - centre
+            axes, offset = data.ximat[part].reshape(3, 3), data.xipos[part] - center
             total += axes @ np.diag(model.body_inertia[part]) @ axes.T
             total += model.body_mass[part] * (offset @ offset * np.eye(3) - np.outer(offset, offset))
         rotation = data.xmat[body].reshape(3, 3)

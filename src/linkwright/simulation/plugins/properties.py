@@ -101,13 +101,13 @@ class ClassicProperties(SimulatedPlugin[NoParameters]):
                         "SIM111",
                         phrase(
                             "this mass or inertia is not physically possible; give a positive mass and moments that "
-                            "fulfil the triangle inequality"
+                            "fulfill the triangle inequality"
                         ),
                     )
                 )
-            centre = vector_components(request.com.position)
+            center = vector_components(request.com.position)
             body = self.simulation.scene.spec.body(link)
-            body.explicitinertial, body.mass, body.ipos = True, request.mass, list(centre)
+            body.explicitinertial, body.mass, body.ipos = True, request.mass, list(center)
             body.fullinertia, body.gravcomp = list(moments), 0.0 if request.gravity_mode else 1.0
             self.simulation.mark_changed()
             return "SetLinkProperties: properties set"

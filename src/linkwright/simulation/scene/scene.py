@@ -131,7 +131,7 @@ class Scene:
         for model in self._sort_models(world.models):
             if model.name in exclusion_reasons:
                 message = phrase(
-                    "model '{name}' is left out: {why}", name=model.name, why=exclusion_reasons[model.name]
+                    "model '{name}' is left out: {reason}", name=model.name, reason=exclusion_reasons[model.name]
                 )
                 self._warn("SIM117", message, model.element)
             elif model.name not in self.models:  # `check` reports duplicate names
@@ -253,7 +253,7 @@ class Scene:
                     self.spec, joint, self._movable_joints((name, *connected.attached_to))
                 )
         scene_model.parts += self._self_collision_exclusions(structure)
-        scene_model.parts += self._neighbour_exclusions(connected)
+        scene_model.parts += self._neighbor_exclusions(connected)
         return scene_model
 
     def set_initial_pose(self, name: str, pose: Transform) -> None:
@@ -542,7 +542,7 @@ class Scene:
             ):
                 yield self.spec.add_exclude(bodyname1=first.name, bodyname2=second.name)
 
-    def _neighbour_exclusions(self, connected: ConnectedModel) -> Iterator[Any]:
+    def _neighbor_exclusions(self, connected: ConnectedModel) -> Iterator[Any]:
         """Add and yield contact exclusions for pairs of links that joints of the world connect."""
         own_links = {tree_link.link.name for tree_link in connected.structure.links}
         parent_joints = (tree_link.joint for tree_link in connected.structure.links if tree_link.joint is not None)

@@ -33,7 +33,7 @@ class _Settings:
         number: the number of the device.
         name: a part of the device's name; empty to use the number or path.
         path: the path of the device; None to use the number or name.
-        deadzone: the fraction of an axis around its centre that counts as 0.
+        deadzone: the fraction of an axis around its center that counts as 0.
         repeat_rate: the rate of messages while nothing changes, in Hz; 0 for none.
         coalesce: the time for which changes of axis positions are collected, in seconds.
         sticky: whether a button stays pressed until it is pressed again.
@@ -111,7 +111,7 @@ class JoyNode(SingleNode):
         path = self._settings.device()
         if path is None:
             device_label = self._settings.requested_device()
-            self._wait(localized(phrase("the joystick {wanted} is not connected; waiting for it", wanted=device_label)))
+            self._wait(localized(phrase("the joystick {device} is not connected; waiting for it", device=device_label)))
             return
         try:
             self._device = JoystickDevice(path, self._on_events, self._on_unplugged)
@@ -217,7 +217,7 @@ def deflection(value: int, deadzone: float) -> float:
 
     Args:
         value: the device's value from -32767 to 32767, positive backwards and to the right.
-        deadzone: the fraction around the centre that counts as 0; beyond it, the deflection grows from 0.
+        deadzone: the fraction around the center that counts as 0; beyond it, the deflection grows from 0.
     """
     raw_deflection = max(-1.0, min(1.0, -value / MAX_VALUE))
     excess = abs(raw_deflection) - deadzone
@@ -245,13 +245,15 @@ def _number_in_range(node: Node, name: str, default: float, minimum: float, maxi
     if isfinite(value) and value >= minimum and (maximum is None or value <= maximum):
         return float(value)
     message = (
-        phrase("parameter '{name}' must be at least {least}, but it is {value}", name=name, least=minimum, value=value)
+        phrase(
+            "parameter '{name}' must be at least {minimum}, but it is {value}", name=name, minimum=minimum, value=value
+        )
         if maximum is None
         else phrase(
-            "parameter '{name}' must be between {least} and {most}, but it is {value}",
+            "parameter '{name}' must be between {minimum} and {maximum}, but it is {value}",
             name=name,
-            least=minimum,
-            most=maximum,
+            minimum=minimum,
+            maximum=maximum,
             value=value,
         )
     )
