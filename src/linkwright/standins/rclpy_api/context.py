@@ -21,6 +21,7 @@ from linkwright.graph.faults import RclError
 from linkwright.standins.rclpy_api import logging
 from linkwright.standins.rclpy_api.errors import RCLInvalidROSArgsError, UnknownROSArgsError
 from linkwright.standins.rclpy_api.signals import shut_down_on_signal
+from linkwright.standins.rclpy_api.state import current_state
 
 if TYPE_CHECKING:
     from typing_extensions import Self
@@ -28,7 +29,6 @@ if TYPE_CHECKING:
     from linkwright.wire.background import BackgroundTransport
 
 _MAX_JOIN_WAIT_S = 3.0
-_open_contexts: weakref.WeakSet[Context] = weakref.WeakSet()
 
 
 class Context:
@@ -101,7 +101,8 @@ class Context:
         """
         if domain_id is not None and domain_id < 0:
             raise RuntimeError(f"Domain id ({domain_id}) should not be lower than zero.")
-        if self._graph is None:
+        joins_network = self._graph is None and current_state().create_graph is None
+        if joins_network:
             _check_security()
         with self._lock:
             if self._initialized:
@@ -109,11 +110,11 @@ class Context:
             self.ros_arguments = read_ros_arguments(sys.argv if args is None else args)
             print_diagnostics([finding for _, finding in self.ros_arguments.parameters.left_out], sys.stderr)
             self._domain_id = domain_id
-            if initialize_logging and not logging.is_configured():
+            if initialize_logging and joins_network and not logging.is_configured():
                 self._logging = set_up(self.ros_arguments, Path(sys.argv[0]).stem or "python3", logging.LEVELS)
                 logging.write_to(self._logging.sink)
             self._initialized = self._ok = True
-        _open_contexts.add(self)
+        current_state().open_contexts.add(self)
         shut_down_on_signal(self)
 
     def ok(self) -> bool:
@@ -204,7 +205,7 @@ class Context:
             logging.shutdown()
             self._logging.close()
             self._logging = None
-        _open_contexts.discard(self)
+        current_state().open_contexts.discard(self)
 
     def _notify(self) -> None:
         callbacks, self._callbacks = self._callbacks, []
@@ -214,6 +215,9 @@ class Context:
                 callback()
 
     def _create_graph(self) -> Graph:
+        create_graph = current_state().create_graph
+        if create_graph is not None:
+            return create_graph()
         from linkwright.wire.joining import join
 
         graph = Graph(threads=True, on_log=logging.write, levels=logging.LEVELS)
@@ -251,7 +255,7 @@ def read_ros_arguments(arguments: Sequence[str]) -> RosArguments:
 
 
 def _shut_down_all() -> None:
-    for context in tuple(_open_contexts):
+    for context in tuple(current_state().open_contexts):
         context.try_shutdown()
 
 

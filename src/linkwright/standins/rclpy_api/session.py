@@ -17,15 +17,12 @@ from linkwright.standins.rclpy_api.signals import (
     install_signal_handlers,
     uninstall_signal_handlers,
 )
+from linkwright.standins.rclpy_api.state import current_state
 
 if TYPE_CHECKING:
     from typing_extensions import Self
 
 _lock = threading.RLock()
-
-
-class _GlobalState:
-    executor: Executor | None = None
 
 
 class InitContextManager:
@@ -116,9 +113,11 @@ def try_shutdown(*, context: Context | None = None, uninstall_handlers: bool | N
 def get_global_executor() -> Executor:
     """Return the global executor of the default context."""
     with _lock:
-        if _GlobalState.executor is None:
-            _GlobalState.executor = SingleThreadedExecutor()
-        return _GlobalState.executor
+        state = current_state()
+        if state.executor is None:
+            state.executor = SingleThreadedExecutor()
+        executor: Executor = state.executor
+        return executor
 
 
 def create_node(node_name: str, **arguments: Any) -> Node:
@@ -191,8 +190,9 @@ def spin_until_future_complete(
 
 def _end_global_executor(context: Context | None) -> None:
     with _lock:
-        executor = _GlobalState.executor
+        state = current_state()
+        executor = state.executor
         if executor is None or (context is not None and executor.context is not context):
             return
-        _GlobalState.executor = None
+        state.executor = None
     executor.shutdown(0)
