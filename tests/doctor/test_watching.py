@@ -183,7 +183,7 @@ async def test_what_was_kept_for_late_subscribers_and_what_goes_by_a_steady_cloc
             message.header.stamp.sec = 0 if each is unset else 17
             each.publish(message)
         await asyncio.sleep(0.01)
-    assert [(stamp.topic, stamp.zero) for stamp in watched.result().stamps] == [("/scan", False), ("/unset", True)]
+    assert [(stamp.topic, stamp.is_zero) for stamp in watched.result().stamps] == [("/scan", False), ("/unset", True)]
 
 
 @pytest.mark.parametrize("topic", ["/tf", "/tf_static"])

@@ -116,7 +116,7 @@ async def test_a_plugin_that_fails_anywhere_ends_and_nothing_else_does(where):
         server.reset()
         nodes = [name for name, _ in graph.get_node_names_and_namespaces()]
         assert ("faulty" in nodes) is (where in ("comparing", "going on", STOP))
-        server.renew(server.simulation.scene.models["mbot"].model, "mbot")
+        server.replace_model(server.simulation.scene.models["mbot"].model, "mbot")
         recordings[0].clear()
         await _pass(server, graph)
         assert len(recordings[0]) == 20  # both plugins beside it

@@ -334,9 +334,9 @@ async def test_what_is_wrong_with_a_model_is_among_the_findings_while_that_is_in
         server.on_findings.append(lambda: messages.append([finding.code for finding in server.findings]))
         [finding] = server.findings
         assert (finding.code, finding.span.line) == ("SIM143", 1)
-        it.simulator.services.renew(seen.replace('mass value="1"', 'mass value="2"'), "first")
+        it.simulator.services.replace_model(seen.replace('mass value="1"', 'mass value="2"'), "first")
         await eventually(lambda: messages == [[], ["SIM143"]])
-        it.simulator.services.renew(URDF, "first")
+        it.simulator.services.replace_model(URDF, "first")
         await eventually(lambda: messages[2:] == [[]])
         await it.ask("gazebo_msgs/srv/SpawnEntity", "/spawn_entity", name="second", xml=seen)
         assert [finding.code for finding in server.findings] == ["SIM143"]

@@ -45,7 +45,7 @@ class FileFollower(Protocol):
     def launcher_node(self) -> Node:
         """The host's own node, through which it calls services."""
 
-    def show(self, about: str, findings: Iterable[Diagnostic]) -> None:
+    def show(self, subject: str, findings: Iterable[Diagnostic]) -> None:
         """Replace the findings about a subject in the viewers."""
 
     def follow_world(
@@ -64,7 +64,7 @@ class FileFollower(Protocol):
             load: makes the node load the file, and returns findings that replace the findings of reading.
         """
 
-    def follow_text(self, text: str, name: str, renew: Callable[[str], None]) -> None:
+    def follow_text(self, text: str, name: str, on_text: Callable[[str], None]) -> None:
         """Watch the file from which this process expanded a description.
 
         Each new version of the description is passed on. If this process did not expand the description, do nothing.
@@ -72,5 +72,5 @@ class FileFollower(Protocol):
         Args:
             text: the description.
             name: the name of the described object; one file is watched for each name.
-            renew: receives the new description; raises LinkwrightError if the description is invalid.
+            on_text: receives the new description; raises LinkwrightError if the description is invalid.
         """

@@ -72,7 +72,7 @@ def parse_arguments(arguments: Sequence[str]) -> StaticTransform:
         raise _usage_error(phrase("Cannot specify both quaternion and Euler rotations"))
     for name, label in zip(_FRAMES, ("Frame id", "Child frame id"), strict=True):
         if not options.get(name):
-            raise _usage_error(phrase("{what} must not be empty", what=label))
+            raise _usage_error(phrase("{argument} must not be empty", argument=label))
     x, y, z = (_number(options, name, 0.0) for name in _TRANSLATION)
     return StaticTransform(
         (x, y, z), _rotation(options), options["--frame-id"], options["--child-frame-id"], old_style=old_style

@@ -153,10 +153,10 @@ def _rows_table(table: Table) -> str:
     names = list(table.columns)
     row_count = min(len(table), _MAX_ROWS)
     lines = [[_format_cell(table.columns[name][index]) for name in names] for index in range(row_count)]
-    more = ""
+    remaining_note = ""
     if row_count < len(table):
-        more = f"<p>{_escape(phrase('{count} more are in the table', count=len(table) - row_count))}</p>"
-    return _html_table(names, lines, text=(len(names) - 1,), has_targets=True) + more
+        remaining_note = f"<p>{_escape(phrase('{count} more are in the table', count=len(table) - row_count))}</p>"
+    return _html_table(names, lines, text=(len(names) - 1,), has_targets=True) + remaining_note
 
 
 def _format_cell(value: Result) -> str:

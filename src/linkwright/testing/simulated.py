@@ -102,8 +102,11 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
     async def __aexit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        self.server.close()
-        await super().__aexit__(kind, error, trace)
+        try:
+            await self.end_programs(error)
+        finally:
+            self.server.close()
+            await super().__aexit__(kind, error, trace)
 
     def _begin(self) -> None:
         simulation = Simulation(self._loaded_world.world, ResourceFinder(PackageFinder(start=self._folders)))
@@ -112,8 +115,8 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
         self._server = SimulationServer(simulation, node, self._options)
         self._server.on_failure.append(self.errors.append)
         server_node = SteppedNode(node, self._server.exchange, owned=False)
-        self._progress = _Progress(simulation)
-        Services(self._server, self._progress, server_node, self._loaded_world, DescriptionLibrary())
+        self._run_control = _RunControl(simulation)
+        Services(self._server, self._run_control, server_node, self._loaded_world, DescriptionLibrary())
         self._server.start()
         if self._model is not None:
             self._server.spawn(self._model, self._model.name, self._pose)
@@ -175,12 +178,16 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
         Raises:
             Exception: the error of a callback.
         """
-        await self.graph.settle()
-        self.server.exchange.run_commands()
-        self.server.exchange.deliver()
-        await super().settle()
+        await self._settle_world()
+        self._raise_callback_error()
 
     spin = settle
+
+    async def _settle_world(self) -> None:
+        await self._settle_graph()
+        self.server.exchange.run_commands()
+        self.server.exchange.deliver()
+        await self._settle_graph()
 
     async def advance(self, seconds: float) -> None:
         """Advance the time of the simulation and of the graph.
@@ -189,13 +196,17 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
             UnstableError: a value in the simulation is no longer finite.
             Exception: the error of a callback; time has advanced even then.
         """
-        await self.settle()
+        await self._advance(seconds)
+        self._raise_callback_error()
+
+    async def _advance(self, seconds: float) -> None:
+        await self._settle_world()
         self._remaining_ns += round(seconds * NANOSECONDS_PER_SECOND)
         server, simulation = self.server, self.simulation
         while self._remaining_ns > 0:
             server.exchange.run_commands()
             step_ns = min(self._period_ns, self._remaining_ns)
-            if not self._progress.paused:
+            if not self._run_control.paused:
                 time_before_ns = simulation.time
                 simulation.advance(step_ns)
                 step_ns = simulation.time - time_before_ns
@@ -203,8 +214,7 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
             await self.clock.advance(step_ns / NANOSECONDS_PER_SECOND, is_settled=True)
             self._publish_time()
             server.exchange.deliver()
-            await self.graph.settle()
-        self._raise_callback_error()
+            await self._settle_graph()
 
     async def reset(self) -> None:
         """Restore the initial state of the world, of simulated time and of the noise.
@@ -293,6 +303,7 @@ class SteppedSimulation(SteppedGraph):
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
+        self._run(self._steps.end_programs(error))
         self._steps.server.close()  # The server must close first, because the shutdown of rclpy destroys its nodes.
         super().__exit__(kind, error, trace)
 
@@ -364,7 +375,7 @@ def _with_world_friction(world: World, friction: float) -> World:
     return replace(world, models=models)
 
 
-class _Progress:
+class _RunControl:
     """The handler of the simulator services that pause the simulation or run single steps."""
 
     def __init__(self, simulation: Simulation) -> None:

@@ -225,7 +225,7 @@ def test_a_wheel_that_is_a_mesh_rolls_in_one_point(tmp_path):
     </model>"""
     scene = Scene(world(text), MeshLibrary(finder()))
     scene.add_velocity_motor("m::j", 1.0, 5.0)
-    scene.settle()
+    scene.set_wheel_surfaces()
     (geom,) = scene.bodies["m::wheel"].geoms
     assert geom.type == mujoco.mjtGeom.mjGEOM_ELLIPSOID
     assert geom.size == pytest.approx([0.1, 0.1, 0.02], rel=1e-4)

@@ -13,7 +13,7 @@ from linkwright.graph.lifecycle.states import ACTIVE, INACTIVE
 
 
 @dataclass(eq=False, slots=True)
-class Loaded:
+class LoadedController:
     """A controller that a manager has loaded.
 
     Attributes:

@@ -144,7 +144,7 @@ class LaunchSession:
         try:
             self._visit(entity, context)
         except LinkwrightError as error:
-            self.log.diagnostics(self._omissions.with_skip_command(error))
+            self.log.write_diagnostics(self._omissions.with_skip_command(error))
             self.fail(entity)
             self.host.forget_planned()
             self.shut_down("a launch action failed")
@@ -162,7 +162,7 @@ class LaunchSession:
         if self._omissions.skip(error):
             self._omissions.report()
             return
-        self.log.diagnostics(error.diagnostics)
+        self.log.write_diagnostics(error.diagnostics)
         self.fail(subject)
 
     def fail(self, failure: object) -> None:
@@ -274,7 +274,7 @@ class LaunchSession:
 
         If the launch is already ending, its processes receive SIGTERM now, and SIGKILL half a second later.
         """
-        self.log.warning_line("launch", reason)
+        self.log.write_warning("launch", reason)
         if self.ending:
             self.processes.escalate()
             return
@@ -296,7 +296,7 @@ class LaunchSession:
     def _log_running_processes(self) -> None:
         names = self.processes.names
         if names:
-            self.log.info_line("launch", f"waiting for {', '.join(names)} to end; press Ctrl-C again to end them now")
+            self.log.write_info("launch", f"waiting for {', '.join(names)} to end; press Ctrl-C again to end them now")
 
     # --- visits ---------------------------------------------------------------------------------------------
 
@@ -306,7 +306,7 @@ class LaunchSession:
         try:
             next_entities = entity.visit(context)
         except DescriptionError as error:
-            if not (error.missing or self.ending):
+            if not (error.is_missing or self.ending):
                 self._retry_when_fixed(entity, context.snapshot(), error)
             elif not self._omissions.skip(located(error, entity.place)):
                 raise
@@ -363,7 +363,7 @@ class LaunchSession:
         return bool(self.processes.is_busy or self._tasks or self._waiting or self._held_futures or self.host.is_busy)
 
     def _handle(self, event: events.Event) -> None:
-        self.log.debug_line("launch", f"processing event: '{event.name}'")
+        self.log.write_debug("launch", f"processing event: '{event.name}'")
         context = self.context
         context.push_locals()
         try:
@@ -376,7 +376,7 @@ class LaunchSession:
             for entity in entities:
                 self.visit(entity, context)
         except (Exception, SystemExit) as error:  # noqa: BLE001 - handlers are the launch file's code
-            self.log.diagnostics(explain(error, phrase("an event handler")).diagnostics)
+            self.log.write_diagnostics(explain(error, phrase("an event handler")).diagnostics)
             self.fail(event)
             if not self.ending and not isinstance(event, events.Shutdown):
                 self.shut_down("an event handler failed")

@@ -96,7 +96,7 @@ class _Pad:
             if self._topic is None:
                 is_stamped = None if target.kind == "auto" else target.kind == "TwistStamped"
                 self._topic = VelocityTopic(self._node, target.topic, is_stamped, target.frame_id)
-            subscription_count = self._topic.review(may_change=self._stop_timer is None)
+            subscription_count = self._topic.update_type(may_change=self._stop_timer is None)
         except LinkwrightError as error:
             self._set_state(TeleopState(target.topic, "", 0, error.diagnostics[0].message))
             return

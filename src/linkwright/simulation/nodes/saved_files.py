@@ -31,23 +31,23 @@ def follow_files(node: Node, server: SimulationServer, services: Services, host:
     loop, world = asyncio.get_running_loop(), services.worlds.loaded
     subject = f"simulation of {node.get_fully_qualified_name()}"
 
-    def show() -> None:
+    def show_findings() -> None:
         if not node.handle.is_destroyed:
             host.show(subject, server.findings)
 
-    def renew(name: str, text: str) -> None:
+    def replace_robot(name: str, text: str) -> None:
         """Replace a robot at its current pose, if it still exists."""
         if not node.handle.is_destroyed and name in server.simulation.scene.models:
-            services.renew(text, name)
+            services.replace_model(text, name)
 
-    def follow(name: str, text: str) -> None:
-        host.follow_text(text, name, partial(renew, name))
+    def follow_description(name: str, text: str) -> None:
+        host.follow_text(text, name, partial(replace_robot, name))
 
-    server.on_findings.append(lambda: loop.call_soon_threadsafe(show))
-    show()
+    server.on_findings.append(lambda: loop.call_soon_threadsafe(show_findings))
+    show_findings()
     if world.path.is_file():
         host.follow_world(world, load_world, lambda path: _load_world(path, host.launcher_node, services))
-    services.on_spawned.append(lambda name, text: loop.call_soon_threadsafe(follow, name, text))
+    services.on_spawned.append(lambda name, text: loop.call_soon_threadsafe(follow_description, name, text))
 
 
 async def _load_world(path: str, launcher: Node, services: Services) -> list[Diagnostic]:

@@ -123,7 +123,7 @@ class Simulator(SingleNode):
                 factor=parameters["real_time_factor"] if parameters["real_time_factor"] >= 0 else inf,
                 paused=parameters["pause"],
                 seconds=parameters["seconds"] or None,
-                watch=lambda: self._reports.watch(lambda: self.runner.real_time_factor),
+                watch=lambda: self._reports.publish_due(lambda: self.runner.real_time_factor),
                 on_state=self._publish_state,
                 on_end=partial(_call_threadsafe, loop, self._finish),
             )
@@ -135,7 +135,7 @@ class Simulator(SingleNode):
                     parameters[_DESCRIPTION], parameters["robot_name"], pose, parameters["robot_namespace"]
                 )
                 self._node.add_on_set_parameters_callback(partial(self._on_parameters, robot))
-            self._reports.begin()
+            self._reports.start_description()
             self._publish_state()
             self.server.exchange.deliver()
             if parameters["pause"]:
@@ -168,7 +168,7 @@ class Simulator(SingleNode):
         for parameter in parameters:
             if parameter.name == _DESCRIPTION:
                 try:
-                    self.services.renew(parameter.value, robot)
+                    self.services.replace_model(parameter.value, robot)
                 except LinkwrightError as error:
                     return SetParametersResult(successful=False, reason=finding_line(error.diagnostics[0]))
         return SetParametersResult(successful=True)

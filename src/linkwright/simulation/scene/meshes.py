@@ -260,8 +260,8 @@ class MeshLibrary:
         selected = [part for part in parts if submesh.name in part.names]
         if submesh.center and selected:
             positions = np.concatenate([part.triangles.positions for part in selected])
-            centre = (positions.min(axis=0) + positions.max(axis=0)) / 2
-            selected = [part.moved(-centre) for part in selected]
+            center = (positions.min(axis=0) + positions.max(axis=0)) / 2
+            selected = [part.moved(-center) for part in selected]
         return selected
 
     def _add_hull(self, corners: Array) -> str:

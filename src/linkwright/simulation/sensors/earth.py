@@ -78,7 +78,7 @@ class Globe:
 
 
 def _from_geodetic(latitude: float, longitude: float, altitude: float) -> Array:
-    """Return a position in earth-centred coordinates, in m.
+    """Return a position in earth-centered coordinates, in m.
 
     Latitude and longitude are in rad.
     """

@@ -82,7 +82,7 @@ def load_world(name: str, text: str | None = None, environment: Mapping[str, str
 
 def _check_link_count(text: bytes | str) -> None:
     if has_more_links(text, MOST_LINKS):
-        message = phrase("a world of more than {most} links cannot be simulated", most=MOST_LINKS)
+        message = phrase("a world of more than {maximum} links cannot be simulated", maximum=MOST_LINKS)
         raise LinkwrightError(Diagnostic("SIM105", message, hint=too_many_links_hint()))
 
 

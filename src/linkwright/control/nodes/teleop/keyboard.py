@@ -138,7 +138,7 @@ class TeleopTwistKeyboard(SingleNode):
 
     def _adopt_message_type(self) -> bool:
         """Adopt the message type of the subscriptions, and return whether there are any."""
-        return self._topic.review(may_change=self._direction == STILL or self._has_warned) > 0
+        return self._topic.update_type(may_change=self._direction == STILL or self._has_warned) > 0
 
     def _review(self) -> None:
         """Adopt the message type of the subscriptions.

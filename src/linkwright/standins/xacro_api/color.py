@@ -1,11 +1,11 @@
-"""Coloured messages on standard error, as in ``xacro.color``."""
+"""Colored messages on standard error, as in ``xacro.color``."""
 
 from __future__ import annotations
 
 import sys
 from typing import IO, Any
 
-_COLOUR_CODES = {"red": 91, "yellow": 93}
+_COLOR_CODES = {"red": 91, "yellow": 93}
 
 
 def is_tty(stream: object) -> bool:
@@ -15,8 +15,8 @@ def is_tty(stream: object) -> bool:
 
 
 def colorize(msg: object, color: str | int | None, file: IO[str] | None = None, alt_text: str | None = None) -> str:
-    """Return a message in a colour for a terminal, or otherwise with the prefix `alt_text`."""
-    code = _COLOUR_CODES.get(color, 0) if isinstance(color, str) else color
+    """Return a message in a color for a terminal, or otherwise with the prefix `alt_text`."""
+    code = _COLOR_CODES.get(color, 0) if isinstance(color, str) else color
     if code and is_tty(sys.stderr if file is None else file):
         return f"\x1b[{code}m{msg}\x1b[0m"
     return f"{alt_text or ''}{msg}"
