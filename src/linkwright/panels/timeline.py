@@ -261,12 +261,12 @@ class TimelineFeature(PageFeature):
         Args:
             most_bytes: the maximum size of the stored messages.
         """
-        self._live = LiveHistory(self.context, most_bytes, self.failed)
+        self._live = LiveHistory(self.context, most_bytes, self.show_error)
         self._live.on_reset = self._reset
         self._live.changed = self._on_change
         return self._live
 
-    def failed(self, error: LinkwrightError) -> None:
+    def show_error(self, error: LinkwrightError) -> None:
         """Show the error that makes the rest of the recording unreadable."""
         self._problem = join_messages(error.diagnostics)
         for diagnostic in error.diagnostics:
