@@ -73,7 +73,7 @@ class NodeHost:
             from linkwright.graph import Graph
 
             self._shared_names = SharedNames(self.network, self._session.log, self._show_findings)
-            self._graph = Graph(on_log=self._on_log, on_namesakes=self._shared_names.set_names)
+            self._graph = Graph(on_log=self._on_log, on_shared_names=self._shared_names.set_names)
             self.network.set_graph(self._graph)
         return self._graph
 

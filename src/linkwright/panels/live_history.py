@@ -109,7 +109,7 @@ class LiveHistory:
         self._context.held_time.show(self._context.node.get_clock(), now_ns)
         self._has_gone_back = False
         self._known_subscriptions = set(self._subscriptions())
-        self.playback.take_over(now_ns)
+        self.playback.continue_from(now_ns)
         self._context.graph_changes.watch(self._update_new_subscriptions)
         self.changed()
 
@@ -285,7 +285,7 @@ class LiveHistory:
             return
         self._known_subscriptions = set(self._subscriptions())
         position = self.playback.position_ns
-        self.playback.take_over(position)
+        self.playback.continue_from(position)
         for message in self.history.state_at(
             {subscription.name for subscription in new_subscriptions} - {CLOCK_TOPIC}, position
         ):

@@ -251,7 +251,7 @@ class TimelineFeature(PageFeature):
         self._playback = playback
         playback.on_reset = self._reset
         playback.changed.append(self._on_change)
-        self.context.graph_changes.watch(playback.review)
+        self.context.graph_changes.watch(playback.update_subscribed_topics)
         self.context.pages.publish(self._timeline)
         self._on_change()
 
@@ -261,12 +261,12 @@ class TimelineFeature(PageFeature):
         Args:
             most_bytes: the maximum size of the stored messages.
         """
-        self._live = LiveHistory(self.context, most_bytes, self.failed)
+        self._live = LiveHistory(self.context, most_bytes, self.show_error)
         self._live.on_reset = self._reset
         self._live.changed = self._on_change
         return self._live
 
-    def failed(self, error: LinkwrightError) -> None:
+    def show_error(self, error: LinkwrightError) -> None:
         """Show the error that makes the rest of the recording unreadable."""
         self._problem = join_messages(error.diagnostics)
         for diagnostic in error.diagnostics:
@@ -283,7 +283,7 @@ class TimelineFeature(PageFeature):
             return []
         if not self._is_started:
             self._is_started = True
-            playback.review()
+            playback.update_subscribed_topics()
             playback.play()
         return [self._timeline, self._playhead(playback)]
 
@@ -338,7 +338,7 @@ class TimelineFeature(PageFeature):
         if self._live is not None:
             self._live.close()
         elif self._playback is not None:
-            self.context.graph_changes.unwatch(self._playback.review)
+            self.context.graph_changes.unwatch(self._playback.update_subscribed_topics)
             self._playback.close()
 
     def _reset(self) -> None:

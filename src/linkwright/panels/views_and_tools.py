@@ -74,7 +74,7 @@ class ViewsFeature(PageFeature):
                 views.current = message.view
                 return
             if isinstance(message, RobotMeasured):
-                manager.measured(message.diagonal, message.ground)
+                manager.fit_to_robot(message.diagonal, message.ground)
                 return
             if isinstance(message, SaveView):
                 views.save(message.view)

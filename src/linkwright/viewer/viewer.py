@@ -224,7 +224,7 @@ class Viewer:
 
     def on_playback_error(self, error: LinkwrightError) -> None:
         """Show pages the error that makes the rest of the recording unreadable."""
-        self._timeline.failed(error)
+        self._timeline.show_error(error)
 
     def attach_comparison(self, pair: Pair, node: Node) -> Callable[[str], None]:
         """Show the differences between two descriptions in pages, see `ComparisonFeature.attach`."""

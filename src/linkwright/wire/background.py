@@ -112,7 +112,7 @@ class BackgroundTransport(ABC):
         """
 
     @property
-    def waits(self) -> bool:
+    def waits_for_others(self) -> bool:
         """Whether joining waits for other processes, because the settings require them."""
         return False
 
@@ -275,7 +275,7 @@ class BackgroundTransport(ABC):
         deadline = time.monotonic() + _JOINED_WITHIN
         while self._join_thread.is_alive() and time.monotonic() < deadline:
             self._join_thread.join(_CLOSE_CHECK_INTERVAL)
-            if self.waits:  # The thread may be in a call that waits for other processes and cannot be interrupted.
+            if self.waits_for_others:  # The thread may be in a call that cannot be interrupted.
                 break
 
     def abandon(self) -> None:

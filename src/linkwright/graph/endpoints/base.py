@@ -229,7 +229,7 @@ class Endpoint(Part):
 class MatchListener(Protocol):
     """A listener that is notified when endpoints match, and when they no longer match."""
 
-    def matched(self, change: int) -> None:
+    def on_match_change(self, change: int) -> None:
         """Handle a change in the number of matching endpoints.
 
         Args:
@@ -274,7 +274,7 @@ class TopicEndpoint(Endpoint, Generic[M]):
         """
         previous_count, self._remote_count = self._remote_count, count
         if self.events is not None and count != previous_count:
-            self.events.matched(count - previous_count)
+            self.events.on_match_change(count - previous_count)
 
 
 class ServiceEndpoint(Endpoint):

@@ -153,7 +153,7 @@ class Publisher(TopicEndpoint[M]):
             self._receivers = tuple(self._receivers_by_subscription.values())
         subscription.add_publisher(self)
         if self.events is not None:
-            self.events.matched(1)
+            self.events.on_match_change(1)
 
     def disconnect(self, subscription: Subscription[Any]) -> None:
         """Disconnect a subscription of this process."""
@@ -163,7 +163,7 @@ class Publisher(TopicEndpoint[M]):
             self._receivers = tuple(self._receivers_by_subscription.values())
         subscription.remove_publisher(self)
         if self.events is not None:
-            self.events.matched(-1)
+            self.events.on_match_change(-1)
 
     def begin(self) -> None:
         """Set up the publisher's events, then add the publisher to the graph."""
@@ -242,7 +242,7 @@ class Publisher(TopicEndpoint[M]):
             if self._late_joiner_messages is not None:
                 self._late_joiner_messages.append((self.node.timebase.steady_ns(), message))
             if self.events is not None:
-                self.events.published()
+                self.events.record_publication()
             for receive in self._receivers:
                 receive(message)
             if self.send_remote is not None:
@@ -252,7 +252,7 @@ class Publisher(TopicEndpoint[M]):
         self.is_alive = change > 0
         for subscription in self.local_subscriptions():
             if subscription.events is not None:
-                subscription.events.liveliness(change, -change)
+                subscription.events.on_liveliness_change(change, -change)
 
     def _unexpired_messages(self) -> list[Any]:
         """Remove the expired messages that are stored for late joiners, and return the others."""

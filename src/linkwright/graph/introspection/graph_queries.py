@@ -17,7 +17,7 @@ from linkwright.graph.loop.node_handle import NodeHandle
 from linkwright.graph.names.rules import NodeIdentity, split
 from linkwright.graph.qos.profile import UNKNOWN_QOS, HistoryPolicy, QoSProfile
 
-OnNamesakes = Callable[[frozenset[str]], object]
+OnSharedNames = Callable[[frozenset[str]], object]
 """Receives the full names of the nodes of this process whose names other processes also use.
 It may be called from any thread, but never by two threads at the same time.
 """
@@ -30,12 +30,12 @@ class SharedNameMonitor:
         notify: receives the shared names when they change. None logs a warning for each name when it becomes shared.
     """
 
-    def __init__(self, notify: OnNamesakes | None = None) -> None:
+    def __init__(self, notify: OnSharedNames | None = None) -> None:
         self._notify = notify
         self._shared_names: frozenset[str] = frozenset()
         self._lock = threading.RLock()
 
-    def review(self, local_nodes: Collection[NodeHandle], remote_nodes: Collection[NodeIdentity]) -> None:
+    def update(self, local_nodes: Collection[NodeHandle], remote_nodes: Collection[NodeIdentity]) -> None:
         """Compare the node names of this process with those of other processes.
 
         Reports the shared names when they have changed.

@@ -53,7 +53,7 @@ class TeleopFeature(PageFeature):
 
     def _update_types(self) -> None:
         for pad in self._pads.values():
-            pad.review()
+            pad.update_message_type()
 
 
 class _Pad:
@@ -66,7 +66,7 @@ class _Pad:
         self._topic: VelocityTopic | None = None
         self._sent_state: TeleopState | None = None
         self._stop_timer: asyncio.TimerHandle | None = None
-        self.review()
+        self.update_message_type()
 
     def drive(self, velocity: Drive) -> None:
         """Publish a velocity.
@@ -86,7 +86,7 @@ class _Pad:
         if self._topic is not None:
             self._topic.close()
 
-    def review(self) -> None:
+    def update_message_type(self) -> None:
         """Adopt the message type of the topic's subscriptions, and send their number to the page.
 
         While the robot is moving, the type is not changed.

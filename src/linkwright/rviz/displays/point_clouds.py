@@ -23,10 +23,10 @@ from linkwright.rviz.clouds import (
     ScanProjector,
     coloured,
     decimated,
+    deskew,
     points_of_cloud,
     points_of_legacy_cloud,
     supported_transformers,
-    swept,
 )
 from linkwright.rviz.config.rviz_config import DisplayConfig
 from linkwright.rviz.config.schema import Path, Schema, topic_spec
@@ -363,7 +363,7 @@ class LaserScanDisplay(PointsDisplay):
             return points, pose
         if np.allclose(end_pose, pose, rtol=0.0, atol=1e-9):
             return points, pose
-        return swept(points, points.channels["index"] / interval_count, pose, end_pose), _IDENTITY
+        return deskew(points, points.channels["index"] / interval_count, pose, end_pose), _IDENTITY
 
 
 class PointCloudDisplay(PointsDisplay):

@@ -261,7 +261,7 @@ class VisualizationManager:
             for path in self.config.options.restore(saved_entries):
                 self._option_changed(path[0])
 
-    def measured(self, diagonal: float, ground: float) -> None:
+    def fit_to_robot(self, diagonal: float, ground: float) -> None:
         """Fit grid and axes to a measured robot, except sizes that the user has changed.
 
         Args:

@@ -226,25 +226,25 @@ class Engine(AnyEngine):
         self._handle_discovery()
         self._close_finished_topics()
         self._write_waiting()
-        has_late_replies = self._review_replies()
+        has_late_replies = self._write_pending_replies()
         self._log_mismatches()
         self._announce()
-        next_request, next_review = self._discovery.request_missing_nodes(), self._departures.review()
+        next_request, next_check = self._discovery.request_missing_nodes(), self._departures.report_lost_publishers()
         if self._work:
             return 0.0
         if self._closing_deadlines or self._waiting or self._mismatch_deadlines or has_late_replies:
             return _POLL_INTERVAL_S
-        return min((seconds for seconds in (next_request, next_review) if seconds is not None), default=None)
+        return min((seconds for seconds in (next_request, next_check) if seconds is not None), default=None)
 
     def _handle_discovery(self) -> None:
         matches_changed, self._matches_changed = self._matches_changed, False
         has_changed, self._discovery.changed = self._discovery.changed, False
         if has_changed:
-            self._discovery.review_gid_size()
+            self._discovery.update_gid_size()
             self._discover_fast()
         if has_changed or matches_changed:
             for client in tuple(self._clients.values()):
-                client.review()
+                client.update_availability()
         if has_changed:
             self._remote.announce()
 
@@ -296,7 +296,7 @@ class Engine(AnyEngine):
         """Write the samples that waited for acknowledgements and can now be written."""
         for topic in tuple(self._waiting):
             del self._waiting[topic]  # removed first: an acknowledgement that arrives now adds it again
-            if topic.review():
+            if topic.write_queued():
                 self._waiting[topic] = None
 
     def _on_mismatch(self, topic: OutgoingTopic | IncomingTopic) -> None:
@@ -307,14 +307,14 @@ class Engine(AnyEngine):
         """Report incompatible QoS once the node names are known, or after a timeout."""
         for topic, deadline in tuple(self._mismatch_deadlines.items()):
             is_due = time.monotonic() >= deadline
-            topic.log_mismatches(finally_=is_due)
+            topic.log_mismatches(include_unnamed=is_due)
             if is_due:
                 self._mismatch_deadlines.pop(topic, None)
 
-    def _review_replies(self) -> bool:
+    def _write_pending_replies(self) -> bool:
         busy_services = [service for service in tuple(self._services.values()) if service.has_more_to_do]
         for service in busy_services:
-            service.review()
+            service.write_pending_replies()
         return any(service.has_more_to_do for service in busy_services)
 
     def _close_finished_topics(self) -> None:

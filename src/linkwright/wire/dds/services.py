@@ -170,7 +170,7 @@ class RemoteServer:
             self._on_match()
         return False
 
-    def review(self) -> None:
+    def update_availability(self) -> None:
         """Check whether a server is available, and update the client.
 
         A server is available if both its reader and its writer match ours.
@@ -203,7 +203,9 @@ class RemoteServer:
         request_readers = [self._remote.endpoint(handle) for handle in self._dds.matched(self.pair.writer, writer=True)]
         cyclone_readers = [endpoint for endpoint in request_readers if endpoint is not None and not endpoint.is_fast]
         reply_writers = [self._remote.endpoint(handle) for handle in self._dds.matched(self.pair.reader, writer=False)]
-        return any(_have_same_owner(a, b, "serviceid") for a in cyclone_readers for b in reply_writers)
+        return any(
+            _have_same_owner(reader, writer, "serviceid") for reader in cyclone_readers for writer in reply_writers
+        )
 
 
 class IncomingService:
@@ -248,7 +250,7 @@ class IncomingService:
         for request in early_requests:
             self._fast.on_early_request(request)
 
-    def review(self) -> None:
+    def write_pending_replies(self) -> None:
         """Write replies whose clients can now be reached or have been unreachable for too long."""
         with self._lock:
             for _ in range(len(self._late_replies)):
@@ -258,7 +260,7 @@ class IncomingService:
                 else:
                     self._late_replies.append((deadline, sender, client_id, number, response))
         if self._fast is not None:
-            self._fast.review()
+            self._fast.write_pending_replies()
 
     @property
     def has_more_to_do(self) -> bool:
@@ -307,16 +309,16 @@ class IncomingService:
         return any(_have_same_owner(sender, reader, "clientid") for reader in readers)
 
 
-def _have_same_owner(a: RemoteEndpoint | None, b: RemoteEndpoint | None, key: str) -> bool:
+def _have_same_owner(first: RemoteEndpoint | None, second: RemoteEndpoint | None, key: str) -> bool:
     """Return whether two endpoints belong to the same client or server.
 
     The comparison uses the ID in the USER_DATA, or the participant if there is no ID.
     """
-    if a is None or b is None:
+    if first is None or second is None:
         return False
-    if key in a.user_data or key in b.user_data:
-        return a.user_data.get(key) == b.user_data.get(key)
-    return a.participant == b.participant
+    if key in first.user_data or key in second.user_data:
+        return first.user_data.get(key) == second.user_data.get(key)
+    return first.participant == second.participant
 
 
 def _split_sample(data: bytes) -> tuple[int, int, bytes]:

@@ -226,7 +226,7 @@ class Engine(AnyEngine):
         peer_kind = _OPPOSITE.get(mirror.token.kind)
         if peer_kind is not None:
             self._interests.add(tokens.peer_token_pattern(mirror.token, peer_kind))
-        self._review(mirror)
+        self._update_match_count(mirror)
 
     def _create_token(self, endpoint: Any, kind: EndpointKind) -> Token:
         node_tokens = self._nodes.get(endpoint.node.identity)
@@ -303,7 +303,7 @@ class Engine(AnyEngine):
             self._wake_event.clear()
             self._process_some_requests()
             guarded(self._update_mirrors, self._report)
-            timeout = 0.0 if self._work else guarded(self._departures.review, self._report)
+            timeout = 0.0 if self._work else guarded(self._departures.report_lost_publishers, self._report)
             self._wake_event.wait(timeout)
 
     def _update_mirrors(self) -> None:
@@ -312,7 +312,7 @@ class Engine(AnyEngine):
         if has_changed or self._is_stale:
             self._is_stale = False
             for mirror in tuple(self._mirrors.values()):
-                self._review(mirror)
+                self._update_match_count(mirror)
         if has_changed:
             self._remote.announce()
 
@@ -345,10 +345,10 @@ class Engine(AnyEngine):
         elif appeared:
             self._departures.session_leaves(session)
 
-    def _review(self, mirror: Any) -> None:
+    def _update_match_count(self, mirror: Any) -> None:
         peer_kind = _OPPOSITE.get(mirror.token.kind)
         if peer_kind is not None:
-            mirror.review(self._remote.count(peer_kind, mirror.token.data_key))
+            mirror.update_match_count(self._remote.count(peer_kind, mirror.token.data_key))
 
     def _look_for_router(self) -> None:
         """Wait for a router if ZENOH_ROUTER_CHECK_ATTEMPTS is set, then continue without one."""

@@ -67,7 +67,7 @@ class RemoteServer:
         self._querier.get(handler, payload=to_cdr(request), attachment=metadata)
         return partial(self._forget, number)
 
-    def review(self, count: int) -> None:
+    def update_match_count(self, count: int) -> None:
         """Check whether a server is reachable, and update the client.
 
         Args:

@@ -74,7 +74,7 @@ class OutgoingTopic:
             self._listener = self._zenoh.declare_matching_listener(Callback(lambda _: on_change(), indirect=False))
         self._send: Callable[[Any], None] | None = self._sender()
 
-    def review(self, count: int) -> None:
+    def update_match_count(self, count: int) -> None:
         """Enable or disable sending, and update the number of remote subscriptions.
 
         Sending is enabled while there is a subscription, or while late joiners must be served.
@@ -156,7 +156,7 @@ class IncomingTopic:
         else:
             self._zenoh = session.declare_subscriber(key, handler, allowed_origin=zenoh.Locality.REMOTE)
 
-    def review(self, count: int) -> None:
+    def update_match_count(self, count: int) -> None:
         """Update the number of known remote publishers."""
         self._subscription.set_remote_count(count)
         self._subscription.set_remote_liveliness(count, 0)  # Zenoh reports only live publishers
