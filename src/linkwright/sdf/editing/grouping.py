@@ -271,7 +271,7 @@ def _unindent(text: str, step: str) -> str:
 
 
 def _outside_cdata(text: str, edit: Callable[[str], str]) -> str:
-    cdata_spans, chunks, position = [found.span() for found in _CDATA.finditer(text)], [], 0
+    cdata_spans, chunks, position = [match.span() for match in _CDATA.finditer(text)], [], 0
     for start, end in cdata_spans:
         chunks += [edit(text[position:start]), text[start:end]]
         position = end

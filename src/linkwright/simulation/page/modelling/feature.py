@@ -275,15 +275,15 @@ class ModellingFeature(PageFeature):
 
     async def _call_service(self, page: Page, kind: str, name: str, fields: dict[str, Any] | None = None) -> None:
         """Call a service, wait for the response, and report a timeout to the page."""
-        done: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+        response_arrived: asyncio.Future[None] = asyncio.get_running_loop().create_future()
 
         def on_response(_: Any) -> None:
-            if not done.done():
-                done.set_result(None)
+            if not response_arrived.done():
+                response_arrived.set_result(None)
 
         self._services.call_service(page, kind, name, fields or {}, on_response)
         try:
-            await asyncio.wait_for(done, _TIMEOUT_SECONDS)
+            await asyncio.wait_for(response_arrived, _TIMEOUT_SECONDS)
         except asyncio.TimeoutError:
             refuse(page, phrase("'{name}' did not respond", name=name))
 
