@@ -224,7 +224,7 @@ class NodeHost:
         """
         session = self._session
         description = self._find_description(plan) if plan.waits_for_fix else None
-        if description is None or session.ending:
+        if description is None or session.is_ending:
             session.fail(plan)
             session.log.write_diagnostics(error.diagnostics)
             session.log.write_error(plan.process_name, "node has not started")

@@ -178,7 +178,7 @@ class Simulator(SingleNode):
             self.finished.set_result(status)
 
     def _publish_state(self) -> None:
-        self._reports.publish_state(paused=self.runner.paused)
+        self._reports.publish_state(paused=self.runner.is_paused)
 
     def _log(self, findings: Iterable[Diagnostic]) -> None:
         """Log the findings as errors or warnings, without repeating a message."""
