@@ -280,7 +280,7 @@ class Direction:
 
         A message whose publisher has not been discovered yet is queued.
         """
-        if not info.from_outside:
+        if not info.is_remote:
             return
         publisher = self._publisher(info.publisher_gid)
         if publisher is not None:

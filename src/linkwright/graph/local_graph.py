@@ -133,7 +133,7 @@ class LocalGraph(GraphQueries):
             self._taken_names[full_name] += 1
             if self._transport is not None and not stays_inside:
                 self._transport.open_node(identity)
-        self._on_outside_change()
+        self._on_remote_change()
         return node
 
     def get_logger(self, name: str) -> Logger:
@@ -166,8 +166,8 @@ class LocalGraph(GraphQueries):
                     _open_endpoint(transport, endpoint)
             if self._watches_lost:
                 transport.watch_lost(self._on_lost_publisher)
-        transport.watch(self._on_outside_change)
-        self._on_outside_change()
+        transport.watch(self._on_remote_change)
+        self._on_remote_change()
 
     def detach(self) -> None:
         """Close the transport, if there is one.
@@ -183,7 +183,7 @@ class LocalGraph(GraphQueries):
     # --- called by nodes ---------------------------------------------------------------------------------------------
 
     def add(self, endpoint: Endpoint) -> None:
-        """Connect a new endpoint to the endpoints with the same name, in this process and outside."""
+        """Connect a new endpoint to the endpoints with the same name, in this process and others."""
         with self._lock:
             self.bus.add(endpoint)
             if self._transport is not None and not endpoint.node.stays_inside:
@@ -191,7 +191,7 @@ class LocalGraph(GraphQueries):
         self.notify_change()
 
     def remove(self, endpoint: Endpoint) -> None:
-        """Remove an endpoint, in this process and outside."""
+        """Remove an endpoint, in this process and others."""
         with self._lock:
             self.bus.remove(endpoint)
             if self._transport is not None and not endpoint.node.stays_inside:
@@ -249,7 +249,7 @@ class LocalGraph(GraphQueries):
         if transport is not None:
             transport.close()
 
-    def _on_outside_change(self) -> None:
+    def _on_remote_change(self) -> None:
         transport = self._transport
         if transport is not None:
             self._namesakes.review(self.nodes(), transport.remote_nodes())

@@ -95,7 +95,7 @@ class BagView(ModelView):
         )
 
     def _attach(self, viewer: Viewer) -> None:
-        playback = Playback(self._player.handle, self._bag, self._output, viewer.playback_failed)
+        playback = Playback(self._player.handle, self._bag, self._output, viewer.on_playback_error)
         viewer.attach_recording(playback, self._bag)
 
     def _viewer_config(self) -> RvizConfig:

@@ -29,7 +29,7 @@ class TextEditorFeature(PageFeature):
         self.selected: Callable[[SourceRange], object] = lambda _: None
         self._task: asyncio.Task[None] | None = None
 
-    def opening(self) -> list[ServerMessage]:
+    def opening_messages(self) -> list[ServerMessage]:
         """Return the notice that an editor is attached."""
         return [EditorAttached()]
 

@@ -79,12 +79,12 @@ class TimeFeature(PageFeature):
         threshold = JumpThreshold(min_forward=None, min_backward=Duration(nanoseconds=-1), on_clock_change=True)
         self._jump_handle = self.context.node.get_clock().create_jump_callback(threshold, post_callback=self._on_jump)
 
-    def configured(self, manager: VisualizationManager) -> list[ServerMessage]:
+    def configuration_messages(self, manager: VisualizationManager) -> list[ServerMessage]:
         """Return the state of the Time panel."""
         self._begin(manager)
         return [_state(manager)]
 
-    def manager_closed(self, manager: VisualizationManager) -> None:
+    def remove_manager(self, manager: VisualizationManager) -> None:
         """Discard the start of the manager's elapsed times."""
         self._elapsed_starts.pop(manager, None)
 
@@ -101,9 +101,9 @@ class TimeFeature(PageFeature):
                 self._sent_clocks.setdefault(page, None)
                 self._tick()
             else:
-                self.page_closed(page)
+                self.remove_page(page)
 
-    def page_closed(self, page: Page) -> None:
+    def remove_page(self, page: Page) -> None:
         """Stop sending clocks to the page."""
         self._sent_clocks.pop(page, None)
 
@@ -272,7 +272,7 @@ class TimelineFeature(PageFeature):
         for diagnostic in error.diagnostics:
             self.context.report(diagnostic)
 
-    def opening(self) -> list[ServerMessage]:
+    def opening_messages(self) -> list[ServerMessage]:
         """Return the extent of the recording or the history, and the current position."""
         playback = self._playback
         if self._live is not None:

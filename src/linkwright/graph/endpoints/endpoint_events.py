@@ -178,7 +178,7 @@ class SubscriptionEvents(EndpointEvents):
         self._message_lost = callbacks.message_lost
         self._alive_count = 0
         self._not_alive_count = 0
-        self._outside_counts = (0, 0)
+        self._remote_counts = (0, 0)
 
     def received(self) -> None:
         """Record the arrival of a message, from this process or another."""
@@ -189,9 +189,9 @@ class SubscriptionEvents(EndpointEvents):
         """Count lost messages, and queue the callback."""
         self._notify(self._message_lost, QoSMessageLostInfo(self._count("lost", count), count))
 
-    def set_outside_liveliness(self, alive: int, not_alive: int) -> None:
+    def set_remote_liveliness(self, alive: int, not_alive: int) -> None:
         """Set the numbers of publishers in other processes that are alive and not alive."""
-        (previous_alive, previous_not_alive), self._outside_counts = self._outside_counts, (alive, not_alive)
+        (previous_alive, previous_not_alive), self._remote_counts = self._remote_counts, (alive, not_alive)
         self.liveliness(alive - previous_alive, not_alive - previous_not_alive)
 
     def liveliness(self, alive_change: int, not_alive_change: int) -> None:

@@ -134,8 +134,8 @@ class Subscription(TopicEndpoint[M], Entity):
         return (self.event_callbacks or SubscriptionEventCallbacks()).handlers()
 
     def get_publisher_count(self) -> int:
-        """Return the number of matching publishers, inside the process and outside."""
-        return len(self._publishers) + self._outside_count
+        """Return the number of matching publishers, in this process and others."""
+        return len(self._publishers) + self._remote_count
 
     @property
     def is_cft_enabled(self) -> bool:
@@ -193,15 +193,15 @@ class Subscription(TopicEndpoint[M], Entity):
         """
         self._is_batched = True
 
-    def set_outside_liveliness(self, alive: int, not_alive: int) -> None:
+    def set_remote_liveliness(self, alive: int, not_alive: int) -> None:
         """Set the numbers of matching publishers in other processes that are alive and not alive.
 
         The transport calls this.
         """
         if self.events is not None:
-            self.events.set_outside_liveliness(alive, not_alive)
+            self.events.set_remote_liveliness(alive, not_alive)
 
-    def count_lost_outside(self, count: int) -> None:
+    def count_lost_remote(self, count: int) -> None:
         """Count lost messages from other processes.
 
         The transport calls this method.

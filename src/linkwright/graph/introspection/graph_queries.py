@@ -35,15 +35,15 @@ class SharedNameMonitor:
         self._shared_names: frozenset[str] = frozenset()
         self._lock = threading.RLock()
 
-    def review(self, local_nodes: Collection[NodeHandle], outside: Collection[NodeIdentity]) -> None:
+    def review(self, local_nodes: Collection[NodeHandle], remote_nodes: Collection[NodeIdentity]) -> None:
         """Compare the node names of this process with those of other processes.
 
         Reports the shared names when they have changed.
         """
-        if not outside and not self._shared_names:
+        if not remote_nodes and not self._shared_names:
             return
         with self._lock:
-            remote_names = {node_identity.full_name for node_identity in outside}
+            remote_names = {node_identity.full_name for node_identity in remote_nodes}
             previous_names = self._shared_names
             self._shared_names = frozenset(node.identity.full_name for node in local_nodes) & remote_names
             if self._shared_names == previous_names:
@@ -199,7 +199,7 @@ class GraphQueries:
         return self._matching_endpoints(lambda _: True)
 
     def publishers(self) -> list[EndpointInfo]:
-        """Return the publishers of all topics, in this process and outside."""
+        """Return the publishers of all topics, in this process and others."""
         return self._matching_endpoints(lambda endpoint: endpoint.kind is _PUBLISHER)
 
     def remote_endpoints(self) -> Sequence[EndpointInfo]:
@@ -376,7 +376,7 @@ class GraphQueries:
         return self._matching_endpoints(lambda endpoint: endpoint.kind is kind and endpoint.name == name)
 
     def _matching_endpoints(self, is_match: Callable[[Endpoint | EndpointInfo], bool]) -> list[EndpointInfo]:
-        """Return the endpoints that meet a condition, in this process and outside.
+        """Return the endpoints that meet a condition, in this process and others.
 
         Only the matching endpoints are described, because describing an endpoint takes time.
         """

@@ -33,12 +33,12 @@ class TeleopFeature(PageFeature):
             if pad is not None:
                 pad.drive(message)
             return
-        self.page_closed(page)
+        self.remove_page(page)
         if message.target is not None:
             self._pads[page] = _Pad(self.context.node, message.target, page.send)
             self.context.graph_changes.watch(self._update_types)
 
-    def page_closed(self, page: Page) -> None:
+    def remove_page(self, page: Page) -> None:
         """Stop the robot that the page drives, and close its pad."""
         pad = self._pads.pop(page, None)
         if pad is not None:
@@ -49,7 +49,7 @@ class TeleopFeature(PageFeature):
     def close(self) -> None:
         """Stop all robots."""
         for page in tuple(self._pads):
-            self.page_closed(page)
+            self.remove_page(page)
 
     def _update_types(self) -> None:
         for pad in self._pads.values():

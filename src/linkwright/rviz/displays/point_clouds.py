@@ -125,9 +125,9 @@ class CloudDisplay(TopicDisplay):
         self._remove_expired()
         self._count_points()
 
-    def changed(self, path: Path) -> None:
+    def on_property_changed(self, path: Path) -> None:
         """Subscribe again if necessary, colour the points again, or apply the Decay Time."""
-        super().changed(path)
+        super().on_property_changed(path)
         if path == (AUTO_INTENSITY,):
             self._store_computed_bounds(AUTO_INTENSITY, *((name,) for name in INTENSITY_BOUNDS))
         elif path == (AUTO_VALUES,):

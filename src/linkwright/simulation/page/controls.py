@@ -88,7 +88,7 @@ class SimulationFeature(PageFeature):
         self._drags: dict[Page, _Drag] = {}
         self._spawn_tasks: set[asyncio.Task[None]] = set()
 
-    def opening(self) -> list[ServerMessage]:
+    def opening_messages(self) -> list[ServerMessage]:
         """Return the state of the simulation for a new page.
 
         The method also begins to watch the graph for a simulator, unless a recording is shown.
@@ -99,12 +99,12 @@ class SimulationFeature(PageFeature):
             self._update_presence()
         return [self._status]
 
-    def recording_shown(self) -> None:
+    def on_recording_shown(self) -> None:
         """Hide the simulation bar, because a recorded simulation cannot be controlled."""
         self._shows_recording = True
         self._stop()
 
-    def page_closed(self, page: Page) -> None:
+    def remove_page(self, page: Page) -> None:
         """End the drag of the page, and unsubscribe after the last page has closed."""
         self._drags.pop(page, None)
         if self._is_listening and len(self.context.pages) == 0:

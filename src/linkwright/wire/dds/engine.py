@@ -22,7 +22,7 @@ from linkwright.wire.dds.presences import QuietClient, QuietReader, open_presenc
 from linkwright.wire.dds.remote import RemoteGraph
 from linkwright.wire.dds.rtps.participant import RtpsParticipant
 from linkwright.wire.dds.rtps.values import Address
-from linkwright.wire.dds.services import IncomingService, OutsideServer
+from linkwright.wire.dds.services import IncomingService, RemoteServer
 from linkwright.wire.dds.settings import Range, Settings
 from linkwright.wire.dds.topics import IncomingTopic, OutgoingTopic
 from linkwright.wire.dds.waiting import WaitingThread
@@ -85,7 +85,7 @@ class Engine(AnyEngine):
         self._outgoing: dict[Any, OutgoingTopic] = {}
         self._incoming: dict[Any, IncomingTopic] = {}
         self._services: dict[Any, IncomingService] = {}
-        self._clients: dict[Any, OutsideServer] = {}
+        self._clients: dict[Any, RemoteServer] = {}
         self._presences: dict[Any, QuietReader | QuietClient] = {}
         self._closing_deadlines: dict[OutgoingTopic, float] = {}
         self._waiting: dict[OutgoingTopic, None] = {}
@@ -153,7 +153,7 @@ class Engine(AnyEngine):
         try:
             topic = OutgoingTopic(publisher, self._domain, self._on_mismatch, self._on_waiting)
         except BaseException:
-            publisher.set_outside(None)
+            publisher.set_remote_sender(None)
             raise
         self._outgoing[publisher] = topic
         self._control.attach(topic.entity, topic.on_status)
@@ -185,11 +185,11 @@ class Engine(AnyEngine):
 
     def open_client(self, client: Any) -> None:
         """Mirror a client."""
-        outside = OutsideServer(client, self._domain, self._on_match)
-        self._clients[client] = outside
-        self._connect_fast(outside)
-        self._reception.attach(outside.pair.reader, outside.on_data)
-        self._control.attach(outside.pair.writer, outside.on_writer_status)
+        remote_server = RemoteServer(client, self._domain, self._on_match)
+        self._clients[client] = remote_server
+        self._connect_fast(remote_server)
+        self._reception.attach(remote_server.pair.reader, remote_server.on_data)
+        self._control.attach(remote_server.pair.writer, remote_server.on_writer_status)
         self._is_announced = False
 
     def open_presence(self, presence: Any) -> None:
@@ -248,7 +248,7 @@ class Engine(AnyEngine):
         if has_changed:
             self._remote.announce()
 
-    def _connect_fast(self, mirror: IncomingService | OutsideServer) -> None:
+    def _connect_fast(self, mirror: IncomingService | RemoteServer) -> None:
         """Announce a new service or client to the Fast DDS participants, if there are any."""
         if self._fast is None:
             self._discover_fast()

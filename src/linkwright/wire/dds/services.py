@@ -113,10 +113,10 @@ class Pair:
         self._participant.delete(self.reader, self.writer, *self._topics)
 
 
-class OutsideServer:
+class RemoteServer:
     """The connection of a client to the servers of other processes.
 
-    Implements `linkwright.graph.endpoints.service.OutsideService`.
+    Implements `linkwright.graph.endpoints.service.RemoteService`.
 
     Args:
         client: the client.
@@ -179,14 +179,14 @@ class OutsideServer:
         is_ready = self._uses_cyclone or (self._fast is not None and self._fast.is_ready())
         if is_ready != self._is_ready:
             self._is_ready = is_ready
-            self._client.set_outside(self if is_ready else None)
+            self._client.set_remote_service(self if is_ready else None)
 
     def close(self) -> None:
         """Delete the endpoints.
 
         Pending requests stay unanswered.
         """
-        self._client.set_outside(None)
+        self._client.set_remote_service(None)
         self._response_callbacks.clear()
         if self._fast is not None:
             self._fast.close()
@@ -194,7 +194,7 @@ class OutsideServer:
 
     def abandon(self) -> None:
         """Stop sending requests, without calling Cyclone."""
-        self._client.outside = None
+        self._client.remote_service = None
 
     def _forget(self, number: int) -> None:
         self._response_callbacks.pop(number, None)

@@ -156,7 +156,7 @@ class OutgoingTopic(MirroredTopic):
         self._on_waiting = on_waiting
         self._paced_writer = self._make_paced_writer(domain)
         self._backlog = self._make_backlog(domain.fragment_size)
-        publisher.assert_outside = self._assert_liveliness
+        publisher.assert_remote_liveliness = self._assert_liveliness
         self._is_transient_local = publisher.qos_profile.durability is DurabilityPolicy.TRANSIENT_LOCAL
         self._send = self._sender()
         self.on_status()
@@ -171,8 +171,8 @@ class OutgoingTopic(MirroredTopic):
         match_status = MatchedStatus()
         if self._dds.dds_get_publication_matched_status(self.entity, c.byref(match_status)) >= 0:
             is_needed = self._is_transient_local or match_status.current_count > 0
-            self._publisher.set_outside(self._send if is_needed else None, self._acknowledged)
-            self._publisher.set_outside_count(match_status.current_count)
+            self._publisher.set_remote_sender(self._send if is_needed else None, self._acknowledged)
+            self._publisher.set_remote_count(match_status.current_count)
         if status.value & OFFERED_INCOMPATIBLE_QOS:
             self._on_mismatch(self)
         return False
@@ -197,15 +197,15 @@ class OutgoingTopic(MirroredTopic):
 
     def close(self) -> None:
         """Delete the writer."""
-        self._publisher.set_outside(None)
+        self._publisher.set_remote_sender(None)
         if self._paced_writer is not None:
             self._paced_writer.close()
         self._participant.delete(self.entity, self._topic)
 
     def abandon(self) -> None:
         """Stop sending, without calling Cyclone."""
-        self._publisher.outside = None
-        self._publisher.assert_outside = None
+        self._publisher.send_remote = None
+        self._publisher.assert_remote_liveliness = None
 
     def _create(self, qos: Any) -> int:
         return self._participant.create_writer(self._topic, qos)
@@ -394,16 +394,16 @@ class IncomingTopic(MirroredTopic):
         if status & SUBSCRIPTION_MATCHED:
             match_status = MatchedStatus()
             self._dds.dds_get_subscription_matched_status(self.entity, c.byref(match_status))
-            self._subscription.set_outside_count(match_status.current_count)
+            self._subscription.set_remote_count(match_status.current_count)
         if status & SAMPLE_LOST:
             lost_status = CountStatus()
             self._dds.dds_get_sample_lost_status(self.entity, c.byref(lost_status))
             if lost_status.total_count_change > 0:
-                self._subscription.count_lost_outside(lost_status.total_count_change)
+                self._subscription.count_lost_remote(lost_status.total_count_change)
         if status & LIVELINESS_CHANGED:
             liveliness_status = LivelinessChangedStatus()
             self._dds.dds_get_liveliness_changed_status(self.entity, c.byref(liveliness_status))
-            self._subscription.set_outside_liveliness(liveliness_status.alive_count, liveliness_status.not_alive_count)
+            self._subscription.set_remote_liveliness(liveliness_status.alive_count, liveliness_status.not_alive_count)
         if status & REQUESTED_INCOMPATIBLE_QOS:
             self._on_mismatch(self)
 

@@ -27,7 +27,7 @@ from linkwright.wire.zenoh.departures import Departures
 from linkwright.wire.zenoh.interests import OURS, Interests
 from linkwright.wire.zenoh.opening import SessionOpener
 from linkwright.wire.zenoh.remote import RemoteGraph
-from linkwright.wire.zenoh.services import IncomingService, OutsideServer
+from linkwright.wire.zenoh.services import IncomingService, RemoteServer
 from linkwright.wire.zenoh.session import close_session, configuration, is_client
 from linkwright.wire.zenoh.settings import Settings
 from linkwright.wire.zenoh.tokens import Token
@@ -167,7 +167,7 @@ class Engine(AnyEngine):
             token = self._create_token(publisher, EndpointKind.PUBLISHER)
             outgoing = OutgoingTopic(publisher, token, self._session, self._matches_changed)
         except BaseException:
-            publisher.set_outside(None)
+            publisher.set_remote_sender(None)
             raise
         self._own_gids.add(token.gid)
         self._announce(publisher, outgoing)
@@ -194,7 +194,7 @@ class Engine(AnyEngine):
     def open_client(self, client: Any) -> None:
         """Mirror a client."""
         token = self._create_token(client, EndpointKind.CLIENT)
-        self._announce(client, OutsideServer(client, token, self._session, self._matches_changed))
+        self._announce(client, RemoteServer(client, token, self._session, self._matches_changed))
 
     def open_presence(self, presence: Any) -> None:
         """Announce an endpoint that neither sends nor receives, by declaring its token."""

@@ -52,7 +52,7 @@ class ModellingFeature(PageFeature):
         self._requests: asyncio.Queue[tuple[Page, PageMessage]] = asyncio.Queue()
         self._worker: asyncio.Task[None] | None = None
 
-    def opening(self) -> list[ServerMessage]:
+    def opening_messages(self) -> list[ServerMessage]:
         """Return the state of world editing for a new page.
 
         The method also begins to watch the graph for a simulated world.
@@ -63,7 +63,7 @@ class ModellingFeature(PageFeature):
             self._can_edit = self._is_available()
         return [self._state()]
 
-    def page_closed(self, page: Page) -> None:
+    def remove_page(self, page: Page) -> None:
         """Stop watching the graph after the last page has closed, and keep the edits."""
         if self._is_watching and len(self.context.pages) == 0:
             self._is_watching = False

@@ -1,4 +1,4 @@
-"""What other processes are to a graph, without processes: publishers that send, leave and are lost when a test says."""
+"""Publishers of other processes, without processes: they send, leave and are lost when a test says so."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from linkwright.graph.endpoints.bus import Transport
 from linkwright.messages import serialize
 
 
-class Outside(Transport):
-    """A transport to nowhere: what comes in is what its `Stranger`s send."""
+class RemoteTransport(Transport):
+    """A transport that sends nothing, and receives what its `RemotePublisher`s send."""
 
     def __init__(self, graph: Graph) -> None:
         self.graph = graph
@@ -37,38 +37,38 @@ class Outside(Transport):
     def close(self) -> None:
         pass
 
-    def _mirror(self, what: object) -> None:
+    def _mirror(self, _work: object) -> None:
         pass
 
     open_node = close_node = open_publisher = close_publisher = open_subscription = close_subscription = _mirror
     open_service = close_service = open_client = close_client = _mirror
 
 
-class Stranger:
+class RemotePublisher:
     """A publisher of another process.
 
     Args:
-        outside: the transport.
-        topic: its absolute name.
-        node: whose it is.
-        msg_type: its type.
+        transport: the transport.
+        topic: the absolute name of its topic.
+        node: the name of its node.
+        msg_type: the message type.
     """
 
     def __init__(
-        self, outside: Outside, topic: str, node: str = "driver", msg_type: str = "geometry_msgs/msg/Twist"
+        self, transport: RemoteTransport, topic: str, node: str = "driver", msg_type: str = "geometry_msgs/msg/Twist"
     ) -> None:
-        self._outside = outside
+        self._transport = transport
         gid = f"{node}{topic}".encode().ljust(16, b".")[:16]
         self._info = EndpointInfo(EndpointKind.PUBLISHER, NodeIdentity(node, "/"), topic, msg_type, QoSProfile(10), gid)
-        outside.publishers.append(self._info)
+        transport.publishers.append(self._info)
 
     def send(self, message: Any) -> None:
-        """Have all subscriptions of the topic receive a message."""
-        for subscription in self._outside.graph.bus.subscriptions(self._info.name):
-            subscription.receive(serialize(message), MessageInfo(0, 0, self._info.gid, from_outside=True))
+        """Send a message to all subscriptions of the topic."""
+        for subscription in self._transport.graph.bus.subscriptions(self._info.name):
+            subscription.receive(serialize(message), MessageInfo(0, 0, self._info.gid, is_remote=True))
 
     def be_lost(self) -> None:
-        """End without a word."""
-        assert self._outside.lose is not None, "nobody wants to know who is lost"
-        self._outside.publishers.remove(self._info)
-        self._outside.lose(self._info)
+        """Disappear as if the process had been killed."""
+        assert self._transport.lose is not None, "the graph does not watch for lost publishers"
+        self._transport.publishers.remove(self._info)
+        self._transport.lose(self._info)

@@ -1,4 +1,4 @@
-"""The graph outside this process, as discovered by a transport."""
+"""The nodes and endpoints of other processes, as discovered by a transport."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from linkwright.graph.endpoints.base import EndpointInfo
 from linkwright.graph.names.rules import NodeIdentity
 
 
-class Outside(ABC):
+class RemoteEntities(ABC):
     """The discovered nodes and endpoints of other processes.
 
     One thread writes to this object; any thread may read from it.
