@@ -211,7 +211,7 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
         while self._remaining_ns > 0:
             server.exchange.run_commands()
             step_ns = min(self._period_ns, self._remaining_ns)
-            if not self._run_control.paused:
+            if not self._run_control.is_paused:
                 time_before_ns = simulation.time
                 simulation.advance(step_ns)
                 step_ns = simulation.time - time_before_ns
@@ -389,14 +389,14 @@ class _RunControl:
     """The handler of the simulator services that pause the simulation or run single steps."""
 
     def __init__(self, simulation: Simulation) -> None:
-        self.paused = False
+        self.is_paused = False
         self._simulation = simulation
 
     def pause(self) -> None:
-        self.paused = True
+        self.is_paused = True
 
     def resume(self) -> None:
-        self.paused = False
+        self.is_paused = False
 
     def step(self, count: int) -> None:
         self._simulation.advance(count * self._simulation.step)
