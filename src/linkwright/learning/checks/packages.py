@@ -11,6 +11,9 @@ from linkwright.learning.checks.launched import LaunchCheck
 from linkwright.learning.checks.not_yet import NotYet
 from linkwright.learning.checks.robots import RobotCheck
 from linkwright.packages import PackageFinder
+from linkwright.xacro import expand
+from linkwright.xmltree import Element, Overlay, parse_file
+from linkwright.xmltree.positions import attribute_value_range
 
 
 class FileFolder:
@@ -72,9 +75,47 @@ class FileFolder:
             self._robots[key] = self._read_robot(self.file(name), arguments)
         return self._robots[key]
 
-    def _read_robot(self, path: Path, arguments: Mapping[str, str]) -> RobotCheck:
+    def robot_with_property(self, name: str, property_name: str, value: str) -> RobotCheck:
+        """Return the robot of a xacro file as it would be with another value of a property.
+
+        The files stay as they are.
+
+        Args:
+            name: the path in the folder.
+            property_name: the name of the property, which the file or an included file sets.
+            value: the other value.
+
+        Raises:
+            NotYet: the file is missing or not valid, or no file sets the property.
+        """
+        path = self.file(name)
+        self.robot(name)
+        for source in expand(path, packages=self.finder).dependencies:
+            overlay = _with_property(source, property_name, value)
+            if overlay is not None:
+                return self._read_robot(path, {}, overlay)
+        raise NotYet(phrase("no file sets the property '{name}'", name=property_name))
+
+    def source_elements(self, name: str, tag: str) -> list[Element]:
+        """Return the elements with a tag in a file and in the files that it includes, before expansion.
+
+        Raises:
+            NotYet: the file is missing or not valid.
+        """
+        path = self.file(name)
+        self.robot(name)
+        sources = expand(path, packages=self.finder).dependencies
+        return [
+            element
+            for source in sources
+            if source.suffix in _XML_SUFFIXES
+            for element in parse_file(source).root.walk()
+            if element.tag == tag
+        ]
+
+    def _read_robot(self, path: Path, arguments: Mapping[str, str], overlay: Overlay | None = None) -> RobotCheck:
         try:
-            description = examine(path, arguments=arguments, packages=self.finder)
+            description = examine(path, arguments=arguments, packages=self.finder, overlay=overlay)
         except LinkwrightError as error:
             raise NotYet(_describe(error.diagnostics[0])) from None
         errors = [finding for finding in description.diagnostics if finding.severity is Severity.ERROR]
@@ -99,6 +140,23 @@ class FileFolder:
         serious = [finding for finding in findings if finding.severity is not Severity.INFO]
         if serious:
             raise NotYet(_describe(serious[0]))
+
+
+_XML_SUFFIXES = {".xacro", ".urdf", ".xml"}
+
+
+def _with_property(source: Path, name: str, value: str) -> Overlay | None:
+    """Return a file's text with another value of a property, or None if the file does not set it."""
+    if source.suffix not in _XML_SUFFIXES:
+        return None
+    document = parse_file(source)
+    text = source.read_text(encoding="utf-8")
+    for element in document.root.walk():
+        if element.tag == "xacro:property" and element.attributes.get("name") == name:
+            span = attribute_value_range(text, element.offset, "value")
+            if span is not None:
+                return Overlay({source: text[: span[0]] + value + text[span[1] :]})
+    return None
 
 
 class PackageCheck(FileFolder):
