@@ -17,7 +17,7 @@ def has_package(work):
     work.package("my_robot_description")
 
 
-@check("body", en="The robot has the link base_link.", zh="机器人有名为 base_link 的 link。")
+@check("body", en="The robot has the link base_link.", zh="机器人有名为 base_link 的连杆。")
 def has_base_link(work):
     robot(work).link("base_link")
 

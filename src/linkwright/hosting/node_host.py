@@ -13,7 +13,7 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
 from linkwright.hosting.launch_log import SCREEN, output_destinations
 from linkwright.hosting.network import Network, SharedNames
 from linkwright.hosting.plans import HostedPlan, Supervisor
-from linkwright.hosting.reload import FollowedFiles
+from linkwright.hosting.reload import WatchedFiles
 from linkwright.hosting.viewer_host import ViewerHost, load_viewer
 
 if TYPE_CHECKING:
@@ -214,7 +214,7 @@ class NodeHost:
         self._process_of_logger[node.node.get_logger().name] = process_name
         self._bind_descriptions(process_name, node, parameters)
         if isinstance(node, NodeWithFiles):
-            node.follow_files(FollowedFiles(self._session.reload, self._session.spawn, lambda: self.launcher_node))
+            node.watch_files(WatchedFiles(self._session.reload, self._session.spawn, lambda: self.launcher_node))
         self._viewers.attach_panel(node)
 
     def _handle_start_failure(self, plan: HostedPlan, error: LinkwrightError) -> None:
@@ -224,7 +224,7 @@ class NodeHost:
         """
         session = self._session
         description = self._find_description(plan) if plan.waits_for_fix else None
-        if description is None or session.ending:
+        if description is None or session.is_ending:
             session.fail(plan)
             session.log.write_diagnostics(error.diagnostics)
             session.log.write_error(plan.process_name, "node has not started")

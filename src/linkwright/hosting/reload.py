@@ -21,7 +21,7 @@ from linkwright.hosting.xacro_calls import Descriptions, XacroCall
 if TYPE_CHECKING:
     from linkwright.descriptions.unsaved import Outcome
     from linkwright.graph import Node
-    from linkwright.nodes.followed_files import ReadWorld
+    from linkwright.nodes.watched_files import ReadWorld
 
 _RETRY_SECONDS = 0.06
 """The delay before a failure is reported, because an editor may still be writing the file."""
@@ -371,8 +371,8 @@ def resolved_path(path: Path) -> Path:
         return path
 
 
-class FollowedFiles:
-    """A `FileFollower` that watches the files of a node through the live reload of its run.
+class WatchedFiles:
+    """A `FileWatcher` that watches the files of a node through the live reload of its run.
 
     Args:
         reload: the live reload of the run to which the node belongs.
@@ -386,7 +386,7 @@ class FollowedFiles:
         self._reload = reload
         self._spawn = spawn
         self._launcher = launcher
-        self._followed: set[tuple[XacroCall, str]] = set()
+        self._watched: set[tuple[XacroCall, str]] = set()
 
     @property
     def launcher_node(self) -> Node:
@@ -397,7 +397,7 @@ class FollowedFiles:
         """Show the current findings about a subject in the viewers."""
         self._reload.show(subject, findings)
 
-    def follow_world(
+    def watch_world(
         self,
         world: ReadWorld,
         read: Callable[[str], ReadWorld],
@@ -421,12 +421,12 @@ class FollowedFiles:
 
         self._reload.bind(call, lambda path: self._spawn(load_saved(path)))
 
-    def follow_text(self, text: str, name: str, on_text: Callable[[str], None]) -> None:
+    def watch_text(self, text: str, name: str, on_text: Callable[[str], None]) -> None:
         """Register a function for each new text of a description.
 
         This has no effect unless this process expanded the text from a file.
         """
         call = self._reload.descriptions.call_of(text)
-        if call is not None and (call, name) not in self._followed:
-            self._followed.add((call, name))
+        if call is not None and (call, name) not in self._watched:
+            self._watched.add((call, name))
             self._reload.bind(call, on_text)

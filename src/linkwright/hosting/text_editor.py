@@ -84,8 +84,8 @@ class TextEditorConnection:
         number, text = content.get("number"), str(content.get("text", ""))
         return await self._unsaved.put(UnsavedText(self, path, number if isinstance(number, int) else 0, text))
 
-    def _open_in_editor(self, place: SourceRange) -> None:
-        _write({"open": {"file": place.file, "line": place.line, "column": place.column}})
+    def _open_in_editor(self, source_range: SourceRange) -> None:
+        _write({"open": {"file": source_range.file, "line": source_range.line, "column": source_range.column}})
 
 
 def _write(message: dict[str, Any]) -> None:

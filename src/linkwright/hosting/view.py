@@ -80,7 +80,7 @@ class ModelView:
         descriptions: reads and stores the description; None for robot descriptions.
 
     Attributes:
-        ending: whether the view is ending.
+        is_ending: whether the view is ending.
         is_blocking: whether the description is being expanded, which blocks the event loop.
         has_processes: always False.
     """
@@ -100,7 +100,7 @@ class ModelView:
         self.log = log
         self.descriptions = descriptions or Descriptions(finder, reads_unsaved=True)
         self.loop: asyncio.AbstractEventLoop | None = None
-        self.ending = False
+        self.is_ending = False
         self.is_blocking = False
         self._call = call
         self._text: str | None = None
@@ -139,7 +139,7 @@ class ModelView:
                     self.reload.start()
             await self._end_event.wait()
             self._end_recording()  # The recording must end before the nodes are closed, which takes time.
-            self.ending = True
+            self.is_ending = True
             self.reload.close()
             self.host.close_nodes()
             while self._tasks:

@@ -155,7 +155,7 @@ class ViewerHost:
     async def _open_unless_reconnected(self, viewer: Viewer) -> None:
         """Open the page in a browser, unless a page of the previous run reconnects."""
         for _ in range(round(_RECONNECT_TIMEOUT_SECONDS / _POLL_SECONDS)):
-            if self._session.ending or len(viewer.audience) > 0:
+            if self._session.is_ending or len(viewer.audience) > 0:
                 return
             await asyncio.sleep(_POLL_SECONDS)
         _open_in_browser(viewer.url)

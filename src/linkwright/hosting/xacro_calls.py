@@ -16,7 +16,7 @@ from linkwright.packages import PackageFinder
 
 if TYPE_CHECKING:
     from linkwright.descriptions import Description, DescriptionLibrary
-    from linkwright.nodes.followed_files import ReadWorld
+    from linkwright.nodes.watched_files import ReadWorld
     from linkwright.urdf import Collision, Robot, Visual
 
 

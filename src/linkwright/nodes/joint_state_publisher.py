@@ -345,11 +345,11 @@ class JointStatePublisher(SingleNode):
         return SetParametersResult(successful=True)
 
     def _apply_parameters(self, parameters: list[Parameter]) -> None:
-        before, self._settings = self._settings, self._read_settings()
-        if self._settings.rate != before.rate:
+        old_settings, self._settings = self._settings, self._read_settings()
+        if self._settings.rate != old_settings.rate:
             self._timer.timer_period_ns = round(1e9 / self._settings.rate)
             self._timer.reset()
-        if self._settings.source_list != before.source_list:
+        if self._settings.source_list != old_settings.source_list:
             self._subscribe_to_sources()
         if self._robot is not None:
             self._configure(self._robot)

@@ -26,7 +26,7 @@ def have_equal_content(first: Any, second: Any) -> bool:
         return len(first) == len(second) and all(map(have_equal_content, first, second))
     if not is_dataclass(first):
         return bool(first == second or (first != first and second != second))
-    if isinstance(first, Plugin) and not _same_elements(first.element, second.element):
+    if isinstance(first, Plugin) and not _have_same_content(first.element, second.element):
         return False
     if isinstance(first, Visual | Collision) and _folder(first) != _folder(second):
         return False
@@ -37,7 +37,7 @@ def have_equal_content(first: Any, second: Any) -> bool:
     )
 
 
-def _same_elements(first: Element | None, second: Element | None) -> bool:
+def _have_same_content(first: Element | None, second: Element | None) -> bool:
     if first is None or second is None:
         return first is second
     return _content(first) == _content(second)

@@ -151,13 +151,13 @@ class _Converter:
         merged_poses = [part.pose for part in body.parts[1:]]
         sensors = [
             _in_body_frame(sensor, pose)
-            for other, pose in zip(merged_extensions, merged_poses, strict=True)
-            for sensor in other.sensors
+            for merged_extension, pose in zip(merged_extensions, merged_poses, strict=True)
+            for sensor in merged_extension.sensors
         ]
         lights = [
             _in_body_frame(light, pose)
-            for other, pose in zip(merged_extensions, merged_poses, strict=True)
-            for light in other.lights
+            for merged_extension, pose in zip(merged_extensions, merged_poses, strict=True)
+            for light in merged_extension.lights
         ]
         return replace(
             extension,
@@ -167,7 +167,7 @@ class _Converter:
             collisions=(*_collisions(body, extensions), *extension.collisions),
             sensors=(*extension.sensors, *sensors),
             lights=(*extension.lights, *lights),
-            gravity=extension.gravity and all(other.gravity for other in merged_extensions),
+            gravity=extension.gravity and all(merged_extension.gravity for merged_extension in merged_extensions),
             self_collide=next(
                 (link.self_collide for link in (extension, *merged_extensions) if link.self_collide is not None), None
             ),

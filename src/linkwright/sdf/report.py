@@ -245,20 +245,20 @@ def _explain_numbers(values: dict[str, Any], text: str, count: int, element: Ele
     is_quaternion = element.attributes.get("rotation_format") == "quat_xyzw"
     count += is_quaternion
     try:
-        found = len(numbers(text))
+        found_count = len(numbers(text))
     except ValueError:
         return phrase("{place} is not {count} numbers: '{value}'", **values, count=count), vector_hint(text, count)
-    if found == count and not all(map(isfinite, numbers(text))):
+    if found_count == count and not all(map(isfinite, numbers(text))):
         return phrase("{place} is not {count} numbers: '{value}'", **values, count=count), None
-    if found == count:
+    if found_count == count:
         return phrase("the quaternion in {place} has length zero: '{value}'", **values), phrase(
             "write 0 0 0 1 for no rotation"
         )
     message = counted(
         "{place} has 1 number, but {expected_count} are expected: '{value}'",
         "{place} has {count} numbers, but {expected_count} are expected: '{value}'",
-        found,
+        found_count,
         **values,
         expected_count=count,
     )
-    return message, phrase('add rotation_format="quat_xyzw"') if found == 7 else None
+    return message, phrase('add rotation_format="quat_xyzw"') if found_count == 7 else None

@@ -44,17 +44,17 @@ def _world_pose(frames: Frames, model: Model) -> Transform:
         return transform_of(model.pose.pose)  # `check` reports the missing frame.
 
 
-def _with_state(model: Model, state: ModelState | None, place: Transform) -> Model:
+def _with_state(model: Model, state: ModelState | None, model_pose: Transform) -> Model:
     """Return a model with its saved state applied.
 
-    `place` is the pose of the model in the world, for a state without a pose.
+    `model_pose` is the pose of the model in the world, for a state without a pose.
     """
     if state is None:
         return model
     if state.pose is not None:
-        place = transform_of(state.pose.pose)
+        model_pose = transform_of(state.pose.pose)
         model = replace(model, pose=state.pose, placement_frame="")
-    to_model = invert(place)
+    to_model = invert(model_pose)
     link_poses = {link_state.name: link_state.pose for link_state in state.links if link_state.pose is not None}
     model_states = {model_state.name: model_state for model_state in state.models}
 
@@ -65,7 +65,7 @@ def _with_state(model: Model, state: ModelState | None, place: Transform) -> Mod
         nested_state = model_states.get(nested_model.name)
         if nested_state is None or nested_state.pose is None:
             return nested_model
-        restored = _with_state(nested_model, nested_state, place)
+        restored = _with_state(nested_model, nested_state, model_pose)
         return replace(restored, pose=to_model_frame(nested_state.pose))
 
     return replace(

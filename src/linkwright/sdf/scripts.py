@@ -153,7 +153,7 @@ class _ScriptLibrary:
         folder = Path() if source is None else Path(source.name).parent
         paths = {uri: self._finder.file(uri.strip(), folder) for uri in script.uris if uri and uri.strip()}
         existing_paths = {uri: path for uri, path in paths.items() if not isinstance(path, Missing)}
-        for file in (file for place in existing_paths.values() for file in _script_files(place)):
+        for file in (file for existing_path in existing_paths.values() for file in _script_files(existing_path)):
             look = self._read(file).get(script.name)
             if look is not None:
                 return look._replace(image=_image(look.image, file, existing_paths))
@@ -184,11 +184,11 @@ def _image(name: str, script: Path, paths: Mapping[str, Path]) -> str:
     return ""
 
 
-def _script_files(place: Path) -> list[Path]:
-    if not place.is_dir():
-        return [place]
+def _script_files(path: Path) -> list[Path]:
+    if not path.is_dir():
+        return [path]
     with suppress(OSError):
-        return sorted(place.glob("*.material"))
+        return sorted(path.glob("*.material"))
     return []
 
 

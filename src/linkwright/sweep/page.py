@@ -109,7 +109,7 @@ def _varied_parameters(table: Table) -> list[str]:
 def _scatter_card(table: Table, parameter: str, result: str) -> str:
     indices = _finite_rows(table, result)
     parameter_values = [table.columns[parameter][index] for index in indices]
-    rows = [table.columns["row"][place] for place in indices]
+    rows = [table.columns["row"][index] for index in indices]
     return _card(
         f"{result} – {parameter}", scatter(parameter_values, _finite_values(table, result), rows, parameter, result)
     )

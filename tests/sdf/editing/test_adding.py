@@ -24,7 +24,7 @@ def test_a_shape_is_what_it_was_when_it_is_read_again(kind):
     thing = text.entities[name]
     assert (thing.shape.kind, thing.shape.size) == (kind, SIZES[kind])
     assert thing.pose.pose == Pose(POSE[:3], POSE[3:])
-    assert thing.static == (kind in ("wall", "ramp"))
+    assert thing.is_static == (kind in ("wall", "ramp"))
     assert not simulators_refuse(text)
     assert delete(text, [name]).text == PLAIN
     usual, name = add_shape(before, kind, POSE)

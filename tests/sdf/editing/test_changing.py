@@ -27,7 +27,7 @@ def test_what_stands_in_a_world_is_told():
     things = world_text(PLAIN).entities
     assert list(things) == ["ground_plane", "box", "lamp"]
     assert [thing.kind for thing in things.values()] == ["model", "model", "light"]
-    assert things["ground_plane"].static
+    assert things["ground_plane"].is_static
     assert things["box"].shape.kind == "box"
     assert things["box"].shape.size == (0.5, 0.5, 0.5)
     assert things["box"].shape.color == (0.9, 0.4, 0.1, 1.0)
@@ -136,8 +136,8 @@ def test_a_colour_takes_the_place_of_a_script():
 
 def test_what_moves_no_more_says_so_and_what_moves_again_has_a_mass():
     still = change(world_text(PLAIN), [Change("box", static=True), Change("ground_plane", static=False)])
-    assert still.entities["box"].static
-    assert not still.entities["ground_plane"].static
+    assert still.entities["box"].is_static
+    assert not still.entities["ground_plane"].is_static
     assert "<pose>2 0 0.250 0 0 0</pose>\n      <static>true</static>\n" in still.text
     bare = PLAIN.replace(PLAIN[PLAIN.index("        <inertial>") : PLAIN.index("        <collision")], "")
     still = change(world_text(bare), [Change("box", static=True)])
@@ -232,7 +232,7 @@ def test_a_file_that_no_simulator_writes_is_edited_all_the_same():
     assert "<size>2 2 2</size>" in after.text
     assert "<model name='m'><pose>1 0 0 0 0 0</pose><link" in after.text
     entity = text.replace("'1 1 1'", "'<box/>'").replace("<size>&size;</size>", "<size>1 1 1</size>&size;")
-    assert change(world_text(entity), [Change("m", static=True)]).entities["m"].static
+    assert change(world_text(entity), [Change("m", static=True)]).entities["m"].is_static
 
 
 def test_a_thing_that_comes_from_an_entity_is_told():

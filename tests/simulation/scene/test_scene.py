@@ -88,7 +88,7 @@ def test_a_mesh_that_is_not_there_is_told_once(tmp_path):
 
 
 def test_a_mesh_of_too_many_triangles_is_left_out(room, monkeypatch):
-    monkeypatch.setattr("linkwright.simulation.scene.meshes._MOST_TRIANGLES", 7)
+    monkeypatch.setattr("linkwright.simulation.scene.meshes._MAX_TRIANGLES", 7)
     simulation = simulated(GROUND, mesh_model(room))
     (found,) = simulation.scene.diagnostics
     assert found.code == "SIM115"

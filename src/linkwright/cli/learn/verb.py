@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import partial
 
-from linkwright.cli.learn import lessons, steps
+from linkwright.cli.learn import judge, lessons, steps
 from linkwright.cli.nested import SubVerb, configure_nested, run_nested
 
 VERBS = {
@@ -14,6 +14,8 @@ VERBS = {
     "answer": SubVerb(steps.configure_answer, steps.run_answer, help="answer a step that asks for a number"),
     "hint": SubVerb(steps.configure_hint, steps.run_hint, help="print the next hint for a step"),
     "solution": SubVerb(steps.configure_solution, steps.run_solution, help="copy the solution of a step"),
+    "exercises": SubVerb(judge.configure_exercises, judge.run_exercises, help="list the exercises with a judge"),
+    "judge": SubVerb(judge.configure_judge, judge.run_judge, help="judge a program for an exercise in several worlds"),
     "new": SubVerb(lessons.configure_new, lessons.run_new, help="create a course with a first lesson to edit"),
     "test": SubVerb(lessons.configure_test, lessons.run_test, help="test the checks of a course against its solutions"),
 }

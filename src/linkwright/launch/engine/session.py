@@ -56,7 +56,7 @@ class LaunchSession:
         self.context = LaunchContext() if context is None else context
         self._queue = self.context.attach(self)
         self.loop: asyncio.AbstractEventLoop | None = None
-        self.ending = False
+        self.is_ending = False
         self._failures: set[object] = set()
         self._is_visiting = False
         self._wake_event = asyncio.Event()
@@ -275,7 +275,7 @@ class LaunchSession:
         If the launch is already ending, its processes receive SIGTERM now, and SIGKILL half a second later.
         """
         self.log.write_warning("launch", reason)
-        if self.ending:
+        if self.is_ending:
             self.processes.escalate()
             return
         self.emit(events.Shutdown(reason=reason, due_to_sigint=True))
@@ -306,7 +306,7 @@ class LaunchSession:
         try:
             next_entities = entity.visit(context)
         except DescriptionError as error:
-            if not (error.is_missing or self.ending):
+            if not (error.is_missing or self.is_ending):
                 self._retry_when_fixed(entity, context.snapshot(), error)
             elif not self._omissions.skip(located(error, entity.place)):
                 raise
@@ -351,7 +351,7 @@ class LaunchSession:
                 self._handle(self._queue.get_nowait())
                 await self._start_hosted()
             if not self._is_busy():
-                if self.ending:
+                if self.is_ending:
                     return
                 if self.options.shutdown_when_idle:
                     self.shut_down("idle")
@@ -378,7 +378,7 @@ class LaunchSession:
         except (Exception, SystemExit) as error:  # noqa: BLE001 - handlers are the launch file's code
             self.log.write_diagnostics(explain(error, phrase("an event handler")).diagnostics)
             self.fail(event)
-            if not self.ending and not isinstance(event, events.Shutdown):
+            if not self.is_ending and not isinstance(event, events.Shutdown):
                 self.shut_down("an event handler failed")
         finally:
             context.pop_locals()
@@ -387,7 +387,7 @@ class LaunchSession:
     def _react(self, event: events.Event) -> None:
         """End the launch, or stop or signal processes, as the event requests."""
         if isinstance(event, events.Shutdown):
-            if not self.ending:
+            if not self.is_ending:
                 self._begin_shutdown(event)
         elif isinstance(event, events.ShutdownProcess):
             self.processes.stop_matching(event.process_matcher)
@@ -397,7 +397,7 @@ class LaunchSession:
             self.host.stop_matching(event.process_matcher)
 
     def _begin_shutdown(self, event: events.Shutdown) -> None:
-        self.ending = True
+        self.is_ending = True
         for cancel in tuple(self._waiting.values()):
             if cancel is not None:
                 cancel()
@@ -413,7 +413,7 @@ class LaunchSession:
     async def _start_hosted(self) -> None:
         await self.host.start_planned()
         waits_for_fix = any(isinstance(failure, XacroCall) for failure in self._failures)
-        if waits_for_fix and not self.host.has_viewer and not self.ending:
+        if waits_for_fix and not self.host.has_viewer and not self.is_ending:
             self.shut_down("the robot description has errors, and there is no viewer that waits for a fix")
 
     def hold(self, future: asyncio.Future[Any]) -> None:

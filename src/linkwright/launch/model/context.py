@@ -321,7 +321,7 @@ class LaunchContext:
     @property
     def is_shutdown(self) -> bool:
         """Whether the launch is ending."""
-        return self._is_shutdown or (self._session is not None and self._session.ending)
+        return self._is_shutdown or (self._session is not None and self._session.is_ending)
 
     def _set_is_shutdown(self, state: bool) -> None:
         self._is_shutdown = state

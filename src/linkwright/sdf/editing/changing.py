@@ -232,7 +232,7 @@ def _property_edits(entity: Entity, change: Change) -> list[Replacement]:
         edits += _size_edits(entity, tuple(change.size))
     if change.color is not None:
         edits += _color_edits(entity, change.color)
-    if change.static is not None and change.static != entity.static:
+    if change.static is not None and change.static != entity.is_static:
         edits += _static_edits(entity, change.static, change.size)
     return edits
 

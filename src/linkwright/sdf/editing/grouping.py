@@ -68,7 +68,7 @@ def group(world: WorldText, names: Sequence[str], name: str) -> WorldText:
     start = writing.element_offsets(first_entity.element)[0]
     outer_indent, newline = indentation(text, start) or "", line_ending(text)
     inner_indent = outer_indent + _INDENT_STEP
-    static_element = f"{newline}{inner_indent}<static>true</static>" if entities[0].static else ""
+    static_element = f"{newline}{inner_indent}<static>true</static>" if entities[0].is_static else ""
     pose_element = f"<pose>{format_lengths((x, y, z, 0.0, 0.0, 0.0))}</pose>"
     group_start = f'<model name="{escaped(name)}">{newline}{inner_indent}{pose_element}{static_element}'
     member_texts = []
@@ -155,9 +155,9 @@ def _check_group(entities: Sequence[Entity]) -> None:
     light = next((entity for entity in entities if entity.kind == "light"), None)
     if light is not None:
         raise EditError(phrase("'{name}' is a light: only models can be grouped", name=light.name))
-    mismatch = next((entity for entity in entities if entity.static != entities[0].static), None)
+    mismatch = next((entity for entity in entities if entity.is_static != entities[0].is_static), None)
     if mismatch is not None:
-        static_entity, moving_entity = (mismatch, entities[0]) if mismatch.static else (entities[0], mismatch)
+        static_entity, moving_entity = (mismatch, entities[0]) if mismatch.is_static else (entities[0], mismatch)
         raise EditError(
             phrase(
                 "'{static}' is static and '{moving}' is not: make both static, or neither",
@@ -225,7 +225,7 @@ def _release_edits(
             if element.tag == "include"
             else writing.attribute_edits(element, "name", names[old_name])
         )
-    if entity.static and not model.static:
+    if entity.is_static and not model.static:
         preceding_tags = ("uri", "name", "pose")
         child = element.first("static")
         edits += (
@@ -271,7 +271,7 @@ def _unindent(text: str, step: str) -> str:
 
 
 def _outside_cdata(text: str, edit: Callable[[str], str]) -> str:
-    cdata_spans, chunks, position = [found.span() for found in _CDATA.finditer(text)], [], 0
+    cdata_spans, chunks, position = [match.span() for match in _CDATA.finditer(text)], [], 0
     for start, end in cdata_spans:
         chunks += [edit(text[position:start]), text[start:end]]
         position = end

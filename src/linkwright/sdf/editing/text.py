@@ -63,7 +63,7 @@ class Entity:
         return self.written.pose or AT_ORIGIN
 
     @property
-    def static(self) -> bool:
+    def is_static(self) -> bool:
         """Whether the entity is a static model."""
         if self.model is not None:
             return self.model.static

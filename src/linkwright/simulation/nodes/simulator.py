@@ -18,7 +18,7 @@ from linkwright.graph import Graph, Parameter, SetParametersResult
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
 
 if TYPE_CHECKING:
-    from linkwright.nodes.followed_files import FileFollower
+    from linkwright.nodes.watched_files import FileWatcher
     from linkwright.sdf.plugins import Plugin
 
 _EMPTY, _DESCRIPTION = "empty", "robot_description"
@@ -142,11 +142,11 @@ class Simulator(SingleNode):
                 self._node.get_logger().info(_PAUSED_NOTICE)
             self.runner.start()
 
-    def follow_files(self, host: FileFollower) -> None:
+    def watch_files(self, host: FileWatcher) -> None:
         """Reload the world and the spawned robots when their files are saved."""
-        from linkwright.simulation.nodes.saved_files import follow_files
+        from linkwright.simulation.nodes.saved_files import watch_files
 
-        follow_files(self._node, self.server, self.services, host)
+        watch_files(self._node, self.server, self.services, host)
 
     def close(self) -> None:
         """Stop the simulation, and destroy the node."""
@@ -178,7 +178,7 @@ class Simulator(SingleNode):
             self.finished.set_result(status)
 
     def _publish_state(self) -> None:
-        self._reports.publish_state(paused=self.runner.paused)
+        self._reports.publish_state(paused=self.runner.is_paused)
 
     def _log(self, findings: Iterable[Diagnostic]) -> None:
         """Log the findings as errors or warnings, without repeating a message."""

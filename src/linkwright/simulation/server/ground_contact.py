@@ -11,7 +11,7 @@ from linkwright.diagnostics import Diagnostic, Severity, phrase
 from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.simulation import Simulation
 
-_MIN_DEPTH, _MOST = 0.002, 0.3
+_MIN_DEPTH, _MAX_DEPTH = 0.002, 0.3
 """The depths in m between which a model is lifted. Smaller depths are harmless, and greater depths may be intended."""
 _MIN_UPWARD_COMPONENT = 0.7
 """The minimum vertical component of a contact's normal, so that a wall does not lift a model that it contains."""
@@ -28,7 +28,7 @@ def lift_onto_ground(simulation: Simulation, name: str) -> None:
     if not simulation.free_links(name):
         return
     height = _penetration_depth(simulation, name)
-    if not _MIN_DEPTH < height < _MOST:
+    if not _MIN_DEPTH < height < _MAX_DEPTH:
         return
     x, y, z, *rotation = simulation.model_pose(name)
     qx, qy, qz, qw = rotation

@@ -146,6 +146,11 @@ class SimulationServer:
         """Return the running plugins and sensors of a model."""
         return tuple(self._plugins.get(model, ()))
 
+    @property
+    def world_plugins(self) -> tuple[SimulatedPlugin[object], ...]:
+        """The running plugins of the world."""
+        return tuple(self._plugins.get(_WORLD_OWNER, ()))
+
     def spawn(self, model: Model, name: str, pose: Transform = IDENTITY, namespace: str = "") -> None:
         """Add a model to the world and start its plugins.
 

@@ -38,7 +38,7 @@ class RunControl(Protocol):
     """The controls of a running simulation."""
 
     @property
-    def paused(self) -> bool:
+    def is_paused(self) -> bool:
         """Whether the simulation is paused."""
 
     def pause(self) -> None:
@@ -232,7 +232,7 @@ class Services:
         return response
 
     def _step(self, request: Any, response: Any) -> Any:
-        if not self._runner.paused:
+        if not self._runner.is_paused:
             response.result.result = _WRONG_STATE
             response.result.error_message = "the simulation is running: pause it to make single steps"
             return response

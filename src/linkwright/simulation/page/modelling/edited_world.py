@@ -94,7 +94,7 @@ class EditedWorld:
         return None if self._content is None else self.path
 
     @property
-    def unsaved(self) -> bool:
+    def is_unsaved(self) -> bool:
         """Whether the text has changed since it was read or saved."""
         return self.world.text != self._saved_text
 

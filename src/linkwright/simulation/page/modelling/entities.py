@@ -46,7 +46,7 @@ def _to_message(entity: Entity) -> WorldEntity:
         name=entity.name,
         kind=entity.kind,
         pose=[*pose.xyz, *pose.rpy],
-        static=entity.static,
+        static=entity.is_static,
         shape=shape.kind if shape is not None else None,
         size=list(shape.size) if shape is not None else [],
         colour=list(color) if color is not None else None,

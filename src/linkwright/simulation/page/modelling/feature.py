@@ -74,7 +74,7 @@ class ModellingFeature(PageFeature):
 
         The list is empty if there are no unsaved changes.
         """
-        if self._edited_world is None or not self._edited_world.unsaved:
+        if self._edited_world is None or not self._edited_world.is_unsaved:
             return []
         return [self._edited_world.store_unsaved(recovery_folder())]
 
@@ -118,7 +118,7 @@ class ModellingFeature(PageFeature):
             self._can_edit,
             self._is_active,
             file,
-            edited_world.unsaved,
+            edited_world.is_unsaved,
             edited_world.can_undo,
             edited_world.can_redo,
             entities,
@@ -185,7 +185,7 @@ class ModellingFeature(PageFeature):
 
         edited_world, packages = self._edited_world, self.context.finder
         if edited_world is not None and edited_world.file is not None:
-            if not edited_world.unsaved and await asyncio.to_thread(lambda: edited_world.is_outdated):
+            if not edited_world.is_unsaved and await asyncio.to_thread(lambda: edited_world.is_outdated):
                 reloaded = await asyncio.to_thread(EditedWorld.of_file, edited_world.file, packages)
                 await asyncio.to_thread(reloaded.reserve, edited_world.world.reserved)
                 self._edited_world = reloaded
@@ -275,15 +275,15 @@ class ModellingFeature(PageFeature):
 
     async def _call_service(self, page: Page, kind: str, name: str, fields: dict[str, Any] | None = None) -> None:
         """Call a service, wait for the response, and report a timeout to the page."""
-        done: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+        response_arrived: asyncio.Future[None] = asyncio.get_running_loop().create_future()
 
         def on_response(_: Any) -> None:
-            if not done.done():
-                done.set_result(None)
+            if not response_arrived.done():
+                response_arrived.set_result(None)
 
         self._services.call_service(page, kind, name, fields or {}, on_response)
         try:
-            await asyncio.wait_for(done, _TIMEOUT_SECONDS)
+            await asyncio.wait_for(response_arrived, _TIMEOUT_SECONDS)
         except asyncio.TimeoutError:
             refuse(page, phrase("'{name}' did not respond", name=name))
 

@@ -35,7 +35,7 @@ class ReadWorld(Protocol):
         """A time before the first file of the world was read, in nanoseconds since the epoch."""
 
 
-class FileFollower(Protocol):
+class FileWatcher(Protocol):
     """A host that watches the files of its node.
 
     All methods are called on the event loop.
@@ -48,7 +48,7 @@ class FileFollower(Protocol):
     def show(self, subject: str, findings: Iterable[Diagnostic]) -> None:
         """Replace the findings about a subject in the viewers."""
 
-    def follow_world(
+    def watch_world(
         self,
         world: ReadWorld,
         read: Callable[[str], ReadWorld],
@@ -64,7 +64,7 @@ class FileFollower(Protocol):
             load: makes the node load the file, and returns findings that replace the findings of reading.
         """
 
-    def follow_text(self, text: str, name: str, on_text: Callable[[str], None]) -> None:
+    def watch_text(self, text: str, name: str, on_text: Callable[[str], None]) -> None:
         """Watch the file from which this process expanded a description.
 
         Each new version of the description is passed on. If this process did not expand the description, do nothing.
