@@ -197,7 +197,7 @@ class Playback:
         self._subscribed_topics = self._output.subscribed_topics()
         self._open_stream()
 
-    def before(self, topics: Collection[str], length_ns: int, max_bytes: int) -> list[Recorded]:
+    def messages_before(self, topics: Collection[str], length_ns: int, max_bytes: int) -> list[Recorded]:
         """Return the messages of topics shortly before the current position.
 
         Args:

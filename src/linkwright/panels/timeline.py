@@ -255,13 +255,13 @@ class TimelineFeature(PageFeature):
         self.context.pages.publish(self._timeline)
         self._on_change()
 
-    def start_history(self, most_bytes: int) -> LiveHistory:
+    def start_history(self, max_bytes: int) -> LiveHistory:
         """Start storing the messages of the last minutes, and return their history.
 
         Args:
-            most_bytes: the maximum size of the stored messages.
+            max_bytes: the maximum size of the stored messages.
         """
-        self._live = LiveHistory(self.context, most_bytes, self.show_error)
+        self._live = LiveHistory(self.context, max_bytes, self.show_error)
         self._live.on_reset = self._reset
         self._live.changed = self._on_change
         return self._live
@@ -315,19 +315,19 @@ class TimelineFeature(PageFeature):
                 playback.set_speed(speed)
                 playback.set_loop(loop)
 
-    def before(self, topics: Collection[str], seconds: float, most_bytes: int) -> list[Recorded]:
+    def messages_before(self, topics: Collection[str], seconds: float, max_bytes: int) -> list[Recorded]:
         """Return the stored messages of topics for a duration before the displayed time.
 
         Args:
             topics: the topics; the history of the last minutes has only topics that the viewer is subscribed to.
             seconds: the duration, in seconds.
-            most_bytes: the maximum total size in bytes; if the messages exceed it, the list is empty.
+            max_bytes: the maximum total size in bytes; if the messages exceed it, the list is empty.
         """
         if self._live is None and self._playback is None:
             return []
         source = self._playback if self._live is None else self._live
         assert source is not None
-        return source.before(topics, round(seconds * NANOSECONDS_PER_SECOND), most_bytes)
+        return source.messages_before(topics, round(seconds * NANOSECONDS_PER_SECOND), max_bytes)
 
     def close(self) -> None:
         """Stop playing."""
@@ -388,7 +388,7 @@ class TimelineFeature(PageFeature):
     def _extent(self, live: LiveHistory) -> HistoryExtent:
         start_ns, end_ns = live.span_ns
         return HistoryExtent(
-            start_ns / NANOSECONDS_PER_SECOND, end_ns / NANOSECONDS_PER_SECOND, live.size, live.most_bytes
+            start_ns / NANOSECONDS_PER_SECOND, end_ns / NANOSECONDS_PER_SECOND, live.size, live.max_bytes
         )
 
     def _publish_extent_later(self) -> None:

@@ -192,7 +192,7 @@ class _PlottedTopic:
         if cls is None or not valid_series:
             return
         longest_duration = max(map(seconds, valid_series))
-        messages = timeline.before({self.tap.topic}, longest_duration, _MAX_PAST_BYTES)
+        messages = timeline.messages_before({self.tap.topic}, longest_duration, _MAX_PAST_BYTES)
         for series in valid_series:
             assert series.path is not None
             samples = past_samples(series.path, cls, messages)

@@ -294,9 +294,9 @@ class FrameStream:
         """Schedule an update as soon as the rate allows."""
         self._schedule_read()
 
-    def on_robot_changed(self, gone: set[str]) -> None:
+    def on_robot_changed(self, removed_frames: set[str]) -> None:
         """Remove the frames that only the previous robot had, and schedule an update."""
-        known_frames = gone.intersection(self._buffer.frames())
+        known_frames = removed_frames.intersection(self._buffer.frames())
         if known_frames:
             self._buffer.remove(known_frames)
         self._schedule_read()

@@ -360,12 +360,12 @@ class VisualizationManager:
             self._global_status = [row]
             self.publish(DisplayStatus(GLOBAL, row.level, [row]))
 
-    def on_robot_changed(self, gone: set[str]) -> None:
+    def on_robot_changed(self, removed_frames: set[str]) -> None:
         """Handle a display's new robot.
 
-        `gone` contains the frames that only the previous robot had.
+        `removed_frames` contains the frames that only the previous robot had.
         """
-        self._stream.on_robot_changed(gone - self._robot_frames())
+        self._stream.on_robot_changed(removed_frames - self._robot_frames())
         self._owner.on_robot_changed()
 
     def _robot_frames(self) -> frozenset[str]:

@@ -44,10 +44,10 @@ class DisplayHost(Protocol):
     frames: FrameView
     time: TimeControl
 
-    def on_robot_changed(self, gone: set[str]) -> None:
+    def on_robot_changed(self, removed_frames: set[str]) -> None:
         """Handle a new robot of a display.
 
-        `gone` contains the frames that only the previous robot had.
+        `removed_frames` contains the frames that only the previous robot had.
         """
 
     def on_fading_changed(self) -> None:
