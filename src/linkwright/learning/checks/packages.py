@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 
 from linkwright.descriptions import examine
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, Severity, did_you_mean, phrase, quoted_names
+from linkwright.learning.checks.installed import files_of_setup
 from linkwright.learning.checks.launched import LaunchCheck
 from linkwright.learning.checks.not_yet import NotYet
 from linkwright.learning.checks.robots import RobotCheck
@@ -171,6 +172,22 @@ class PackageCheck(FileFolder):
     def __init__(self, name: str, folder: Path, finder: PackageFinder) -> None:
         super().__init__(folder, finder)
         self.name = name
+
+    def expect_installed(self, *names: str) -> None:
+        """Require that ``setup.py`` installs files, each in the package's share folder at its path in the package.
+
+        Args:
+            names: the paths in the package, such as ``launch/display.launch.py``.
+
+        Raises:
+            NotYet: ``setup.py`` fails, or does not install one of the files there.
+        """
+        installed = files_of_setup(self.folder)
+        for name in names:
+            place = PurePosixPath("share", self.name, name)
+            source = installed.get(place)
+            if source is None or not source.is_file():
+                raise NotYet(phrase("setup.py does not install '{name}' in '{folder}'", name=name, folder=place.parent))
 
     def launch(self, name: str, **arguments: str) -> LaunchCheck:
         """Return a launch of the package, to be used as a context manager.
