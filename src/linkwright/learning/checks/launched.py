@@ -137,7 +137,7 @@ class LaunchCheck:
             accept: returns whether a message is the one to wait for; None to accept any.
 
         Raises:
-            NotYet: nobody publishes the topic, or no such message came in time.
+            NotYet: no node publishes the topic, or no such message came in time.
         """
         from linkwright.graph import DurabilityPolicy, QoSProfile
         from linkwright.messages import get_message
