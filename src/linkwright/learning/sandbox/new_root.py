@@ -128,7 +128,7 @@ class _Root:
                 make_read_only(self._bind(source, f"/proc/{name}"))
 
     def bind_readable(self) -> None:
-        """Mount the files that the run may read. What is below another is there already."""
+        """Mount the files that the run may read. A mounted folder has those below it."""
         done: list[str] = []
         for real in sorted(self._sources, key=lambda path: path.count("/")):
             if not any(real == above or real.startswith(above.rstrip("/") + "/") for above in done):

@@ -156,7 +156,7 @@ class Start:
                     temporary_bytes,
                     own_processes="processes" in confinement.namespaces,
                 )
-            except OSError:  # what was mounted before cannot stay
+            except OSError:  # the mounts made so far cannot stay
                 self._give_up()
             confinement.namespaces.add("root")
         if self.needs_root_folder and "root" not in confinement.namespaces:
