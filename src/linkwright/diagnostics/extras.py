@@ -21,6 +21,7 @@ EXTRAS = {
     "dds": "cyclonedds",
     "diagram": "pygraphviz",
     "image": "PIL",
+    "learn": "markdown_it",
     "lsp": "pygls",
     "mesh": "trimesh",
     "navigation": "scipy",
