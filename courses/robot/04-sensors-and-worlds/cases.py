@@ -3,7 +3,7 @@ from linkwright.learning import Edit, right, wrong
 DESCRIPTION, WORLDS = "src/my_robot_description/", "src/my_worlds/"
 BASE, PARTS = DESCRIPTION + "urdf/mbot_base.xacro", DESCRIPTION + "urdf/parts.xacro"
 SIM, WORLD = DESCRIPTION + "urdf/mbot_sim.xacro", WORLDS + "worlds/yard.world"
-LAUNCH, XML, SETUP = WORLDS + "launch/load_mbot.launch.py", WORLDS + "package.xml", WORLDS + "setup.py"
+LAUNCH, SETUP = WORLDS + "launch/load_mbot.launch.py", WORLDS + "setup.py"
 
 WHEEL_COLLISION = """      <collision>
         <origin xyz="0 0 0" rpy="${pi/2} 0 0"/>
@@ -109,12 +109,6 @@ CASES = [
         "no worlds installed",
         Edit(SETUP, "        ('share/' + package_name + '/worlds', glob('worlds/*')),\n", ""),
         says="yard.world",
-    ),
-    wrong(
-        "load",
-        "a missing dependency",
-        Edit(XML, "  <exec_depend>robot_state_publisher</exec_depend>\n", ""),
-        says="robot_state_publisher",
     ),
     wrong("wall", "the middle", says="middle of the wall", answer="3"),
     right("wall", "with noise", answer="2.91"),
