@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path, PurePosixPath
 
 from linkwright.descriptions import examine
@@ -10,6 +10,7 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, Severity
 from linkwright.learning.checks.installed import files_of_setup
 from linkwright.learning.checks.launched import LaunchCheck
 from linkwright.learning.checks.not_yet import NotYet
+from linkwright.learning.checks.programs import find_program
 from linkwright.learning.checks.robots import RobotCheck
 from linkwright.packages import PackageFinder
 from linkwright.xacro import expand
@@ -188,6 +189,17 @@ class PackageCheck(FileFolder):
             source = installed.get(place)
             if source is None or not source.is_file():
                 raise NotYet(phrase("setup.py does not install '{name}' in '{folder}'", name=name, folder=place.parent))
+
+    def program(self, name: str) -> Callable[[], object]:
+        """Return an executable of the package, to be started with `SteppedGraph.start_program`.
+
+        Args:
+            name: the name of the executable in ``setup.py``.
+
+        Raises:
+            NotYet: the package declares no such executable, or has no such module.
+        """
+        return find_program(self.folder, self.name, name)
 
     def launch(self, name: str, **arguments: str) -> LaunchCheck:
         """Return a launch of the package, to be used as a context manager.

@@ -17,6 +17,7 @@ from typing import Any
 from linkwright.diagnostics import LinkwrightError, foreign, phrase
 from linkwright.learning.checks.declaring import Check, load_checks
 from linkwright.learning.checks.not_yet import NotYet
+from linkwright.learning.checks.programs import describe_failure
 from linkwright.learning.checks.results import CheckResult, StepResult
 from linkwright.learning.checks.work import Work
 from linkwright.learning.course import CHECKS_FILE, Step, load_lesson
@@ -57,7 +58,7 @@ def _run(check: Check, work: Work) -> CheckResult:
     except LinkwrightError as error:
         return CheckResult(check.title, passed=False, message=LocalText.from_phrase(error.diagnostics[0].message))
     except Exception as error:  # noqa: BLE001 - the learner's files can be anything
-        message = phrase("the check failed: {error}", error=foreign(f"{type(error).__name__}: {error}"))
+        message = describe_failure(error, work.folder.resolve())
         return CheckResult(check.title, passed=False, message=LocalText.from_phrase(message))
     return CheckResult(check.title, passed=True)
 
