@@ -7,8 +7,10 @@ import pytest
 
 from linkwright.cli.entry import main
 from linkwright.diagnostics import LinkwrightError
-from linkwright.learning.judging.exercise import exercise_names, find_exercise, load_exercise
+from linkwright.learning.judging.exercise import Figure, exercise_names, find_exercise, load_exercise
 from linkwright.learning.judging.running import judge_program
+from linkwright.learning.judging.world import write_world
+from linkwright.learning.local_text import LocalText
 from linkwright.testing import SteppedSimulation
 
 pytestmark = pytest.mark.extra("sim")
@@ -118,3 +120,23 @@ def test_mistakes_in_an_exercise_are_reported(tmp_path):
     (tmp_path / "exercise.toml").write_text("difficulty = \n", encoding="utf-8")
     with pytest.raises(LinkwrightError, match="TOML"):
         load_exercise(tmp_path)
+
+
+def test_a_world_in_real_time_has_the_judge(tmp_path):
+    arrangement = write_world(find_exercise(FAST), 1, tmp_path, publishes=True)
+    with SteppedSimulation(arrangement.world, find_exercise(FAST).robot, pose=arrangement.pose) as test:
+        status = test.record("/judge/status")
+        test.advance(1.0)
+        data = json.loads(status.last.data)
+        assert data["exercise"] == FAST
+        assert data["time"] == pytest.approx(1.0, abs=0.1)
+        test.reset()
+        test.advance(0.4)
+        assert json.loads(status.last.data)["time"] < 0.5
+
+
+def test_the_points_between_figures_are_linear():
+    figure = Figure(LocalText({"en": "time"}), "s", 100.0, 60.0, 30.0)
+    assert [figure.points(seconds) for seconds in (120.0, 100.0, 80.0, 60.0, 45.0, 30.0, 10.0)] == [
+        *(0.0, 0.0, 25.0, 50.0, 75.0, 100.0, 100.0)
+    ]

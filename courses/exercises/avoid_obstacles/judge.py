@@ -12,9 +12,7 @@ class AvoidObstacles(Judge):
 
     def arrange(self, scene):
         half = WIDTH / 2
-        corners = [(-1.0, -half), (LENGTH, -half), (LENGTH, half), (-1.0, half)]
-        for number in range(4):
-            scene.add_wall(f"wall_{number + 1}", corners[number], corners[(number + 1) % 4])
+        scene.add_room([(-1.0, -half), (LENGTH, -half), (LENGTH, half), (-1.0, half)])
         for number, x in enumerate(ROWS, start=1):
             y = self.random.uniform(-1.0, 1.0)
             radius = self.random.uniform(0.25, 0.4)

@@ -29,8 +29,7 @@ class Maze(Judge):
                         continue
                     number += 1
                     scene.add_wall(f"wall_{number}", (x, y), (x + dx * CELL, y + dy * CELL))
-        x, y = self.middle(self.exit)
-        scene.add_sdf(GREEN_TILE.format(x=x, y=y))
+        scene.add_tile("exit", self.middle(self.exit), 0.8)
         scene.start = (*self.middle((0, 0)), quarter * math.pi / 2)
 
     def carve(self):
@@ -76,10 +75,3 @@ class Maze(Judge):
         self.progress = 1.0 - self.nearest / self.first
         if distance < 0.4:
             self.finish()
-
-
-GREEN_TILE = (
-    '<model name="floor_exit"><static>true</static><pose>{x:.3f} {y:.3f} 0.002 0 0 0</pose><link name="link">'
-    '<visual name="visual"><geometry><box><size>0.8 0.8 0.002</size></box></geometry><material>'
-    "<diffuse>0.1 0.7 0.2 1</diffuse><ambient>0.1 0.7 0.2 1</ambient></material></visual></link></model>"
-)

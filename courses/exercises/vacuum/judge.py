@@ -15,9 +15,7 @@ class Vacuum(Judge):
 
     def arrange(self, scene):
         length, width = self.random.uniform(4.4, 5.0), self.random.uniform(3.4, 4.0)
-        corners = [(0.0, 0.0), (length, 0.0), (length, width), (0.0, width)]
-        for number in range(4):
-            scene.add_wall(f"wall_{number + 1}", corners[number], corners[(number + 1) % 4])
+        scene.add_room([(0.0, 0.0), (length, 0.0), (length, width), (0.0, width)])
         # A cupboard stands against a wall.
         cupboard = self.random.uniform(0.6, 1.0)
         x = self.random.uniform(1.4, length - 1.4)

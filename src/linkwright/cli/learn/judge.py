@@ -1,4 +1,4 @@
-"""``linkwright learn exercises`` and ``judge``: exercises whose programs a judge scores in simulated worlds."""
+"""``linkwright learn exercises``, ``judge`` and ``world``: exercises that a judge scores in simulated worlds."""
 
 from __future__ import annotations
 
@@ -7,8 +7,11 @@ import json
 import sys
 from contextlib import redirect_stdout
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
+from linkwright.cli.simulation_options import add_simulation_options
+from linkwright.cli.view import add_viewer_options
 from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, phrase
 from linkwright.diagnostics.translation import language, localized
 
@@ -89,6 +92,35 @@ def run_judge(arguments: argparse.Namespace) -> int:
     else:
         _print_table(exercise, results, mean)
     return 0 if mean >= _PASS_SCORE else 1
+
+
+def configure_world(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments of ``learn world``."""
+    parser.add_argument("exercise", metavar="EXERCISE", help="an exercise by its name, or the folder of one")
+    parser.add_argument("--seed", metavar="N", type=int, default=0, help="the seed of the world (default: 0)")
+    add_simulation_options(parser)
+    add_viewer_options(parser)
+
+
+def run_world(arguments: argparse.Namespace) -> int:
+    """Simulate the world of an exercise in real time, with its robot and its judge."""
+    from linkwright.cli.command import parser_for
+    from linkwright.cli.sim import run
+    from linkwright.learning.judging.exercise import find_exercise
+    from linkwright.learning.judging.world import write_world
+    from linkwright.packages import PackageFinder
+
+    exercise = find_exercise(arguments.exercise)
+    with TemporaryDirectory(prefix="linkwright-exercise-") as folder:
+        arrangement = write_world(exercise, arguments.seed, Path(folder), publishes=True)
+        words = [str(arrangement.world)]
+        if exercise.robot:
+            words.append(str(PackageFinder(start=[exercise.folder]).resolve(exercise.robot, exercise.folder)))
+            words += [f"{name}:={str(value).lower()}" for name, value in exercise.arguments.items()]
+        simulated = parser_for("sim").parse_args(words)
+        vars(simulated).update(vars(arguments))
+        simulated.x, simulated.y, simulated.z, _, _, simulated.Y = arrangement.pose
+        return run(simulated)
 
 
 def _copy_template(exercise: Exercise, program: Path) -> int:

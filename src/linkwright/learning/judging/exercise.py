@@ -28,6 +28,7 @@ class Figure:
     Attributes:
         name: what it measures.
         unit: the unit.
+        none: the value that is worth no points.
         half: the value that is worth 50 points.
         full: the value that is worth 100 points.
         decimals: the number of decimals to show.
@@ -35,13 +36,16 @@ class Figure:
 
     name: LocalText
     unit: str
+    none: float
     half: float
     full: float
     decimals: int = 1
 
     def points(self, value: float) -> float:
         """Return the points for a value, from 0 to 100."""
-        return max(0.0, min(100.0, 50.0 + 50.0 * (value - self.half) / (self.full - self.half)))
+        above_half = (value - self.half) / (self.full - self.half)
+        below_half = (value - self.half) / (self.half - self.none)
+        return 50.0 + 50.0 * (min(above_half, 1.0) if above_half > 0.0 else max(below_half, -1.0))
 
 
 @dataclass(frozen=True)
@@ -160,8 +164,9 @@ def load_exercise(folder: Path) -> Exercise:
 def _exercise_from(folder: Path, data: Mapping[str, Any]) -> Exercise:
     figure = data["figure"]
     half, full = float(figure["half"]), float(figure["full"])
-    if half == full:
-        raise ValueError("figure.half and figure.full must differ")
+    none = float(figure.get("none", 2.0 * half - full))
+    if not (none < half < full or none > half > full):
+        raise ValueError("figure.none, figure.half and figure.full must be in order")
     return Exercise(
         folder,
         LocalText(data["title"]),
@@ -173,6 +178,6 @@ def _exercise_from(folder: Path, data: Mapping[str, Any]) -> Exercise:
         str(data["model"]),
         float(data["time_limit"]),
         float(data.get("collision_cost", 10.0)),
-        Figure(LocalText(figure["name"]), str(figure["unit"]), half, full, int(figure.get("decimals", 1))),
+        Figure(LocalText(figure["name"]), str(figure["unit"]), none, half, full, int(figure.get("decimals", 1))),
         dict(data.get("settings", {})),
     )

@@ -74,6 +74,37 @@ class Scene:
         middle = ((start[0] + end[0]) / 2, (start[1] + end[1]) / 2, height / 2)
         self.add_box(name, middle, (length + 0.1, 0.1, height), WHITE, yaw=yaw)
 
+    def add_room(self, corners: Sequence[Sequence[float]], height: float = 0.5) -> None:
+        """Add walls from corner to corner, and back to the first one: ``wall_1``, ``wall_2``, ..."""
+        for number, corner in enumerate(corners, start=1):
+            self.add_wall(f"wall_{number}", corner, corners[number % len(corners)], height)
+
+    def add_tile(self, name: str, center: Sequence[float], size: float, color: Color = GREEN) -> None:
+        """Paint a square on the ground."""
+        box = f"<box><size>{size:.4f} {size:.4f} 0.002</size></box>"
+        visual = f'<visual name="visual"><geometry>{box}</geometry>{_material(color)}</visual>'
+        self._models.append(
+            f"<model name={quoteattr(name)}><static>true</static><pose>{_join((*center, 0.002))} 0 0 0</pose>"
+            f'<link name="link">{visual}</link></model>'
+        )
+
+    def add_person(self, name: str, position: Sequence[float], color: Color = RED) -> None:
+        """Add a standing person in a long coat, which the judge moves with ``simulation.set_model_pose``."""
+        legs = "<cylinder><radius>0.16</radius><length>0.1</length></cylinder>"
+        coat = "<cylinder><radius>0.18</radius><length>1.3</length></cylinder>"
+        head = "<sphere><radius>0.13</radius></sphere>"
+        parts = (("legs", 0.05, legs, BLACK), ("coat", 0.75, coat, color), ("head", 1.55, head, (0.8, 0.6, 0.5)))
+        visuals = "".join(
+            f'<visual name="{part}"><pose>0 0 {z} 0 0 0</pose><geometry>{shape}</geometry>{_material(paint)}</visual>'
+            for part, z, shape, paint in parts
+        )
+        body = "<cylinder><radius>0.18</radius><length>1.6</length></cylinder>"
+        collision = f'<collision name="body"><pose>0 0 0.8 0 0 0</pose><geometry>{body}</geometry></collision>'
+        self._models.append(
+            f"<model name={quoteattr(name)}><pose>{_join((*position, 0.0))} 0 0 0</pose>"
+            f'<link name="link"><kinematic>true</kinematic>{collision}{visuals}</link></model>'
+        )
+
     def add_line(self, name: str, points: Sequence[Sequence[float]], width: float, color: Color = BLACK) -> None:
         """Paint a line through points x, y on the ground, closed to a loop if the last is the first."""
         pieces = []
