@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from math import atan2
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -34,6 +34,7 @@ class Judge:
         seed: the seed of the run, which determines all that varies from run to run.
 
     Attributes:
+        TOPICS: the topics on which the program publishes its answers, with their types; see `on_message`.
         exercise: the exercise.
         random: the random numbers of the run.
         time: the simulated time since the start, in s.
@@ -44,6 +45,8 @@ class Judge:
         collisions: the number of collisions of the robot.
         reasons: what earned or cost points.
     """
+
+    TOPICS: ClassVar[Mapping[str, str]] = {}
 
     def __init__(self, exercise: Exercise, seed: int) -> None:
         self.exercise = exercise
@@ -71,6 +74,9 @@ class Judge:
     def update(self) -> None:
         """Look at the world, and set `figure` and `progress`. Call `finish` or `fail` when the run has ended."""
         raise NotImplementedError
+
+    def on_message(self, topic: str, message: Any) -> None:
+        """Receive an answer of the program on one of `TOPICS`."""
 
     def at_time_limit(self) -> None:
         """Decide what a run is worth that has not ended in time: by default, the task is not done."""

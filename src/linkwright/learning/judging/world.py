@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import dataclass
+from functools import partial
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from typing import Any
@@ -106,6 +107,8 @@ class JudgePlugin(SimulatedPlugin[Parameters]):
         """Create the judge."""
         self._exercise = load_exercise(Path(self.parameters.exercise))
         self.reset()
+        for topic, msg_type in self.judge.TOPICS.items():
+            self.node.subscribe(msg_type, topic, partial(self._receive, topic))
         self.every(_UPDATE_RATE_HZ, self._watch)
         if self.parameters.publish:
             self._status = self.node.publisher("std_msgs/msg/String", STATUS_TOPIC, 10)
@@ -124,6 +127,10 @@ class JudgePlugin(SimulatedPlugin[Parameters]):
             self.judge.begin(self.simulation)
             self._has_begun = True
         self.judge.watch()
+
+    def _receive(self, topic: str, message: Any) -> None:
+        if self._has_begun and not self.judge.is_finished:
+            self.judge.on_message(topic, message)
 
     def _publish(self) -> None:
         if self._status.is_wanted:
