@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from linkwright.images.colour_words import PAINTS
+from linkwright.images.color_words import RGB_BY_COLOR_WORD
 from linkwright.vision.places.camera import Floats
 
-COLOURS = tuple(PAINTS)
+COLOURS = tuple(RGB_BY_COLOR_WORD)
 """The English words for colours."""
 
 _HUE_LIMITS = (
@@ -32,7 +32,7 @@ _MAX_SAMPLES = 24
 """The maximum number of pixels used along a side. Larger boxes are subsampled."""
 
 
-def colour_of(image: NDArray[np.uint8], box: NDArray[np.floating]) -> str | None:
+def object_color(image: NDArray[np.uint8], box: NDArray[np.floating]) -> str | None:
     """Return the colour of the object in a box, one of `COLOURS`.
 
     The colour is the most frequent one among the pixels of an ellipse in the middle of the box. Bright colours take

@@ -55,31 +55,31 @@ class _Ground:
         centres = stage.simulation.model.geom_aabb[geoms, :2]
         axes = data.geom_xmat[geoms].reshape(-1, 3, 3)[:, :2, :2]
         bounds = stage.boxes[geoms]
-        self._half = np.where(is_upright[:, None], half, (bounds[:, 1, :2] - bounds[:, 0, :2]) / 2)
+        self._half_sizes = np.where(is_upright[:, None], half, (bounds[:, 1, :2] - bounds[:, 0, :2]) / 2)
         self._axes = np.where(is_upright[:, None, None], axes, np.eye(2))
         rotated_centres = data.geom_xpos[geoms, :2] + np.einsum("gij,gj->gi", axes, centres)
-        self._middle = np.where(is_upright[:, None], rotated_centres, (bounds[:, 0, :2] + bounds[:, 1, :2]) / 2)
-        self._discs: list[tuple[float, float, float]] = []
+        self._centers = np.where(is_upright[:, None], rotated_centres, (bounds[:, 0, :2] + bounds[:, 1, :2]) / 2)
+        self._occupied_circles: list[tuple[float, float, float]] = []
 
     def is_free(self, x: float, y: float, radius: float) -> bool:
         """Return whether a circle overlaps no structure and no occupied circle."""
-        if any((x - a) ** 2 + (y - b) ** 2 < (radius + other) ** 2 for a, b, other in self._discs):
+        if any((x - a) ** 2 + (y - b) ** 2 < (radius + other) ** 2 for a, b, other in self._occupied_circles):
             return False
-        if not len(self._half):
+        if not len(self._half_sizes):
             return True
-        local = np.einsum("gji,gj->gi", self._axes, np.array([x, y]) - self._middle)
-        outside = np.maximum(np.abs(local) - self._half, 0.0)
+        local = np.einsum("gji,gj->gi", self._axes, np.array([x, y]) - self._centers)
+        outside = np.maximum(np.abs(local) - self._half_sizes, 0.0)
         return bool((np.hypot(outside[:, 0], outside[:, 1]) > radius).all())
 
-    def is_open(self, start: tuple[float, float], end: tuple[float, float]) -> bool:
+    def has_line_of_sight(self, start: tuple[float, float], end: tuple[float, float]) -> bool:
         """Return whether no structure blocks the line between two points."""
-        steps = np.linspace(start, end, _STEPS)[:, None] - self._middle
-        beyond = np.abs(np.einsum("gji,sgj->sgi", self._axes, steps)) - self._half
+        steps = np.linspace(start, end, _STEPS)[:, None] - self._centers
+        beyond = np.abs(np.einsum("gji,sgj->sgi", self._axes, steps)) - self._half_sizes
         return not (beyond < 0.0).all(axis=2).any()
 
     def occupy(self, x: float, y: float, radius: float) -> None:
         """Mark a circle as occupied."""
-        self._discs.append((x, y, radius))
+        self._occupied_circles.append((x, y, radius))
 
 
 def arrange(stage: Stage, options: Options, generator: np.random.Generator) -> Shot:
@@ -218,7 +218,7 @@ def _find_free_position(
             first, second = generator.uniform(minimum, maximum)
             position = float(first), float(second)
         is_inside = bool((minimum < position).all() and (position < maximum).all())
-        is_visible = may_be_hidden or ground.is_open((x, y), position)
+        is_visible = may_be_hidden or ground.has_line_of_sight((x, y), position)
         if is_inside and is_visible and ground.is_free(*position, radius):
             ground.occupy(*position, radius)
             return position

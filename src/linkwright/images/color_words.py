@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-PAINTS: dict[str, tuple[int, int, int]] = {
+RGB_BY_COLOR_WORD: dict[str, tuple[int, int, int]] = {
     "red": (225, 35, 40),
     "orange": (255, 140, 0),
     "yellow": (245, 215, 25),
@@ -20,8 +20,8 @@ PAINTS: dict[str, tuple[int, int, int]] = {
 }
 """The red, green and blue, 0 to 255, of the colours that have a name."""
 
-SPELLINGS = {**{word: word for word in PAINTS}, "gray": "grey", "violet": "purple"}
-"""The English words for colours, each with its name in `PAINTS`."""
+COLOR_WORD_SPELLINGS = {**{word: word for word in RGB_BY_COLOR_WORD}, "gray": "grey", "violet": "purple"}
+"""The English words for colours, each with its name in `RGB_BY_COLOR_WORD`."""
 
 
 def words_of(name: str) -> list[str]:
@@ -30,8 +30,8 @@ def words_of(name: str) -> list[str]:
 
 
 def find_colour_word(name: str) -> str | None:
-    """Return the colour word in a class name, one of `PAINTS`, or None if there is none."""
-    return next((SPELLINGS[word] for word in words_of(name) if word in SPELLINGS), None)
+    """Return the colour word in a class name, one of `RGB_BY_COLOR_WORD`, or None if there is none."""
+    return next((COLOR_WORD_SPELLINGS[word] for word in words_of(name) if word in COLOR_WORD_SPELLINGS), None)
 
 
 def find_rgb(name: str) -> tuple[int, int, int] | None:
@@ -40,4 +40,4 @@ def find_rgb(name: str) -> tuple[int, int, int] | None:
     Return None if the name contains no colour.
     """
     colour = find_colour_word(name)
-    return None if colour is None else PAINTS[colour]
+    return None if colour is None else RGB_BY_COLOR_WORD[colour]

@@ -14,7 +14,7 @@ from linkwright.vision.detectors.devices import refuse_network_options
 from linkwright.vision.detectors.library import load_opencv
 from linkwright.vision.detectors.options import DetectorOptions
 from linkwright.vision.detectors.selection import select_detections
-from linkwright.vision.detectors.settings import hsv_range, number, setting_error
+from linkwright.vision.detectors.settings import parse_hsv_range, read_number, setting_error
 
 COLOURS: Mapping[str, tuple[int, ...]] = {
     "red": (172, 110, 60, 6, 255, 255),
@@ -24,7 +24,7 @@ COLOURS: Mapping[str, tuple[int, ...]] = {
     "blue": (95, 110, 50, 130, 255, 255),
     "purple": (132, 80, 50, 165, 255, 255),
 }
-"""The default colours: minimum hue, saturation and value, then the maximum of each, as in `hsv_range`."""
+"""The default colours: minimum hue, saturation and value, then the maximum of each, as in `parse_hsv_range`."""
 
 
 class ColourDetector(Detector):
@@ -34,8 +34,8 @@ class ColourDetector(Detector):
 
     Settings:
         ``colours``
-            a mapping from names to six numbers; see `hsv_range`. If the minimum hue exceeds the maximum, as for red,
-            the range wraps around through 0. The default is `COLOURS`.
+            a mapping from names to six numbers; see `parse_hsv_range`. If the minimum hue exceeds the maximum, as for
+            red, the range wraps around through 0. The default is `COLOURS`.
         ``least_area``
             the minimum area of a patch, in pixels; 150 by default.
 
@@ -49,8 +49,8 @@ class ColourDetector(Detector):
         colour_settings = options.settings.get("colours", COLOURS)
         if not isinstance(colour_settings, Mapping) or not colour_settings:
             raise setting_error("colours", colour_settings)
-        self._ranges = {str(name): hsv_range(f"colours.{name}", value) for name, value in colour_settings.items()}
-        self._least_area = number(options.settings, "least_area", 150.0, 1.0, 1e9)
+        self._ranges = {str(name): parse_hsv_range(f"colours.{name}", value) for name, value in colour_settings.items()}
+        self._min_area = read_number(options.settings, "least_area", 150.0, 1.0, 1e9)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -70,28 +70,28 @@ class ColourDetector(Detector):
         classes: list[int] = []
         hsv = cv2.cvtColor(image, cv2.COLOR_RGB2HSV) if image.size else image
         for index, bounds in enumerate(self._ranges.values() if image.size else ()):
-            mask = mask_of(hsv, bounds)
+            mask = color_mask(hsv, bounds)
             x, y, columns, rows = cv2.boundingRect(mask)  # most colours are absent or in a small part of the image
-            if columns * rows < self._least_area:
+            if columns * rows < self._min_area:
                 continue
             region = mask[y : y + rows, x : x + columns]
             count, _, statistics, _ = cv2.connectedComponentsWithStats(region, connectivity=8)
             for left, top, width, height, area in statistics[1:count].tolist():
-                if area >= self._least_area:
+                if area >= self._min_area:
                     boxes.append((x + left, y + top, x + left + width, y + top + height))
                     scores.append(area / (width * height))
                     classes.append(index)
         return select_detections(boxes, scores, classes, self.names, limits)
 
 
-def mask_of(hsv: NDArray[np.uint8], bounds: tuple[int, ...]) -> NDArray[np.uint8]:
+def color_mask(hsv: NDArray[np.uint8], bounds: tuple[int, ...]) -> NDArray[np.uint8]:
     """Return the mask of a colour: 255 where the image has it, else 0.
 
     Spots narrower than three pixels are removed from the mask.
 
     Args:
         hsv: the image in OpenCV's HSV, shape ``(height, width, 3)``.
-        bounds: the range of the colour; see `hsv_range`.
+        bounds: the range of the colour; see `parse_hsv_range`.
     """
     cv2 = load_opencv()
     minimum, maximum = np.array(bounds[:3], np.uint8), np.array(bounds[3:], np.uint8)

@@ -10,7 +10,7 @@ from math import atan2, degrees, hypot
 
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.diagnostics.translation import CHINESE, ENGLISH, localized
-from linkwright.images.colour_words import SPELLINGS, find_colour_word, words_of
+from linkwright.images.color_words import COLOR_WORD_SPELLINGS, find_colour_word, words_of
 
 _CHINESE_COLOURS = {
     "红": "red", "橙": "orange", "橘": "orange", "黄": "yellow", "绿": "green", "青": "cyan", "蓝": "blue",
@@ -63,24 +63,24 @@ _MAX_AHEAD_DEGREES, _MAX_BESIDE_DEGREES = 20.0, 110.0
 class Answer(Enum):
     """The kinds of answers to a request."""
 
-    LOOKING = "looking"
+    SEARCHING = "looking"
     FOUND = "found"
     ARRIVED = "arrived"
     NOT_FOUND = "not found"
     LOST = "lost"
     BLOCKED = "blocked"
-    BLIND = "blind"
+    NO_DETECTIONS = "blind"
     STOPPED = "stopped"
 
 
 _ANSWERS: Mapping[Answer, Callable[[str], Phrase]] = {
-    Answer.LOOKING: lambda it: phrase("I am looking for the {it}.", it=it),
+    Answer.SEARCHING: lambda it: phrase("I am looking for the {it}.", it=it),
     Answer.FOUND: lambda it: phrase("I see the {it} and am going to it.", it=it),
     Answer.ARRIVED: lambda it: phrase("I am at the {it}.", it=it),
     Answer.NOT_FOUND: lambda it: phrase("I cannot find the {it}.", it=it),
     Answer.LOST: lambda it: phrase("I have lost the {it}.", it=it),
     Answer.BLOCKED: lambda it: phrase("There is something between me and the {it}.", it=it),
-    Answer.BLIND: lambda _: phrase("I am stopping, because I receive no detections."),
+    Answer.NO_DETECTIONS: lambda _: phrase("I am stopping, because I receive no detections."),
     Answer.STOPPED: lambda _: phrase("I am stopping."),
 }
 """The answers, given the name of the object."""
@@ -105,7 +105,7 @@ class ObjectRequest:
         """The language of the request, one of `LANGUAGES`."""
         return ENGLISH if self.text.isascii() else CHINESE
 
-    def matches(self, name: str, colour: str | None, shape: float = 1.0, score: float = 1.0) -> bool:
+    def matches(self, name: str, colour: str | None, aspect_ratio: float = 1.0, score: float = 1.0) -> bool:
         """Return whether an object is the requested one.
 
         A class can have a colour in its name, as ``red_ball`` has. A class that is only a colour matches any object
@@ -115,12 +115,12 @@ class ObjectRequest:
         Args:
             name: the class of the object.
             colour: the colour of the object; None if it is unknown.
-            shape: the width divided by the height.
+            aspect_ratio: the width divided by the height.
             score: the score of the detection; for a patch of a colour, the fraction of its box that it fills.
         """
         words = words_of(name)
         class_colour = find_colour_word(name)
-        class_noun = " ".join(word for word in words if word not in SPELLINGS)
+        class_noun = " ".join(word for word in words if word not in COLOR_WORD_SPELLINGS)
         if self.colour is not None and self.colour != (class_colour or colour):
             return False
         if not self.noun:
@@ -129,7 +129,7 @@ class ObjectRequest:
             if self.noun != _ROUND_NOUN:
                 return self.colour is not None
             is_round = self.colour is not None or _ROUND_FILL_SHARES[0] < score < _ROUND_FILL_SHARES[1]
-            return is_round and _ROUND_ASPECT_RATIOS[0] < shape < _ROUND_ASPECT_RATIOS[1]
+            return is_round and _ROUND_ASPECT_RATIOS[0] < aspect_ratio < _ROUND_ASPECT_RATIOS[1]
         return self.noun in (object_name(class_noun), object_name(class_noun.split()[-1]))
 
 
@@ -157,7 +157,7 @@ def object_name(name: str) -> str:
     return _COMMON_NAMES.get(singular, singular if singular in _PLURALS.values() else normalized)
 
 
-def requested(text: str) -> ObjectRequest | None:
+def parse_request(text: str) -> ObjectRequest | None:
     """Parse a request such as ``go to the red ball`` or ``去红色的球那里``.
 
     The result is None if the request names no object.
@@ -168,8 +168,8 @@ def requested(text: str) -> ObjectRequest | None:
             _VERBS.sub("", f"{' '.join(normalized.split())} ", count=1) if _VERBS.match(normalized) else normalized
         )
         words = [word for word in words_of(normalized) if word not in _FILLERS]
-        colour = next((SPELLINGS[word] for word in words if word in SPELLINGS), None)
-        noun = " ".join(word for word in words if word not in SPELLINGS and word not in ("thing", "one"))
+        colour = next((COLOR_WORD_SPELLINGS[word] for word in words if word in COLOR_WORD_SPELLINGS), None)
+        noun = " ".join(word for word in words if word not in COLOR_WORD_SPELLINGS and word not in ("thing", "one"))
         return ObjectRequest(object_name(noun), colour, " ".join(words)) if colour or noun else None
     normalized = _CHINESE_VERBS.sub("", normalized)
     colour = next((_CHINESE_COLOURS[character] for character in normalized if character in _CHINESE_COLOURS), None)
@@ -182,7 +182,7 @@ def requested(text: str) -> ObjectRequest | None:
     )
 
 
-def described(sightings: Iterable[Sighting], language: str) -> str:
+def describe_sightings(sightings: Iterable[Sighting], language: str) -> str:
     """Describe visible objects, nearest first: *I see a red ball 1.2 m ahead and two crates*."""
     groups: dict[str, list[Sighting]] = {}
     for sighting in sorted(sightings, key=lambda sighting: hypot(sighting.ahead, sighting.left)):
@@ -196,7 +196,7 @@ def described(sightings: Iterable[Sighting], language: str) -> str:
 
 def name_with_colour(name: str, colour: str | None, language: str) -> str:
     """Return the name of an object with its colour: *red ball*, 红色的球."""
-    words = [word for word in words_of(name) if word not in SPELLINGS]
+    words = [word for word in words_of(name) if word not in COLOR_WORD_SPELLINGS]
     colour_word = find_colour_word(name) or colour
     noun = " ".join(words)
     if language != CHINESE:

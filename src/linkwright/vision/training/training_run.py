@@ -11,15 +11,15 @@ from typing import TYPE_CHECKING
 from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, foreign, phrase
 from linkwright.files.whole_files import write_whole_file
 from linkwright.vision.evaluation import Evaluation
-from linkwright.vision.training.card import Examination, dataset_facts, make_card, origin
-from linkwright.vision.training.library import need_pytorch
-from linkwright.vision.training.measuring import evaluate_detector
+from linkwright.vision.training.card import EvaluationReport, dataset_facts, describe_origin, make_card
+from linkwright.vision.training.detector_evaluation import evaluate_detector
+from linkwright.vision.training.library import require_pytorch
 from linkwright.vision.training.options import Options
-from linkwright.vision.training.reading import Dataset, LabelledFile, open_dataset
+from linkwright.vision.training.yolo_dataset import Dataset, LabelledFile, open_dataset
 
 if TYPE_CHECKING:
-    from linkwright.vision.training.learning.course import Epoch
     from linkwright.vision.training.learning.network import Network
+    from linkwright.vision.training.learning.training_loop import Epoch
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,14 +29,14 @@ class TrainingResult:
     Attributes:
         network: the ONNX file.
         card: the card of the network.
-        examinations: the results on the split ``val`` of the training dataset, then on each held-out dataset.
-        interrupted: whether Ctrl-C ended the training before the last epoch; the network is then the best so far.
+        reports: the results on the split ``val`` of the training dataset, then on each held-out dataset.
+        was_interrupted: whether Ctrl-C ended the training before the last epoch; the network is then the best so far.
     """
 
     network: Path
     card: Path
-    examinations: tuple[Examination, ...]
-    interrupted: bool
+    reports: tuple[EvaluationReport, ...]
+    was_interrupted: bool
 
 
 def train_network(options: Options, on_epoch: Callable[[Epoch], None]) -> TrainingResult:
@@ -52,10 +52,10 @@ def train_network(options: Options, on_epoch: Callable[[Epoch], None]) -> Traini
             VISION308 the initial weights cannot be used.
         KeyboardInterrupt: training was interrupted before the first checkpoint.
     """
-    need_pytorch()
+    require_pytorch()
     from linkwright.vision.training.images import read_labelled_images
-    from linkwright.vision.training.learning.course import Course
-    from linkwright.vision.training.learning.export import to_onnx
+    from linkwright.vision.training.learning.export import export_to_onnx
+    from linkwright.vision.training.learning.training_loop import TrainingLoop
 
     dataset = open_dataset(options.dataset)
     training_images, validation_images = dataset.read("train"), dataset.read("val")
@@ -66,48 +66,52 @@ def train_network(options: Options, on_epoch: Callable[[Epoch], None]) -> Traini
     except OSError as error:
         raise _write_error(options.output, error) from None
     size = options.width, options.height
-    course = Course(
+    training_loop = TrainingLoop(
         dataset.names,
         options,
         read_labelled_images(training_images, *size),
         read_labelled_images(validation_images, *size),
     )
     if options.resume:
-        course.load(options.output / "last.pt")
+        training_loop.load(options.output / "last.pt")
     elif options.weights is not None:
-        course.begin_with(options.weights)
-    interrupted = False
+        training_loop.load_initial_weights(options.weights)
+    was_interrupted = False
     try:
-        course.run(on_epoch)
+        training_loop.run(on_epoch)
     except KeyboardInterrupt:
-        if course.epoch == 0:
+        if training_loop.epoch == 0:
             raise
-        interrupted = True
+        was_interrupted = True
     except OSError as error:
         raise _write_error(options.output, error) from None
-    facts = _training_facts(options, dataset, training_images, course.epoch, course.best_epoch, course.network)
-    facts["time"] = f"{course.seconds / 60:.0f} minutes with {options.threads} threads, {course.device_name}"
+    facts = _training_facts(
+        options, dataset, training_images, training_loop.epoch, training_loop.best_epoch, training_loop.network
+    )
+    facts["time"] = (
+        f"{training_loop.seconds / 60:.0f} minutes with {options.threads} threads, {training_loop.device_name}"
+    )
     network = options.output / f"{options.name}.onnx"
     metadata = {"description": f"{options.name}, trained by linkwright vision train", "seed": str(options.seed)}
     metadata["dataset"] = facts["images' sha256"]
-    best = course.best_network()
-    threshold = course.best_threshold(best)
+    best = training_loop.best_network()
+    threshold = training_loop.best_threshold(best)
     facts["scores"] = f"{threshold:.2f} of the network is 0.5 in the file, where F1 on the split val is greatest"
-    content = to_onnx(best, dataset.names, *size, metadata, threshold)
+    content = export_to_onnx(best, dataset.names, *size, metadata, threshold)
     facts["file"] = f"{network.name}, {len(content) / 1e6:.2f} MB, sha256 {hashlib.sha256(content).hexdigest()}"
     try:
         write_whole_file(network, content)
         title_of_validation = f"Held-back images of {dataset.folder.name}"
-        examinations = [Examination(title_of_validation, evaluate_detector(network, dataset.names, validation_images))]
+        reports = [EvaluationReport(title_of_validation, evaluate_detector(network, dataset.names, validation_images))]
         for other, split, images in held_out:
             title = f"Held out: {other.folder.name} ({split})"
             evaluation = evaluate_detector(network, other.names, images)
-            examinations.append(Examination(title, evaluation, origin(other.folder, dataset.folder)))
+            reports.append(EvaluationReport(title, evaluation, describe_origin(other.folder, dataset.folder)))
         card_file = options.output / f"{options.name}.md"
-        write_whole_file(card_file, make_card(options.name, facts, examinations))
+        write_whole_file(card_file, make_card(options.name, facts, reports))
     except OSError as error:
         raise _write_error(options.output, error) from None
-    return TrainingResult(network, card_file, tuple(examinations), interrupted)
+    return TrainingResult(network, card_file, tuple(reports), was_interrupted)
 
 
 def evaluate_on_dataset(model: str, folder: Path, split: str | None) -> Evaluation:

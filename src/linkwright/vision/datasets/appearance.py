@@ -9,15 +9,15 @@ import numpy as np
 
 from linkwright.geometry.arrays import Array
 from linkwright.sdf.lights import Light
-from linkwright.vision.datasets.arranging import Shot
+from linkwright.vision.datasets.arrangement import Shot
 from linkwright.vision.datasets.stage import Stage
-from linkwright.vision.datasets.textures import Pixels, smooth
+from linkwright.vision.datasets.textures import Pixels, smooth_noise
 
 _NOISE_VALUES = 1 << 21
 """The number of noise values. They are drawn once, and each image uses them from a different offset."""
 
 
-def light(stage: Stage, generator: np.random.Generator) -> None:
+def set_lights(stage: Stage, generator: np.random.Generator) -> None:
     """Replace the lights of a world with one to three random lights.
 
     All lights are directional. With a nearby light, OpenGL's rendering of an infinite plane would depend on the
@@ -36,7 +36,7 @@ def light(stage: Stage, generator: np.random.Generator) -> None:
     stage.light(lights, ambient, generator.random(3))
 
 
-def paint(stage: Stage, shot: Shot, generator: np.random.Generator) -> None:
+def paint_surfaces(stage: Stage, shot: Shot, generator: np.random.Generator) -> None:
     """Recolour all objects and surroundings.
 
     Most objects keep their colour or get a similar one.
@@ -72,7 +72,7 @@ def fill_backdrop(colour: Pixels, geoms: Any, generator: np.random.Generator) ->
     top_colour, bottom_colour = generator.uniform(0.2, 1.0, 3), generator.uniform(0.2, 1.0, 3)
     blend = np.linspace(0.0, 1.0, height)[:, None]
     if generator.random() < 0.5:
-        blend = 0.5 * blend + 0.5 * smooth(generator, int(generator.integers(2, 12)), height, width)
+        blend = 0.5 * blend + 0.5 * smooth_noise(generator, int(generator.integers(2, 12)), height, width)
     blend = np.broadcast_to(blend, (height, width))[is_empty].astype(np.float32)
     for channel in range(3):
         colour[..., channel][is_empty] = (

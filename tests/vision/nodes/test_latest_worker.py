@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 
-from linkwright.vision.nodes.latest import LatestWorker
+from linkwright.vision.nodes.latest_worker import LatestWorker
 from tests.waiting import SECONDS, wait_until
 
 
@@ -43,7 +43,7 @@ def test_at_its_end_the_work_at_hand_is_waited_for_and_the_rest_left():
     worker.offer(1)
     closing = threading.Thread(target=worker.close)
     closing.start()
-    wait_until(lambda: not worker.waits)
+    wait_until(lambda: not worker.has_pending_item)
     proceed.set()
     closing.join(SECONDS)
     worker.offer(2)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from linkwright.vision.places.colours import COLOURS, classify_colours, colour_of
+from linkwright.vision.places.object_colors import COLOURS, classify_colours, object_color
 
 SAMPLES = {
     "red": [(200, 13, 15), (120, 10, 10), (230, 60, 50)],
@@ -40,20 +40,20 @@ def disc(colour, ground=(180, 180, 180), shade=1.0):
 
 @pytest.mark.parametrize("shade", [1.0, 0.4])
 def test_a_ball_with_a_shadow_on_grey_ground(shade):
-    assert colour_of(*disc((200, 20, 20), shade=shade)) == "red"
-    assert colour_of(*disc((30, 60, 180), shade=shade)) == "blue"
+    assert object_color(*disc((200, 20, 20), shade=shade)) == "red"
+    assert object_color(*disc((30, 60, 180), shade=shade)) == "blue"
 
 
 def test_a_white_ball_with_black_spots_is_white():
     image, box = disc((245, 245, 245))
     image[50:60, 70:80] = 5
-    assert colour_of(image, box) == "white"
+    assert object_color(image, box) == "white"
 
 
 def test_what_cannot_be_said():
     image, box = disc((200, 20, 20))
-    assert colour_of(image, box + 500) is None
+    assert object_color(image, box + 500) is None
     stripes = np.zeros((60, 60, 3), np.uint8)
     for row, colour in enumerate([(200, 10, 10), (20, 150, 30), (20, 40, 190), (240, 200, 20)] * 15):
         stripes[row] = colour
-    assert colour_of(stripes, np.array([0.0, 0.0, 60.0, 60.0])) is None
+    assert object_color(stripes, np.array([0.0, 0.0, 60.0, 60.0])) is None

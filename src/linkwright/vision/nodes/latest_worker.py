@@ -23,7 +23,7 @@ class LatestWorker(Generic[T]):
     def __init__(self, prepare: Callable[[], Callable[[T], None] | None], name: str) -> None:
         self._prepare = prepare
         self._changed = threading.Condition()
-        self._waiting: list[T] = []
+        self._pending: list[T] = []
         self._is_closed = False
         self._thread = threading.Thread(target=self._run, name=name, daemon=True)
         self._thread.start()
@@ -32,19 +32,19 @@ class LatestWorker(Generic[T]):
         """Offer an item, replacing an item that is still waiting."""
         with self._changed:
             if not self._is_closed:
-                self._waiting[:] = [item]
+                self._pending[:] = [item]
                 self._changed.notify()
 
     @property
-    def waits(self) -> bool:
+    def has_pending_item(self) -> bool:
         """Whether an item is waiting."""
-        return bool(self._waiting)
+        return bool(self._pending)
 
     def close(self) -> None:
         """Stop the thread, and wait up to 10 s for a running call."""
         with self._changed:
             self._is_closed = True
-            self._waiting.clear()
+            self._pending.clear()
             self._changed.notify()
         self._thread.join(_CLOSE_TIMEOUT)
 
@@ -52,8 +52,8 @@ class LatestWorker(Generic[T]):
         process = self._prepare()
         while process is not None:
             with self._changed:
-                self._changed.wait_for(lambda: self._waiting or self._is_closed)
+                self._changed.wait_for(lambda: self._pending or self._is_closed)
                 if self._is_closed:
                     return
-                item = self._waiting.pop()
+                item = self._pending.pop()
             process(item)

@@ -10,11 +10,11 @@ import numpy as np
 from linkwright.vision.detector import Limits
 from linkwright.vision.detectors.options import DetectorOptions
 from linkwright.vision.detectors.registry import make_detector
-from linkwright.vision.evaluation import MOST, Evaluation, GroundTruth, evaluate
+from linkwright.vision.evaluation import MAX_DETECTIONS, Evaluation, GroundTruth, evaluate
 from linkwright.vision.training.images import read_image
-from linkwright.vision.training.reading import LabelledFile
+from linkwright.vision.training.yolo_dataset import LabelledFile
 
-EVALUATION_LIMITS = Limits(threshold=0.01, iou=0.6, max_detections=MOST)
+EVALUATION_LIMITS = Limits(threshold=0.01, iou=0.6, max_detections=MAX_DETECTIONS)
 """The limits of evaluated detections. The threshold is low, because average precision includes uncertain detections."""
 
 

@@ -101,7 +101,7 @@ def open_dataset(folder: Path) -> Dataset:
     Raises:
         LinkwrightError: VISION302, the folder is not a dataset.
     """
-    file = folder if folder.suffix in {".yaml", ".yml"} else _description(folder)
+    file = folder if folder.suffix in {".yaml", ".yml"} else _description_file(folder)
     try:
         content = yaml.safe_load(file.read_text(encoding="utf-8"))
     except FileNotFoundError:
@@ -128,7 +128,7 @@ def open_dataset(folder: Path) -> Dataset:
     return Dataset(file.parent, names, splits)
 
 
-def _description(folder: Path) -> Path:
+def _description_file(folder: Path) -> Path:
     """Return the path of a dataset's YAML file, preferably ``data.yaml`` or ``dataset.yaml``."""
     if not folder.is_dir():
         raise _dataset_error(folder, phrase("it does not exist"), missing_file_hint(folder))

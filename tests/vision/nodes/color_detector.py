@@ -9,7 +9,7 @@ import numpy as np
 from linkwright.graph import SENSOR_DATA_QOS, Graph
 from linkwright.images import RangeFinder, decode_image
 from linkwright.messages import get_message
-from linkwright.vision.places.colours import COLOURS, classify_colours
+from linkwright.vision.places.object_colors import COLOURS, classify_colours
 
 _LEAST_PIXELS = 60
 

@@ -120,8 +120,8 @@ class ArrayFilter(ScanFilter):
 class _Window:
     """The last arrays of a scan's values, and their median or mean."""
 
-    def __init__(self, count: int, *, median: bool) -> None:
-        self._median = median
+    def __init__(self, count: int, *, uses_median: bool) -> None:
+        self._uses_median = uses_median
         self._arrays: deque[Floats] = deque(maxlen=count)
 
     def add(self, values: Floats) -> Floats:
@@ -129,7 +129,7 @@ class _Window:
             self._arrays.clear()
         self._arrays.append(values.copy())
         ordered = np.sort(np.stack(self._arrays), axis=0)  # NaN is sorted to the end.
-        if self._median:
+        if self._uses_median:
             # For an even count, use the larger of the two middle values, as the package filters does.
             median: Floats = ordered[len(ordered) // 2]
             return median.copy()
@@ -152,5 +152,5 @@ def _make_windows(chain: Mapping[str, Any]) -> list[_Window]:
             )
             names = "filters/MultiChannelMedianFilterFloat, filters/MultiChannelMeanFilterFloat"
             raise LinkwrightError(Diagnostic("NODE451", message, hint=phrase("choose from {names}", names=names)))
-        windows.append(_Window(int(count), median="Median" in type_name))
+        windows.append(_Window(int(count), uses_median="Median" in type_name))
     return windows

@@ -21,12 +21,12 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, ph
 from linkwright.vision.detections import Detections
 from linkwright.vision.detectors.suppression import non_maximum_suppression
 from linkwright.vision.evaluation import Evaluation, GroundTruth, best_f1_threshold, evaluate
-from linkwright.vision.training.images import LabelledImages, augmented, repeat_factors, repeated_indices
+from linkwright.vision.training.detector_evaluation import EVALUATION_LIMITS
+from linkwright.vision.training.images import LabelledImages, augment, repeat_factors, repeated_indices
 from linkwright.vision.training.learning.initial_weights import load_weights
 from linkwright.vision.training.learning.losses import loss
 from linkwright.vision.training.learning.network import Network, Shape, cells
 from linkwright.vision.training.learning.optimizer import Optimizer
-from linkwright.vision.training.measuring import EVALUATION_LIMITS
 from linkwright.vision.training.options import Options
 
 _WARM_UP_STEPS = 100  # the number of steps over which the learning rate grows to its maximum
@@ -51,7 +51,7 @@ class Epoch:
     evaluation: Evaluation | None
 
 
-class Course:
+class TrainingLoop:
     """The training of a network.
 
     Args:
@@ -165,7 +165,7 @@ class Course:
     def _batch(self, indices: NDArray[np.int64], start: int) -> tuple[Tensor, Tensor]:
         generator = np.random.default_rng((self.options.seed, self.epoch, start))
         view = self.options.view(self.epoch)
-        samples = [augmented(self._training, int(index), view, generator) for index in indices]
+        samples = [augment(self._training, int(index), view, generator) for index in indices]
         max_objects = max([1, *(len(objects) for _, objects in samples)])
         table: NDArray[np.float32] = np.full((len(samples), max_objects, 5), -1, np.float32)
         for row, (_, objects) in zip(table, samples, strict=True):
@@ -244,7 +244,7 @@ class Course:
         torch.save(state, temporary)
         temporary.replace(path)
 
-    def begin_with(self, path: Path) -> None:
+    def load_initial_weights(self, path: Path) -> None:
         """Start from the weights of an ONNX file. See `load_weights`."""
         images, size = self._training.images[:_STATISTICS_IMAGES], self.options.batch
         batches = (_tensor(images[start : start + size], self._device) for start in range(0, len(images), size))

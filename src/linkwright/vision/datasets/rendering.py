@@ -16,10 +16,10 @@ from linkwright.sdf.models import Model
 from linkwright.simulation.rendering.renderer import Channels
 from linkwright.simulation.server.worlds import load_world
 from linkwright.simulation.simulation import Simulation
-from linkwright.vision.datasets.arranging import arrange
-from linkwright.vision.datasets.classes import ClassRules, default_rules, find_objects, own_name, read_classes
+from linkwright.vision.datasets.appearance import Camera, fill_backdrop, paint_surfaces, set_lights
+from linkwright.vision.datasets.arrangement import arrange
+from linkwright.vision.datasets.classes import ClassRules, default_rules, find_objects, original_name, read_classes
 from linkwright.vision.datasets.labels import Label, label_image
-from linkwright.vision.datasets.looks import Camera, fill_backdrop, light, paint
 from linkwright.vision.datasets.options import SPLITS, Options
 from linkwright.vision.datasets.stage import Stage
 
@@ -122,9 +122,9 @@ class Studio:
         stage.begin()
         shot = arrange(stage, options, generator)
         if "lights" not in options.fixed_properties:
-            light(stage, generator)
+            set_lights(stage, generator)
         if "colours" not in options.fixed_properties:
-            paint(stage, shot, generator)
+            paint_surfaces(stage, shot, generator)
         image = stage.renderer.render(shot.optics, shot.pose, Channels.COLOR | Channels.GEOMS)
         assert image.color is not None
         assert image.geoms is not None
@@ -184,10 +184,10 @@ def _share_models(simulations: Sequence[Simulation], rules: ClassRules) -> None:
     """Add the labelled models of each world to all other worlds."""
     models_by_world = [dict(simulation.scene.models) for simulation in simulations]
     for simulation in simulations:
-        model_names = {own_name(scene_model.model) for scene_model in simulation.scene.models.values()}
+        model_names = {original_name(scene_model.model) for scene_model in simulation.scene.models.values()}
         for models in models_by_world:
             for name, held in models.items():
-                model_name = own_name(held.model)
+                model_name = original_name(held.model)
                 if (
                     model_name not in model_names
                     and name not in simulation.scene.models
@@ -200,7 +200,7 @@ def _share_models(simulations: Sequence[Simulation], rules: ClassRules) -> None:
 
 def _is_labelled(name: str, model: Model, rules: ClassRules) -> bool:
     """Return whether a model, or each of its visuals, has a class in the rules."""
-    if rules.class_number(name, own_name(model)) is not None:
+    if rules.class_number(name, original_name(model)) is not None:
         return True
     parts = [f"{name}::{link.name}::{visual.name}" for link in model.links for visual in link.visuals]
     return bool(parts) and all(rules.class_number(part) is not None for part in parts)
