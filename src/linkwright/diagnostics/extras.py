@@ -21,6 +21,7 @@ EXTRAS = {
     "dds": "cyclonedds",
     "diagram": "pygraphviz",
     "image": "PIL",
+    "learn": "winpty",
     "lsp": "pygls",
     "mesh": "trimesh",
     "navigation": "scipy",
