@@ -76,7 +76,11 @@ EXTRAS = {
     "bag": Extra(
         "rosbags", "recordings: `linkwright bag`, recordings in the page", "录制：`linkwright bag`，在页面里回放"
     ),
-    "learn": Extra("pywinpty", "the terminal in the page, on Windows", "页面中的终端（Windows）"),
+    "learn": Extra(
+        "markdown-it-py",
+        "courses: `linkwright learn`; on Windows also the terminal in the page",
+        "课程：`linkwright learn`；在 Windows 上还有页面中的终端",
+    ),
     "lsp": Extra("pygls", "the language server: `linkwright lsp`", "语言服务器：`linkwright lsp`"),
     "image": Extra(
         "pillow", "compressed images in the page, textures in exports", "页面里的压缩图像，导出文件里的纹理"

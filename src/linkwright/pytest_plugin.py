@@ -26,8 +26,8 @@ _LINTER_MARKERS = {
 """Markers of the tests that ``ros2 pkg create`` writes. In ROS the linters' own plugins declare them."""
 
 
-def _offer_stand_ins() -> None:
-    """Add the stand-ins' folder to the path, as with ``PYTHONPATH`` at startup."""
+def offer_stand_ins() -> None:
+    """Make ``rclpy``, messages and so on importable, as ``PYTHONPATH`` does in a shell of Linkwright."""
     if str(_STARTUP) in sys.path:
         return
     sys.path.append(str(_STARTUP))
@@ -37,7 +37,7 @@ def _offer_stand_ins() -> None:
     loader.exec_module(module_from_spec(spec))
 
 
-_offer_stand_ins()  # before pytest imports a conftest.py
+offer_stand_ins()  # before pytest imports a conftest.py
 
 
 def pytest_addoption(pluginmanager: pytest.PytestPluginManager) -> None:

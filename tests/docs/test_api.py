@@ -40,5 +40,6 @@ def test_the_examples_run_in_order(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     assert "position:\n- 0.3\n" in printed
     assert "RIHS01_\nhello\n" in printed
     assert "7200 3600.0 s" in printed
+    assert "120 True" in printed
     assert "error[URDF" in printed
     assert len(names["many"]) == 1000  # type: ignore[arg-type]

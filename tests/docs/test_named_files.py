@@ -21,8 +21,8 @@ PAGES = [
     REPOSITORY / "tests" / "corpus" / "README.md",
 ]
 FOLDERS = (
-    ".github", "benchmarks", "docs", "editors", "frontend/src", "frontend/test", "fuzz", "packaging", "robots", "src",
-    "tests", "tools",
+    ".github", "benchmarks", "courses", "docs", "editors", "frontend/src", "frontend/test", "fuzz", "packaging",
+    "robots", "src", "tests", "tools",
 )  # fmt: skip
 MADE = [line.strip("/") for line in (REPOSITORY / ".gitignore").read_text(encoding="utf-8").split()]
 """What make makes, which a fresh clone lacks."""

@@ -1,6 +1,9 @@
 """The commands of ``linkwright`` that ``linkwright-core`` does not have."""
 
 GROUPS = {
+    "learning": {
+        "learn": "a course from the first link to spoken commands, whose steps are checked",
+    },
     "robot descriptions": {
         "view": "show a URDF or xacro file in the browser, with joint sliders",
         "diagram": "draw links and joints as urdf_to_graphviz does (.gv and PDF or SVG)",

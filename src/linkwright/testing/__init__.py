@@ -14,10 +14,27 @@ from linkwright.testing.stepped import AsyncSteppedGraph
 from linkwright.testing.stepped_sync import SteppedGraph
 
 if TYPE_CHECKING:
+    from linkwright.testing.programs.program import Program
+    from linkwright.testing.programs.threads import BudgetExceededError
     from linkwright.testing.simulated import AsyncSteppedSimulation, SteppedSimulation
 
-__all__ = ["AsyncSteppedGraph", "AsyncSteppedSimulation", "Recording", "SteppedGraph", "SteppedSimulation"]
+__all__ = [
+    "AsyncSteppedGraph",
+    "AsyncSteppedSimulation",
+    "BudgetExceededError",
+    "Program",
+    "Recording",
+    "SteppedGraph",
+    "SteppedSimulation",
+]
 
 
-__getattr__ = deferred(__name__, {"simulated": ("AsyncSteppedSimulation", "SteppedSimulation")})
-"""Imports the names that need the simulation on first use, because that import is slow."""
+__getattr__ = deferred(
+    __name__,
+    {
+        "programs.program": ("Program",),
+        "programs.threads": ("BudgetExceededError",),
+        "simulated": ("AsyncSteppedSimulation", "SteppedSimulation"),
+    },
+)
+"""Imports the names that need the simulation or rclpy on first use, because these imports are slow."""

@@ -33,6 +33,8 @@ from linkwright.testing.stepped_sync import SteppedGraph
 if TYPE_CHECKING:
     from typing_extensions import Self
 
+    from linkwright.simulation.plugins.plugin import SimulatedPlugin
+
 _P = ParamSpec("_P")
 _T = TypeVar("_T")
 
@@ -60,6 +62,7 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
         mass: float = 1.0,
         noise: float = 1.0,
         robot_state_publisher: bool = False,
+        services: bool = True,
         period: float = _PERIOD,
         start: float = 1_700_000_000.0,
         strict: bool = True,
@@ -80,6 +83,7 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
             model = model if mass == 1.0 else with_mass(model, mass)
             self._model = model if noise == 1.0 else with_noise(model, noise)
         self._pose = _transform_from_rpy(pose)
+        self._has_services = services
         self._options = ServerOptions(seed, usual_names=True)
         self._folders = [
             Path.cwd(),
@@ -102,8 +106,11 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
     async def __aexit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        self.server.close()
-        await super().__aexit__(kind, error, trace)
+        try:
+            await self.end_programs(error)
+        finally:
+            self.server.close()
+            await super().__aexit__(kind, error, trace)
 
     def _begin(self) -> None:
         simulation = Simulation(self._loaded_world.world, ResourceFinder(PackageFinder(start=self._folders)))
@@ -111,9 +118,10 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
         self._clock_topic = node.create_publisher(get_message(_CLOCK), "/clock", CLOCK_QOS)
         self._server = SimulationServer(simulation, node, self._options)
         self._server.on_failure.append(self.errors.append)
-        server_node = SteppedNode(node, self._server.exchange, owned=False)
-        self._progress = _Progress(simulation)
-        Services(self._server, self._progress, server_node, self._loaded_world, DescriptionLibrary())
+        self._run_control = _RunControl(simulation)
+        if self._has_services:
+            server_node = SteppedNode(node, self._server.exchange, owned=False)
+            Services(self._server, self._run_control, server_node, self._loaded_world, DescriptionLibrary())
         self._server.start()
         if self._model is not None:
             self._server.spawn(self._model, self._model.name, self._pose)
@@ -175,12 +183,16 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
         Raises:
             Exception: the error of a callback.
         """
-        await self.graph.settle()
-        self.server.exchange.run_commands()
-        self.server.exchange.deliver()
-        await super().settle()
+        await self._settle_world()
+        self._raise_callback_error()
 
     spin = settle
+
+    async def _settle_world(self) -> None:
+        await self._settle_graph()
+        self.server.exchange.run_commands()
+        self.server.exchange.deliver()
+        await self._settle_graph()
 
     async def advance(self, seconds: float) -> None:
         """Advance the time of the simulation and of the graph.
@@ -189,13 +201,17 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
             UnstableError: a value in the simulation is no longer finite.
             Exception: the error of a callback; time has advanced even then.
         """
-        await self.settle()
+        await self._advance(seconds)
+        self._raise_callback_error()
+
+    async def _advance(self, seconds: float) -> None:
+        await self._settle_world()
         self._remaining_ns += round(seconds * NANOSECONDS_PER_SECOND)
         server, simulation = self.server, self.simulation
         while self._remaining_ns > 0:
             server.exchange.run_commands()
             step_ns = min(self._period_ns, self._remaining_ns)
-            if not self._progress.paused:
+            if not self._run_control.is_paused:
                 time_before_ns = simulation.time
                 simulation.advance(step_ns)
                 step_ns = simulation.time - time_before_ns
@@ -203,8 +219,7 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
             await self.clock.advance(step_ns / NANOSECONDS_PER_SECOND, is_settled=True)
             self._publish_time()
             server.exchange.deliver()
-            await self.graph.settle()
-        self._raise_callback_error()
+            await self._settle_graph()
 
     async def reset(self) -> None:
         """Restore the initial state of the world, of simulated time and of the noise.
@@ -274,6 +289,7 @@ class SteppedSimulation(SteppedGraph):
         noise: the factor for the noise of the robot's sensors; 0 for exact measurements.
         robot_state_publisher: whether a robot_state_publisher runs for the robot, which publishes the description and
             the transforms of the links from ``/joint_states``.
+        services: whether the services of a simulator are offered. A program that is judged must not have them.
         period: the time that the world moves between two steps of the graph, in s.
         start: the time of day at the start, in seconds since the epoch.
         strict: whether the step in which a callback fails raises the callback's error; otherwise errors are only
@@ -293,6 +309,7 @@ class SteppedSimulation(SteppedGraph):
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
+        self._run(self._steps.end_programs(error))
         self._steps.server.close()  # The server must close first, because the shutdown of rclpy destroys its nodes.
         super().__exit__(kind, error, trace)
 
@@ -343,6 +360,10 @@ class SteppedSimulation(SteppedGraph):
         """
         return self._steps.robot_pose()
 
+    def world_plugins(self) -> tuple[SimulatedPlugin[object], ...]:
+        """Return the running plugins of the world."""
+        return self._steps.server.world_plugins
+
     def drive(self, linear: float, angular: float = 0.0, topic: str = "/cmd_vel") -> None:
         """Set the commanded velocity of the robot, beginning with the next step.
 
@@ -364,18 +385,18 @@ def _with_world_friction(world: World, friction: float) -> World:
     return replace(world, models=models)
 
 
-class _Progress:
+class _RunControl:
     """The handler of the simulator services that pause the simulation or run single steps."""
 
     def __init__(self, simulation: Simulation) -> None:
-        self.paused = False
+        self.is_paused = False
         self._simulation = simulation
 
     def pause(self) -> None:
-        self.paused = True
+        self.is_paused = True
 
     def resume(self) -> None:
-        self.paused = False
+        self.is_paused = False
 
     def step(self, count: int) -> None:
         self._simulation.advance(count * self._simulation.step)

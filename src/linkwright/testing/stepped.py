@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
@@ -20,6 +21,9 @@ from linkwright.testing.recording import Recording
 
 if TYPE_CHECKING:
     from typing_extensions import Self
+
+    from linkwright.testing.programs.program import Main, Program
+    from linkwright.testing.programs.programs import Programs
 
 _NODE = "test"
 
@@ -66,17 +70,21 @@ class AsyncSteppedGraph:
         self._node: Node | None = None
         self._publishers: dict[str, Publisher[Any]] = {}
         self._clients: dict[str, Client[Any, Any]] = {}
+        self._programs: Programs | None = None
 
     async def __aenter__(self) -> Self:
         self._graph = Graph(clock=self.clock, on_log=self.log.append)
         assert self._graph.dispatcher is not None, "a coroutine runs on a loop"
-        self._graph.dispatcher.on_error = self._failed
+        self._graph.dispatcher.on_error = self._record_error
         return self
 
     async def __aexit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        await self.graph.close()
+        try:
+            await self.end_programs(error)
+        finally:
+            await self.graph.close()
 
     @property
     def graph(self) -> Graph:
@@ -108,6 +116,29 @@ class AsyncSteppedGraph:
         """
         return self.graph.create_node(name, **options)
 
+    def start_program(self, main: Main, args: Sequence[str] = (), *, budget: float = 30.0, seed: int = 0) -> Program:
+        """Start a program in the graph. See `SteppedGraph.start_program`."""
+        if self._programs is None:
+            from linkwright.testing.programs.programs import Programs
+
+            self._programs = Programs(self.graph, self.clock, self.errors.append)
+        return self._programs.start(main, args, budget, seed)
+
+    async def end_programs(self, error: BaseException | None = None) -> None:
+        """Interrupt the programs that are running, and let them end. See `SteppedGraph.start_program`.
+
+        Args:
+            error: the error that ends the test, which takes precedence over those of programs.
+
+        Raises:
+            Exception: the error of a program that failed while it ended.
+        """
+        if self._programs is not None:
+            count = len(self.errors)
+            await self._programs.end(self._advance)
+            if self._strict and error is None and len(self.errors) > count:
+                raise self.errors.pop(count)
+
     def record(self, topic: str, msg_type: Any = None) -> Recording:
         """Record the messages that are published on a topic from now on.
 
@@ -134,7 +165,7 @@ class AsyncSteppedGraph:
         Raises:
             Exception: the error of a callback.
         """
-        await self.graph.settle()
+        await self._settle_graph()
         self._raise_callback_error()
 
     spin = settle
@@ -147,7 +178,7 @@ class AsyncSteppedGraph:
         Raises:
             Exception: the error of a callback; time has advanced even then.
         """
-        await self.clock.advance(seconds)
+        await self._advance(seconds)
         self._raise_callback_error()
 
     async def call(self, service: str, request: Any, *, timeout: float = 0.0) -> Any:
@@ -175,6 +206,14 @@ class AsyncSteppedGraph:
             raise TimeoutError(f"service '{client.srv_name}' has not responded within {timeout:g} s")
         return future.result()
 
+    async def _advance(self, seconds: float) -> None:
+        await self.clock.advance(seconds)
+
+    async def _settle_graph(self) -> None:
+        await self.graph.settle()
+        if self._programs is not None:
+            await self._programs.settle()
+
     def _service_client(self, service: str) -> Client[Any, Any]:
         name = self.node.resolve_service_name(service)
         client = self._clients.get(name)
@@ -185,7 +224,7 @@ class AsyncSteppedGraph:
             client = self._clients[name] = self.node.create_client(types[name][0], name)
         return client
 
-    def _failed(self, entity: Entity, error: BaseException) -> None:
+    def _record_error(self, entity: Entity, error: BaseException) -> None:
         entity.report(error)
         self.errors.append(error)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+from collections.abc import Sequence
 from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
@@ -14,6 +15,7 @@ if TYPE_CHECKING:
     from typing_extensions import Self
 
     from linkwright.standins.rclpy_api.context import Context
+    from linkwright.testing.programs.program import Main, Program
 
 
 class SteppedGraph:
@@ -65,6 +67,7 @@ class SteppedGraph:
     ) -> None:
         assert self._loop is not None, "it was entered"
         try:
+            self._run(self._steps.end_programs(error))
             if self._context is not None:
                 from linkwright.standins.rclpy_api.session import try_shutdown
 
@@ -107,7 +110,7 @@ class SteppedGraph:
         return self._steps.now
 
     def init_rclpy(self, args: list[str] | None = None) -> Context:
-        """Initialise rclpy with the test's graph until the end of the test.
+        """Initialize rclpy with the test's graph until the end of the test.
 
         Args:
             args: the command line, with ROS arguments; None for an empty command line.
@@ -119,6 +122,31 @@ class SteppedGraph:
 
         self._context = use_graph(self.graph, args or [])
         return self._context
+
+    def start_program(self, main: Main, args: Sequence[str] = (), *, budget: float = 30.0, seed: int = 0) -> Program:
+        """Start a program: a file with ``rclpy.init()`` and ``rclpy.spin(node)``, or a loop with ``time.sleep``.
+
+        The program runs in threads of its own, but only in the steps of the graph, and until all its threads wait.
+        Executors, ``time.sleep``, rates, locks, events, queues, futures and asyncio give control back to the graph. The
+        modules ``time`` and ``rclpy`` tell the program the time of the graph, so its results are bit-identical in each
+        run. Several programs may run in a graph. Each has its own default context of rclpy and its own ``sys.argv``.
+
+        If an exception ends a program, the step in which it happens raises it. At the end of the test, programs
+        receive Ctrl-C, and have 5 s of simulated time to end.
+
+        Args:
+            main: the path of a file, which runs as with ``python FILE``; the name of a module whose ``main`` is called;
+                or a function.
+            args: the command line without the name of the program, with ROS arguments such as
+                ``["--ros-args", "-p", "use_sim_time:=true"]``.
+            budget: the longest time for which a program may compute without waiting, in seconds of the computer's
+                clock. After it, the step raises a `BudgetExceededError` with file and line.
+            seed: the seed of the modules ``random`` and ``numpy.random`` at the start.
+
+        Raises:
+            OSError: the file cannot be read.
+        """
+        return self._steps.start_program(main, args, budget=budget, seed=seed)
 
     def create_node(self, name: str, **options: Any) -> Node:
         """Create a node in the graph.

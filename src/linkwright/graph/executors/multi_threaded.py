@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+import queue
 import threading
 import time
 import warnings
 from collections import deque
 from collections.abc import Callable
 from functools import partial
-from queue import SimpleQueue
 from typing import Any
 
 from linkwright.graph.executors.base import Context, SpinningExecutor, deadline_after
@@ -136,7 +136,7 @@ class Workers:
         self._limit = limit
         self._on_idle = on_idle
         self._name = name
-        self._jobs: SimpleQueue[Callable[[], None] | None] = SimpleQueue()
+        self._jobs: queue.SimpleQueue[Callable[[], None] | None] = queue.SimpleQueue()
         self._threads: list[threading.Thread] = []
         self._lock = threading.Lock()
         self._unfinished_count = 0

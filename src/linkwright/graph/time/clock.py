@@ -85,8 +85,13 @@ class Timebase(ABC):
 class SystemClock(Timebase):
     """The computer's clocks: system time, and the monotonic time that event loops use as well."""
 
-    now_ns = staticmethod(time.time_ns)
-    steady_ns = staticmethod(time.monotonic_ns)
+    def now_ns(self) -> int:
+        """Return the computer's time, in nanoseconds since the epoch."""
+        return time.time_ns()
+
+    def steady_ns(self) -> int:
+        """Return the computer's monotonic time, in nanoseconds."""
+        return time.monotonic_ns()
 
     def call_at(self, loop: AbstractEventLoop, steady_ns: int, callback: Callable[[], None]) -> Alarm:
         """Schedule a callback on an event loop, with microsecond precision where possible."""
@@ -120,10 +125,8 @@ class JumpClock(Timebase):
         return self._steady_ns
 
     def call_at(self, loop: AbstractEventLoop, steady_ns: int, callback: Callable[[], None]) -> Alarm:
-        """Schedule a callback for the moment when the clock is advanced to a steady time."""
-        alarm = ScheduledAlarm(steady_ns, next(self._numbers), callback)
-        heapq.heappush(self._alarms, alarm)
-        return alarm
+        """Schedule a callback for the moment when the clock is advanced to a steady time. See `schedule`."""
+        return self.schedule(steady_ns, callback)
 
     def attach(self, dispatcher: SettlingDispatcher) -> None:
         """Add a dispatcher, which finishes its work before each step of the clock."""
@@ -148,6 +151,12 @@ class JumpClock(Timebase):
                 alarm.callback()
                 await self._settle()
         self._move_to(end_ns)
+
+    def schedule(self, steady_ns: int, callback: Callable[[], None]) -> Alarm:
+        """Schedule a callback for the moment when the clock is advanced to a steady time."""
+        alarm = ScheduledAlarm(steady_ns, next(self._numbers), callback)
+        heapq.heappush(self._alarms, alarm)
+        return alarm
 
     def jump(self, seconds: float) -> None:
         """Move system time forward or back, as when the system clock is corrected.

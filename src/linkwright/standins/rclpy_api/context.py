@@ -21,6 +21,7 @@ from linkwright.graph.faults import RclError
 from linkwright.standins.rclpy_api import logging
 from linkwright.standins.rclpy_api.errors import RCLInvalidROSArgsError, UnknownROSArgsError
 from linkwright.standins.rclpy_api.signals import shut_down_on_signal
+from linkwright.standins.rclpy_api.state import current_state
 
 if TYPE_CHECKING:
     from typing_extensions import Self
@@ -28,13 +29,12 @@ if TYPE_CHECKING:
     from linkwright.wire.background import BackgroundTransport
 
 _MAX_JOIN_WAIT_S = 3.0
-_open_contexts: weakref.WeakSet[Context] = weakref.WeakSet()
 
 
 class Context:
-    """A graph with its nodes, from initialisation to shutdown.
+    """A graph with its nodes, from initialization to shutdown.
 
-    A context can be initialised only once.
+    A context can be initialized only once.
 
     Args:
         graph: an existing graph, which is closed with the context.
@@ -62,7 +62,7 @@ class Context:
 
     @property
     def handle(self) -> Context | None:
-        """The context itself, for ``with context.handle``, or None before initialisation."""
+        """The context itself, for ``with context.handle``, or None before initialization."""
         return self if self._initialized else None
 
     @property
@@ -85,7 +85,7 @@ class Context:
     def init(
         self, args: Sequence[str] | None = None, *, initialize_logging: bool = True, domain_id: int | None = None
     ) -> None:
-        """Initialise the context.
+        """Initialize the context.
 
         Args:
             args: the command line; None for ``sys.argv``.
@@ -94,14 +94,15 @@ class Context:
                 set.
 
         Raises:
-            RuntimeError: the domain ID is negative, or the context was initialised before.
+            RuntimeError: the domain ID is negative, or the context was initialized before.
             UnknownROSArgsError: there are unknown ROS arguments.
             RCLInvalidROSArgsError: a ROS argument is malformed.
             RclError: security is enforced (``ROS_SECURITY_STRATEGY``), which is not supported.
         """
         if domain_id is not None and domain_id < 0:
             raise RuntimeError(f"Domain id ({domain_id}) should not be lower than zero.")
-        if self._graph is None:
+        joins_network = self._graph is None and current_state().create_graph is None
+        if joins_network:
             _check_security()
         with self._lock:
             if self._initialized:
@@ -109,22 +110,22 @@ class Context:
             self.ros_arguments = read_ros_arguments(sys.argv if args is None else args)
             print_diagnostics([finding for _, finding in self.ros_arguments.parameters.left_out], sys.stderr)
             self._domain_id = domain_id
-            if initialize_logging and not logging.is_configured():
+            if initialize_logging and joins_network and not logging.is_configured():
                 self._logging = set_up(self.ros_arguments, Path(sys.argv[0]).stem or "python3", logging.LEVELS)
                 logging.write_to(self._logging.sink)
             self._initialized = self._ok = True
-        _open_contexts.add(self)
+        current_state().open_contexts.add(self)
         shut_down_on_signal(self)
 
     def ok(self) -> bool:
-        """Return whether the context is initialised and not shut down."""
+        """Return whether the context is initialized and not shut down."""
         return self._ok
 
     def get_domain_id(self) -> int:
         """Return the domain ID of the network.
 
         Raises:
-            RuntimeError: the context is not initialised.
+            RuntimeError: the context is not initialized.
         """
         if not self._initialized:
             raise RuntimeError("Context must be initialized before it can have a domain id")
@@ -154,7 +155,7 @@ class Context:
         """Shut the context down: executors stop spinning, and the nodes leave the graph.
 
         Raises:
-            RclError: the context was not initialised, or was already shut down, unless a signal did this.
+            RclError: the context was not initialized, or was already shut down, unless a signal did this.
         """
         if not self._initialized:
             raise RclError("Context must be initialized before it can be shutdown")
@@ -164,7 +165,7 @@ class Context:
         self._complete_shutdown()
 
     def try_shutdown(self) -> None:
-        """Shut the context down, unless it is not initialised or already shut down."""
+        """Shut the context down, unless it is not initialized or already shut down."""
         if self._initialized and (self._ok or self._was_ended_by_signal):
             self.shutdown()
 
@@ -204,7 +205,7 @@ class Context:
             logging.shutdown()
             self._logging.close()
             self._logging = None
-        _open_contexts.discard(self)
+        current_state().open_contexts.discard(self)
 
     def _notify(self) -> None:
         callbacks, self._callbacks = self._callbacks, []
@@ -214,6 +215,9 @@ class Context:
                 callback()
 
     def _create_graph(self) -> Graph:
+        create_graph = current_state().create_graph
+        if create_graph is not None:
+            return create_graph()
         from linkwright.wire.joining import join
 
         graph = Graph(threads=True, on_log=logging.write, levels=logging.LEVELS)
@@ -251,7 +255,7 @@ def read_ros_arguments(arguments: Sequence[str]) -> RosArguments:
 
 
 def _shut_down_all() -> None:
-    for context in tuple(_open_contexts):
+    for context in tuple(current_state().open_contexts):
         context.try_shutdown()
 
 

@@ -8,15 +8,12 @@ from typing import TYPE_CHECKING
 
 from linkwright.graph.faults import NotInitializedError, RclError
 from linkwright.standins.rclpy_api.context import Context
+from linkwright.standins.rclpy_api.state import current_state
 
 if TYPE_CHECKING:
     from linkwright.graph import Graph
 
 _lock = threading.RLock()
-
-
-class _DefaultState:
-    context: Context | None = None
 
 
 def get_default_context(*, shutting_down: bool = False) -> Context:
@@ -30,30 +27,33 @@ def get_default_context(*, shutting_down: bool = False) -> Context:
         RclError: `shutting_down` is True, and there is no default context.
     """
     with _lock:
+        state = current_state()
         if shutting_down:
-            if _DefaultState.context is None:
+            if state.default_context is None:
                 raise RclError(
                     "Context must be initialized before it can be shutdown: rclpy.init() has not been called"
                 )
-            context, _DefaultState.context = _DefaultState.context, None
-            return context
-        if _DefaultState.context is None:
-            _DefaultState.context = Context()
-        return _DefaultState.context
+            previous_context: Context = state.default_context
+            state.default_context = None
+            return previous_context
+        if state.default_context is None:
+            state.default_context = Context()
+        context: Context = state.default_context
+        return context
 
 
 def has_default_context() -> bool:
     """Return whether a default context was created and has not been shut down."""
-    return _DefaultState.context is not None
+    return current_state().default_context is not None
 
 
 def is_default(context: Context | None) -> bool:
     """Return whether a context is the default context or None."""
-    return context is None or context is _DefaultState.context
+    return context is None or context is current_state().default_context
 
 
 def use_graph(graph: Graph, args: Sequence[str]) -> Context:
-    """Initialise the default context with an existing graph, as `linkwright.testing` does.
+    """Initialize the default context with an existing graph, as `linkwright.testing` does.
 
     The graph is closed with the context.
 
@@ -62,17 +62,18 @@ def use_graph(graph: Graph, args: Sequence[str]) -> Context:
         args: the command line.
 
     Raises:
-        RuntimeError: the default context is already initialised.
+        RuntimeError: the default context is already initialized.
     """
     with _lock:
-        if _DefaultState.context is not None and _DefaultState.context.ok():
+        state = current_state()
+        if state.default_context is not None and state.default_context.ok():
             raise RuntimeError("rclpy.init() has been called already")
-        context = _DefaultState.context = Context(graph)
+        context = state.default_context = Context(graph)
     context.init(args, initialize_logging=False)
     return context
 
 
 def check_initialized(context: Context, action: str) -> None:
-    """Raise NotInitializedError unless a context is initialised and not shut down."""
+    """Raise NotInitializedError unless a context is initialized and not shut down."""
     if not context.ok():
         raise NotInitializedError(action)

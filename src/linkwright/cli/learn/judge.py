@@ -1,0 +1,155 @@
+"""``linkwright learn exercises``, ``judge`` and ``world``: exercises that a judge scores in simulated worlds."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from contextlib import redirect_stdout
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING
+
+from linkwright.cli.simulation_options import add_simulation_options
+from linkwright.cli.view import add_viewer_options
+from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, phrase
+from linkwright.diagnostics.translation import language, localized
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from linkwright.learning.judging.exercise import Exercise
+    from linkwright.learning.judging.running import RunResult
+
+_PASS_SCORE = 50.0
+
+
+def configure_exercises(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments of ``learn exercises``."""
+    parser.add_argument("exercise", metavar="EXERCISE", nargs="?", help="print the text of an exercise")
+
+
+def run_exercises(arguments: argparse.Namespace) -> int:
+    """List the exercises, or print the text of one."""
+    from linkwright.learning.judging.exercise import exercise_names, find_exercise
+
+    if arguments.exercise is not None:
+        print(find_exercise(arguments.exercise).text(language()))
+        return 0
+    for name in exercise_names():
+        exercise = find_exercise(name)
+        minutes = localized(phrase("{minutes} min", minutes=exercise.minutes))
+        print(f"{name:<20} {'*' * exercise.difficulty:<5} {minutes:>7}  {exercise.title.get(language())}")
+    return 0
+
+
+def configure_judge(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments of ``learn judge``."""
+    parser.add_argument("exercise", metavar="EXERCISE", help="an exercise by its name, or the folder of one")
+    parser.add_argument(
+        "program", metavar="PROGRAM", nargs="?", type=Path, help="the program to judge (default: EXERCISE.py)"
+    )
+    parser.add_argument(
+        "--seeds",
+        metavar="N",
+        type=int,
+        default=3,
+        help="the number of runs, which differ in their worlds (default: 3)",
+    )
+    parser.add_argument("--start", action="store_true", help="create PROGRAM from the template of the exercise")
+    parser.add_argument("--json", action="store_true", help="print the result as JSON, in all languages")
+
+
+def run_judge(arguments: argparse.Namespace) -> int:
+    """Judge a program, and return 1 if its mean score is below 50."""
+    from linkwright.learning.judging.exercise import find_exercise
+    from linkwright.learning.judging.running import judge_program
+
+    exercise = find_exercise(arguments.exercise)
+    program = arguments.program or Path(f"{exercise.id}.py")
+    if arguments.start:
+        return _copy_template(exercise, program)
+    if not program.is_file():
+        raise LinkwrightError(
+            Diagnostic(
+                "LEARN142",
+                phrase("there is no program '{path}'", path=display_path(program)),
+                hint=phrase("create it from the template of the exercise with --start"),
+            )
+        )
+    if arguments.seeds < 1:
+        raise LinkwrightError(Diagnostic("LEARN143", phrase("--seeds must be at least 1")))
+    results: list[RunResult] = []
+    with redirect_stdout(sys.stderr):  # where the program prints
+        for result in judge_program(exercise, program, range(arguments.seeds)):
+            results.append(result)
+            if not arguments.json:
+                print(_run_line(exercise, result), flush=True)
+    mean = round(sum(result.score for result in results) / len(results), 1)
+    if arguments.json:
+        data = {"exercise": exercise.id, "score": mean, "runs": [result.to_data() for result in results]}
+        print(json.dumps(data, ensure_ascii=False))
+    else:
+        _print_table(exercise, results, mean)
+    return 0 if mean >= _PASS_SCORE else 1
+
+
+def configure_world(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments of ``learn world``."""
+    parser.add_argument("exercise", metavar="EXERCISE", help="an exercise by its name, or the folder of one")
+    parser.add_argument("--seed", metavar="N", type=int, default=0, help="the seed of the world (default: 0)")
+    add_simulation_options(parser)
+    add_viewer_options(parser)
+
+
+def run_world(arguments: argparse.Namespace) -> int:
+    """Simulate the world of an exercise in real time, with its robot and its judge."""
+    from linkwright.cli.command import parser_for
+    from linkwright.cli.sim import run
+    from linkwright.learning.judging.exercise import find_exercise
+    from linkwright.learning.judging.world import write_world
+    from linkwright.packages import PackageFinder
+
+    exercise = find_exercise(arguments.exercise)
+    with TemporaryDirectory(prefix="linkwright-exercise-") as folder:
+        arrangement = write_world(exercise, arguments.seed, Path(folder), publishes=True)
+        words = [str(arrangement.world)]
+        if exercise.robot:
+            words.append(str(PackageFinder(start=[exercise.folder]).resolve(exercise.robot, exercise.folder)))
+            words += [f"{name}:={str(value).lower()}" for name, value in exercise.arguments.items()]
+        simulated = parser_for("sim").parse_args(words)
+        vars(simulated).update(vars(arguments))
+        simulated.x, simulated.y, simulated.z, _, _, simulated.Y = arrangement.pose
+        return run(simulated)
+
+
+def _copy_template(exercise: Exercise, program: Path) -> int:
+    if program.exists():
+        raise LinkwrightError(Diagnostic("LEARN144", phrase("'{path}' exists and is kept", path=display_path(program))))
+    program.write_text(exercise.template.read_text(encoding="utf-8"), encoding="utf-8")
+    print(display_path(program))
+    return 0
+
+
+def _run_line(exercise: Exercise, result: RunResult) -> str:
+    return localized(phrase("seed {seed}: {figure}", seed=result.seed, figure=_figure(exercise, result)))
+
+
+def _figure(exercise: Exercise, result: RunResult) -> str:
+    figure = exercise.figure
+    value = f"{result.data['figure']:.{figure.decimals}f} {figure.unit}".strip()
+    return value if result.data["is_solved"] else f"({value})"
+
+
+def _print_table(exercise: Exercise, results: Sequence[RunResult], mean: float) -> None:
+    lang = language()
+    print(exercise.title.get(lang))
+    for result in results:
+        print(f"  {result.seed:>3}  {_figure(exercise, result):>12}  {result.score:>6.1f}")
+        for reason in result.data["reasons"]:
+            print(f"         {reason.get(lang) or reason['en']}")
+        if result.error is not None:
+            print("".join(f"         {line}\n" for line in result.error.rstrip().splitlines()), end="")
+    print(
+        localized(phrase("{name}: mean score {score} of 100", name=exercise.figure.name.get(lang), score=f"{mean:.1f}"))
+    )

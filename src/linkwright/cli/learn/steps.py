@@ -1,0 +1,159 @@
+"""``linkwright learn list``, ``show``, ``check``, ``answer``, ``hint`` and ``solution``: a course in the terminal."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from linkwright.diagnostics import display_path, phrase
+from linkwright.diagnostics.translation import language, localized
+
+if TYPE_CHECKING:
+    from linkwright.learning.classroom import Classroom
+    from linkwright.learning.course import Step
+
+_PASSED, _MISSING = "✓", "✗"
+
+
+def _add_workspace(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "-C",
+        "--workspace",
+        metavar="FOLDER",
+        type=Path,
+        help="the workspace (default: the folder with a learn.yaml at or above the current one)",
+    )
+    parser.add_argument("--course", metavar="COURSE", help="a shipped course by its name, or the folder of a course")
+
+
+def _add_step(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("step", metavar="STEP", nargs="?", help="the step (default: the first that is not passed)")
+
+
+def _open(arguments: argparse.Namespace) -> Classroom:
+    from linkwright.learning.classroom import enclosing_workspace, open_classroom
+
+    workspace = arguments.workspace or enclosing_workspace(Path.cwd())
+    return open_classroom(workspace.absolute(), arguments.course)
+
+
+def _step(classroom: Classroom, arguments: argparse.Namespace) -> Step:
+    return classroom.current_step if arguments.step is None else classroom.course.find_step(arguments.step)
+
+
+def configure_list(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments of ``learn list``."""
+    _add_workspace(parser)
+
+
+def run_list(arguments: argparse.Namespace) -> int:
+    """Print the lessons and steps of the course."""
+    classroom = _open(arguments)
+    lang = language()
+    print(classroom.course.title.get(lang))
+    for lesson in classroom.course.lessons:
+        print(f"\n{lesson.id}: {lesson.title.get(lang)}")
+        for step in lesson.steps:
+            passed = classroom.progress.step(step.address).passed is not None
+            print(f"  {_PASSED if passed else ' '} {step.id}: {step.title.get(lang)}")
+    return 0
+
+
+def configure_show(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments of ``learn show``."""
+    _add_step(parser)
+    _add_workspace(parser)
+
+
+def run_show(arguments: argparse.Namespace) -> int:
+    """Print the text of a step."""
+    classroom = _open(arguments)
+    step = _step(classroom, arguments)
+    copied = classroom.open_step(step)
+    text = step.text(language())
+    if step.id == step.lesson.steps[0].id:
+        lesson = step.lesson.texts.get(language()) or next(iter(step.lesson.texts.values()))
+        print(f"# {lesson.title}\n\n{lesson.introduction}\n")
+    print(f"## {text.title}\n\n{text.body}")
+    for path in copied:
+        print(localized(phrase("created {path}", path=display_path(path))), file=sys.stderr)
+    return 0
+
+
+def configure_check(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments of ``learn check``."""
+    _add_step(parser)
+    _add_workspace(parser)
+    parser.add_argument("--json", action="store_true", help="print the result as JSON, in all languages")
+
+
+def run_check(arguments: argparse.Namespace) -> int:
+    """Check a step, and return 1 if it is not passed."""
+    classroom = _open(arguments)
+    step = _step(classroom, arguments)
+    result = classroom.check(step)
+    if arguments.json:
+        print(json.dumps(result.to_data(), ensure_ascii=False))
+        return 0 if result.passed else 1
+    lang = language()
+    print(f"{step.address}: {step.title.get(lang)}")
+    for check in result.checks:
+        print(f"  {_PASSED if check.passed else _MISSING} {check.title.get(lang)}")
+        if check.message is not None:
+            print(f"      {check.message.get(lang)}")
+    if result.passed:
+        following = classroom.current_step
+        if following.address != step.address:
+            print(localized(phrase("passed; the next step is {step}", step=following.address)))
+        return 0
+    return 1
+
+
+def configure_answer(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments of ``learn answer``."""
+    parser.add_argument("step", metavar="STEP", help="the step")
+    parser.add_argument("number", metavar="NUMBER", help="the number that you measured")
+    _add_workspace(parser)
+    parser.set_defaults(json=False)
+
+
+def run_answer(arguments: argparse.Namespace) -> int:
+    """Note an answer, and check the step."""
+    classroom = _open(arguments)
+    classroom.answer(classroom.course.find_step(arguments.step), arguments.number)
+    return run_check(arguments)
+
+
+def configure_hint(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments of ``learn hint``."""
+    _add_step(parser)
+    _add_workspace(parser)
+
+
+def run_hint(arguments: argparse.Namespace) -> int:
+    """Print the hints taken so far and the next one."""
+    classroom = _open(arguments)
+    step = _step(classroom, arguments)
+    hints = step.text(language()).hints
+    if not hints:
+        print(localized(phrase("the step '{step}' has no hints", step=step.address)), file=sys.stderr)
+        return 0
+    print("\n\n".join(hints[: classroom.take_hint(step)]))
+    return 0
+
+
+def configure_solution(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments of ``learn solution``."""
+    _add_step(parser)
+    _add_workspace(parser)
+
+
+def run_solution(arguments: argparse.Namespace) -> int:
+    """Copy the solution of a step into the workspace."""
+    classroom = _open(arguments)
+    for path in classroom.take_solution(_step(classroom, arguments)):
+        print(display_path(path))
+    return 0

@@ -1,0 +1,353 @@
+"""Robots of the learner, as checks see them: links, joints, poses and shapes, however they were written."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.diagnostics import Phrase, nearest, phrase, quoted_names
+from linkwright.geometry.arrays import matrix_from_pose, row_from_pose
+from linkwright.geometry.shapes import Box, Cylinder, Sphere
+from linkwright.kinematics.tree import KinematicTree
+from linkwright.learning.checks.not_yet import NotYet
+from linkwright.urdf.model import Collision, Joint, Link, Mesh, Robot, Visual
+
+Vector = Sequence[float]
+Part = Literal["visual", "collision"]
+
+_LENGTH_TOLERANCE = 0.001
+"""The difference between lengths and positions that checks accept, in m."""
+
+_ANGLE_TOLERANCE = 0.02
+"""The difference between directions that checks accept, in rad: 1.57 instead of pi/2 passes."""
+
+_COLOR_TOLERANCE = 0.15
+
+
+@dataclass(frozen=True)
+class ShapeSpec:
+    """A shape that a check expects.
+
+    Attributes:
+        shape: the shape with its size in m.
+        along: the direction of a cylinder's axis in the link's frame; None for any direction.
+        at: the position of its center in the link's frame, in m; None for any position.
+    """
+
+    shape: Box | Cylinder | Sphere
+    along: Vector | None = None
+    at: Vector | None = None
+
+
+class RobotCheck:
+    """A robot of the learner.
+
+    Attributes:
+        robot: the robot.
+        path: the file that it was read from.
+    """
+
+    def __init__(self, robot: Robot, path: Path) -> None:
+        self.robot = robot
+        self.path = path
+
+    def link(self, name: str) -> LinkCheck:
+        """Return a link.
+
+        Raises:
+            NotYet: there is no link with this name.
+        """
+        link = self.robot.links.get(name)
+        if link is None:
+            raise NotYet(_missing("link", name, self.robot.links))
+        return LinkCheck(link)
+
+    def joint(self, name: str) -> JointCheck:
+        """Return a joint.
+
+        Raises:
+            NotYet: there is no joint with this name.
+        """
+        joint = self.robot.joints.get(name)
+        if joint is None:
+            raise NotYet(_missing("joint", name, self.robot.joints))
+        return JointCheck(joint)
+
+    def pose(self, link: str, frame: str | None = None) -> NDArray[np.float64]:
+        """Return the pose of a link's frame with all joints at zero.
+
+        Args:
+            link: the link.
+            frame: the link whose frame is the reference; None for the root link.
+
+        Returns:
+            The homogeneous matrix of shape (4, 4), in m.
+
+        Raises:
+            NotYet: there is no link with this name.
+        """
+        self.link(link)
+        tree, frames = self._frames
+        pose: NDArray[np.float64] = frames[tree.link_index(link)]
+        if frame is None:
+            return pose
+        self.link(frame)
+        return np.asarray(np.linalg.inv(frames[tree.link_index(frame)]) @ pose)
+
+    def expect_position(
+        self, link: str, position: Vector, *, frame: str | None = None, tolerance: float = _LENGTH_TOLERANCE
+    ) -> None:
+        """Require a link's frame to be at a position with all joints at zero.
+
+        Args:
+            link: the link.
+            position: x, y and z in m.
+            frame: the link whose frame is the reference; None for the root link.
+            tolerance: the greatest distance that passes, in m.
+
+        Raises:
+            NotYet: the link is missing or elsewhere.
+        """
+        actual = self.pose(link, frame)[:3, 3]
+        if np.linalg.norm(actual - np.asarray(position)) > tolerance:
+            raise NotYet(
+                phrase(
+                    "the frame of '{link}' is at {actual} in the frame of '{frame}', but should be at {expected}",
+                    link=link,
+                    actual=_vector_text(actual),
+                    frame=frame or self.robot.root,
+                    expected=_vector_text(position),
+                )
+            )
+
+    @cached_property
+    def _frames(self) -> tuple[KinematicTree, NDArray[np.float64]]:
+        tree = KinematicTree(self.robot)
+        return tree, np.asarray(tree.forward({}))
+
+
+class JointCheck:
+    """A joint of the learner's robot.
+
+    Attributes:
+        joint: the joint.
+    """
+
+    def __init__(self, joint: Joint) -> None:
+        self.joint = joint
+
+    def expect_type(self, *types: str) -> None:
+        """Require the joint to have one of the given types.
+
+        Raises:
+            NotYet: it has another type.
+        """
+        if self.joint.type not in types:
+            raise NotYet(
+                phrase(
+                    "the joint '{joint}' has the type '{actual}', but should be {expected}",
+                    joint=self.joint.name,
+                    actual=str(self.joint.type),
+                    expected=quoted_names(types, " or "),
+                )
+            )
+
+    def expect_links(self, parent: str, child: str) -> None:
+        """Require the joint to connect two links.
+
+        Raises:
+            NotYet: it connects other links.
+        """
+        if (self.joint.parent, self.joint.child) == (parent, child):
+            return
+        if (self.joint.parent, self.joint.child) == (child, parent):
+            raise NotYet(
+                phrase(
+                    "the joint '{joint}' has parent and child exchanged: the parent is '{parent}'",
+                    joint=self.joint.name,
+                    parent=parent,
+                )
+            )
+        raise NotYet(
+            phrase(
+                "the joint '{joint}' connects '{actual_parent}' and '{actual_child}', but should connect '{parent}' "
+                "and '{child}'",
+                joint=self.joint.name,
+                actual_parent=self.joint.parent,
+                actual_child=self.joint.child,
+                parent=parent,
+                child=child,
+            )
+        )
+
+    def expect_axis(self, axis: Vector, *, either_sign: bool = False) -> None:
+        """Require the joint to turn about, or move along, an axis of its frame.
+
+        Args:
+            axis: the direction.
+            either_sign: whether the opposite direction passes, too.
+
+        Raises:
+            NotYet: the axis is another one.
+        """
+        if _angle(self.joint.axis, axis, either_sign=either_sign) <= _ANGLE_TOLERANCE:
+            return
+        if _angle(self.joint.axis, axis, either_sign=True) <= _ANGLE_TOLERANCE:
+            raise NotYet(phrase("the axis of the joint '{joint}' has the wrong sign", joint=self.joint.name))
+        raise NotYet(
+            phrase(
+                "the axis of the joint '{joint}' is {actual}, but should be {expected}",
+                joint=self.joint.name,
+                actual=_vector_text(self.joint.axis),
+                expected=_vector_text(axis),
+            )
+        )
+
+
+class LinkCheck:
+    """A link of the learner's robot.
+
+    Attributes:
+        link: the link.
+    """
+
+    def __init__(self, link: Link) -> None:
+        self.link = link
+
+    def expect_shape(self, expected: ShapeSpec, part: Part = "visual") -> None:
+        """Require the link to have a shape of a size.
+
+        Other shapes of the link do not matter.
+
+        Args:
+            expected: the shape.
+            part: whether it is a visual or a collision.
+
+        Raises:
+            NotYet: no visual or collision is this shape.
+        """
+        parts: Sequence[Visual | Collision] = self.link.visuals if part == "visual" else self.link.collisions
+        if not parts:
+            raise NotYet(phrase("the link '{link}' has no <{part}>", link=self.link.name, part=part))
+        objections = [objection for candidate in parts if (objection := _object_to(candidate, expected)) is not None]
+        if len(objections) == len(parts):
+            raise NotYet(
+                phrase("the {part} of '{link}': {reason}", part=part, link=self.link.name, reason=objections[0])
+            )
+
+    def expect_color(self, rgb: Vector) -> None:
+        """Require a visual of the link to have a color.
+
+        Args:
+            rgb: red, green and blue from 0 to 1.
+
+        Raises:
+            NotYet: no visual has the color.
+        """
+        colors = [visual.material.rgba for visual in self.link.visuals if visual.material and visual.material.rgba]
+        if not colors:
+            raise NotYet(phrase("the visual of '{link}' has no color", link=self.link.name))
+        if all(np.abs(np.subtract(color[:3], rgb)).max() > _COLOR_TOLERANCE for color in colors):
+            raise NotYet(
+                phrase(
+                    "the visual of '{link}' has the color {actual}, but should have {expected}",
+                    link=self.link.name,
+                    actual=_vector_text(colors[0][:3]),
+                    expected=_vector_text(rgb),
+                )
+            )
+
+    def expect_mass(self, lowest: float, highest: float) -> None:
+        """Require the link's mass to be in a range.
+
+        Args:
+            lowest: the smallest mass that passes, in kg.
+            highest: the greatest mass that passes, in kg.
+
+        Raises:
+            NotYet: the link has no mass, or another one.
+        """
+        if self.link.inertial is None:
+            raise NotYet(phrase("the link '{link}' has no <{part}>", link=self.link.name, part="inertial"))
+        mass = self.link.inertial.mass
+        if not lowest <= mass <= highest:
+            raise NotYet(
+                phrase(
+                    "the mass of '{link}' is {mass:g} kg, but should be between {lowest:g} and {highest:g} kg",
+                    link=self.link.name,
+                    mass=mass,
+                    lowest=lowest,
+                    highest=highest,
+                )
+            )
+
+
+def _object_to(part: Visual | Collision, expected: ShapeSpec) -> Phrase | None:
+    """Return what distinguishes a part from the expected shape, or None if nothing does."""
+    shape = part.geometry
+    if isinstance(shape, Mesh) or type(shape) is not type(expected.shape):
+        return phrase(
+            "it is a {actual}, but should be a {expected}", actual=_kind(shape), expected=_kind(expected.shape)
+        )
+    for name, actual, wanted in _sizes(shape, expected.shape):
+        if abs(actual - wanted) > _LENGTH_TOLERANCE:
+            return phrase(
+                "its {size} is {actual:g} m, but should be {expected:g} m", size=name, actual=actual, expected=wanted
+            )
+    matrix = matrix_from_pose(row_from_pose(part.origin))
+    largest_angle = max(map(abs, part.origin.rpy))
+    if expected.along is not None and largest_angle > 2 * np.pi:
+        return phrase(
+            "its rpy contains {angle:g}: angles are in radians, and a quarter turn is 1.5708", angle=largest_angle
+        )
+    if expected.along is not None and _angle(matrix[:3, 2], expected.along, either_sign=True) > _ANGLE_TOLERANCE:
+        return phrase(
+            "its axis points along {actual}, but should point along {expected}",
+            actual=_vector_text(matrix[:3, 2]),
+            expected=_vector_text(expected.along),
+        )
+    if expected.at is not None and np.linalg.norm(matrix[:3, 3] - np.asarray(expected.at)) > _LENGTH_TOLERANCE:
+        return phrase(
+            "its center is at {actual}, but should be at {expected}",
+            actual=_vector_text(matrix[:3, 3]),
+            expected=_vector_text(expected.at),
+        )
+    return None
+
+
+def _sizes(shape: object, expected: object) -> list[tuple[str, float, float]]:
+    """Return name, actual and expected value of each size of a shape."""
+    if isinstance(shape, Box) and isinstance(expected, Box):
+        sizes = zip("xyz", shape.size, expected.size, strict=True)
+        return [(f"size {axis}", actual, wanted) for axis, actual, wanted in sizes]
+    names = [name for name in ("radius", "length") if hasattr(expected, name)]
+    return [(name, getattr(shape, name), getattr(expected, name)) for name in names]
+
+
+def _kind(shape: object) -> str:
+    return type(shape).__name__.lower()
+
+
+def _missing(kind: str, name: str, names: Iterable[str]) -> Phrase:
+    """Return the message for a link or joint that is missing, with a name that resembles it."""
+    similar = nearest(name, names, 1)
+    if similar:
+        return phrase("no {kind} is called '{name}'; there is '{similar}'", kind=kind, name=name, similar=similar[0])
+    return phrase("no {kind} is called '{name}'", kind=kind, name=name)
+
+
+def _angle(first: Vector | NDArray[np.float64], second: Vector, *, either_sign: bool) -> float:
+    """Return the angle between two directions in rad."""
+    lengths = np.linalg.norm(first) * np.linalg.norm(second)
+    cosine = float(np.dot(first, second) / lengths) if lengths else 0.0
+    return float(np.arccos(np.clip(abs(cosine) if either_sign else cosine, -1.0, 1.0)))
+
+
+def _vector_text(vector: Vector | NDArray[np.float64]) -> str:
+    return " ".join(f"{round(float(value), 4) + 0.0:g}" for value in vector)

@@ -1,0 +1,100 @@
+"""The learner's workspace, as checks see it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+from linkwright.diagnostics import did_you_mean, phrase, quoted_names
+from linkwright.learning.checks.not_yet import NotYet
+from linkwright.learning.checks.packages import FileFolder, PackageCheck
+from linkwright.packages import PackageFinder
+from linkwright.packages.manifest import package_name
+
+SOURCE_FOLDER = "src"
+
+
+class Work(FileFolder):
+    """The learner's workspace, as checks see it.
+
+    Files and robots outside of packages are read by their path in the workspace.
+
+    Args:
+        folder: the workspace.
+        answer: the number that the learner answered for the step, as text; None if there is none.
+        lesson: the folder of the lesson, for worlds and other files that a check needs.
+
+    Attributes:
+        folder: the workspace.
+        lesson: the folder of the lesson.
+    """
+
+    def __init__(self, folder: Path, *, lesson: Path, answer: str | None = None) -> None:
+        super().__init__(folder, PackageFinder(start=[folder / SOURCE_FOLDER, folder]))
+        self.lesson = lesson
+        self._answer = answer
+        self._packages: dict[str, PackageCheck] = {}
+
+    def package(self, name: str) -> PackageCheck:
+        """Return a package of the workspace's sources.
+
+        Raises:
+            NotYet: there is no such package below ``src``.
+        """
+        if name not in self._packages:
+            self._packages[name] = PackageCheck(name, self._find_package(name), self.finder)
+        return self._packages[name]
+
+    def _find_package(self, name: str) -> Path:
+        sources = self.folder / SOURCE_FOLDER
+        found = {
+            package: manifest.parent
+            for manifest in sorted(sources.glob("**/package.xml"))
+            if (package := package_name(manifest.parent)) is not None
+        }
+        if name in found:
+            return found[name]
+        if (sources / name).is_dir():
+            raise NotYet(phrase("the folder 'src/{name}' has no package.xml with the name '{name}'", name=name))
+        suggestion = did_you_mean(name, found)
+        if suggestion is not None:
+            raise NotYet(
+                phrase(
+                    "the workspace has no package '{name}'; its packages are {names}",
+                    name=name,
+                    names=quoted_names(found),
+                )
+            )
+        raise NotYet(phrase("the workspace has no package '{name}' below 'src'", name=name))
+
+    def number(self) -> float:
+        """Return the number that the learner answered.
+
+        Raises:
+            NotYet: there is no answer, or it is not a number.
+        """
+        if self._answer is None or not self._answer.strip():
+            raise NotYet(phrase("the step has no answer yet"))
+        try:
+            return float(self._answer.strip().replace(",", "."))
+        except ValueError:
+            raise NotYet(phrase("the answer '{text}' is not a number", text=self._answer)) from None
+
+    def expect_number(self, value: float, *, tolerance: float, slips: Mapping[float, object] | None = None) -> None:
+        """Require the learner's number to be near a value.
+
+        Args:
+            value: the right number.
+            tolerance: the greatest difference that passes.
+            slips: messages for typical wrong numbers: a `NotYet` for each.
+
+        Raises:
+            NotYet: the number is missing or differs.
+        """
+        number = self.number()
+        if abs(number - value) <= tolerance:
+            return
+        for wrong, message in (slips or {}).items():
+            if abs(number - wrong) <= tolerance and isinstance(message, NotYet):
+                raise message
+        raise NotYet(phrase("{number:g} is not the right number; measure once more", number=number))

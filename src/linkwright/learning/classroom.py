@@ -1,0 +1,197 @@
+"""A course in a learner's workspace: its files, checks, hints and solutions."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from datetime import datetime, timezone
+from pathlib import Path
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, phrase
+from linkwright.learning.checks.results import StepResult
+from linkwright.learning.checks.running import check_in_process
+from linkwright.learning.course import DEFAULT_COURSE, Course, Step, courses_folder, find_course, load_course
+from linkwright.learning.progress import PROGRESS_FILE, Progress, read_progress, write_progress
+
+REPLACED_FOLDER = "replaced"
+"""The folder of the workspace for files that a solution replaced."""
+
+
+class Classroom:
+    """A course in a learner's workspace.
+
+    Args:
+        workspace: the folder of the workspace, which is created with the first file.
+        course: the course.
+        progress: the progress in the course.
+
+    Attributes:
+        workspace: the folder of the workspace.
+        course: the course.
+        progress: the progress in the course.
+    """
+
+    def __init__(self, workspace: Path, course: Course, progress: Progress) -> None:
+        self.workspace = workspace
+        self.course = course
+        self.progress = progress
+
+    @property
+    def current_step(self) -> Step:
+        """The first step that is not passed, or the last step."""
+        steps = self.course.steps
+        return next((step for step in steps if self.progress.step(step.address).passed is None), steps[-1])
+
+    def open_step(self, step: Step) -> list[Path]:
+        """Open a step: note the time, and copy the files with which its lesson begins.
+
+        Files that exist stay as they are.
+
+        Returns:
+            The copied files.
+
+        Raises:
+            LinkwrightError: LEARN111, a file cannot be written.
+        """
+        with _writing(self.workspace):
+            copied = [
+                target
+                for source, target in _pairs(step.lesson.start, self.workspace)
+                if not target.exists() and _copy(source, target)
+            ]
+        if self.progress.step(step.address).started is None:
+            self._note(step, started=_now())
+        return copied
+
+    def check(self, step: Step, run: Callable[..., StepResult] = check_in_process) -> StepResult:
+        """Check a step, and note it as passed if all checks are satisfied.
+
+        Args:
+            step: the step.
+            run: runs the checks; see `check_in_process`.
+
+        Raises:
+            LinkwrightError: LEARN111, the progress cannot be written.
+        """
+        noted = self.progress.step(step.address)
+        result = run(step, self.workspace, answer=noted.answer)
+        if result.passed and noted.passed is None:
+            self._note(step, passed=_now())
+        return result
+
+    def answer(self, step: Step, text: str) -> None:
+        """Note the learner's answer to a step.
+
+        Raises:
+            LinkwrightError: LEARN111, the progress cannot be written; LEARN112, the step asks for no number.
+        """
+        if step.unit is None:
+            raise LinkwrightError(
+                Diagnostic("LEARN112", phrase("the step '{step}' does not ask for a number", step=step.address))
+            )
+        self._note(step, answer=text)
+
+    def take_hint(self, step: Step) -> int:
+        """Note one more hint of a step, and return the number of hints that are shown now."""
+        available = len(step.text("").hints)
+        taken = min(self.progress.step(step.address).hints + 1, available)
+        self._note(step, hints=taken)
+        return taken
+
+    def take_solution(self, step: Step) -> list[Path]:
+        """Copy the solution of a step into the workspace.
+
+        Files with another content are moved to the folder `REPLACED_FOLDER` first.
+
+        Returns:
+            The files that were written.
+
+        Raises:
+            LinkwrightError: LEARN111, a file cannot be written; LEARN113, the step has no solution.
+        """
+        pairs = list(_pairs(step.solution, self.workspace))
+        if not pairs:
+            raise LinkwrightError(
+                Diagnostic("LEARN113", phrase("the step '{step}' has no files as its solution", step=step.address))
+            )
+        replaced = self.workspace / REPLACED_FOLDER / datetime.now().astimezone().strftime("%Y-%m-%d-%H%M%S")
+        written = []
+        with _writing(self.workspace):
+            for source, target in pairs:
+                if target.exists() and target.read_bytes() == source.read_bytes():
+                    continue
+                if target.exists():
+                    _copy(target, replaced / target.relative_to(self.workspace))
+                _copy(source, target)
+                written.append(target)
+        self._note(step, solution=True)
+        return written
+
+    def _note(self, step: Step, **changes: object) -> None:
+        self.progress = self.progress.with_step(step.address, **changes)
+        with _writing(self.workspace):
+            self.workspace.mkdir(parents=True, exist_ok=True)
+            write_progress(self.workspace, self.progress)
+
+
+def enclosing_workspace(folder: Path) -> Path:
+    """Return the nearest folder with a progress file at or above a folder, or the folder itself."""
+    return next((path for path in (folder, *folder.parents) if (path / PROGRESS_FILE).is_file()), folder)
+
+
+def open_classroom(workspace: Path, course: str | None = None) -> Classroom:
+    """Open a course in a workspace.
+
+    Args:
+        workspace: the folder of the workspace, which need not exist.
+        course: the course: the name of a shipped one, or a folder; None for the course of the workspace, or for the
+            shipped course about a robot if the workspace is new.
+
+    Raises:
+        LinkwrightError: LEARN101 to LEARN110: the course or the progress cannot be read; LEARN114, the workspace
+            belongs to another course.
+    """
+    progress = read_progress(workspace)
+    name = course or (progress.course if progress else DEFAULT_COURSE)
+    loaded = load_course(find_course(name))
+    shipped = courses_folder()
+    is_shipped = shipped is not None and loaded.folder.parent == shipped.resolve()
+    known_name = loaded.id if is_shipped else str(loaded.folder)
+    if progress is not None and progress.course not in {known_name, name}:
+        message = phrase(
+            "'{folder}' is the workspace of the course '{course}'",
+            folder=display_path(workspace),
+            course=progress.course,
+        )
+        hint = phrase("name another folder, or rename its {file}", file=PROGRESS_FILE)
+        raise LinkwrightError(Diagnostic("LEARN114", message, hint=hint))
+    return Classroom(workspace, loaded, progress or Progress(known_name, {}))
+
+
+def _pairs(source: Path, target: Path) -> Iterator[tuple[Path, Path]]:
+    """Yield each file below a folder with its path below another one."""
+    for path in sorted(source.rglob("*")) if source.is_dir() else ():
+        if path.is_file() and "__pycache__" not in path.parts:
+            yield path, target / path.relative_to(source)
+
+
+def _copy(source: Path, target: Path) -> bool:
+    target.parent.mkdir(parents=True, exist_ok=True)
+    shutil.copy(source, target)
+    return True
+
+
+def _now() -> datetime:
+    return datetime.now(timezone.utc).replace(microsecond=0)
+
+
+@contextmanager
+def _writing(workspace: Path) -> Iterator[None]:
+    """Raise LEARN111 for errors of the operating system."""
+    try:
+        yield
+    except OSError as error:
+        path = display_path(Path(error.filename or workspace))
+        message = phrase("cannot write '{path}': {error}", path=path, error=error.strerror or str(error))
+        raise LinkwrightError(Diagnostic("LEARN111", message)) from error

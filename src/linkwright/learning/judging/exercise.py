@@ -1,0 +1,183 @@
+"""Exercises: their folders, read and verified."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, phrase, quoted_names
+from linkwright.learning.course import courses_folder
+from linkwright.learning.errors import file_error, unreadable
+from linkwright.learning.local_text import LocalText
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
+
+EXERCISE_FILE, TEMPLATE_FILE = "exercise.toml", "template.py"
+
+
+@dataclass(frozen=True)
+class Figure:
+    """The number by which a program is judged.
+
+    Attributes:
+        name: what it measures.
+        unit: the unit.
+        none: the value that is worth no points.
+        half: the value that is worth 50 points.
+        full: the value that is worth 100 points.
+        decimals: the number of decimals to show.
+    """
+
+    name: LocalText
+    unit: str
+    none: float
+    half: float
+    full: float
+    decimals: int = 1
+
+    def points(self, value: float) -> float:
+        """Return the points for a value, from 0 to 100."""
+        above_half = (value - self.half) / (self.full - self.half)
+        below_half = (value - self.half) / (self.half - self.none)
+        return 50.0 + 50.0 * (min(above_half, 1.0) if above_half > 0.0 else max(below_half, -1.0))
+
+
+@dataclass(frozen=True)
+class Exercise:
+    """An exercise.
+
+    Attributes:
+        folder: its folder, whose name is the name of the exercise.
+        title: the title in each language.
+        difficulty: from 1 (easy) to 5.
+        minutes: the time that a learner probably needs.
+        needs: the extras of Linkwright that the exercise needs, such as ``sim``.
+        robot: the file of the robot, or its ``package://`` URI; empty if the world contains it.
+        arguments: the robot's xacro arguments.
+        model: the name of the robot in the world.
+        time_limit: the simulated time after which a run ends, in s.
+        collision_cost: the points that a collision of the robot costs.
+        figure: the number by which a program is judged.
+        settings: other values, for the judge.
+    """
+
+    folder: Path
+    title: LocalText
+    difficulty: int
+    minutes: int
+    needs: tuple[str, ...]
+    robot: str
+    arguments: Mapping[str, object]
+    model: str
+    time_limit: float
+    collision_cost: float
+    figure: Figure
+    settings: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def id(self) -> str:
+        """The name of the exercise in commands."""
+        return self.folder.name
+
+    @property
+    def template(self) -> Path:
+        """The program to begin with."""
+        return self.folder / TEMPLATE_FILE
+
+    def solution(self, name: str) -> Path:
+        """Return a solution that the exercise comes with: ``reference`` or ``simple``."""
+        return self.folder / "solutions" / f"{name}.py"
+
+    def text(self, language: str) -> str:
+        """Return the Markdown of the exercise in a language, or in English."""
+        translated = self.folder / f"README.{language}.md"
+        return (translated if translated.is_file() else self.folder / "README.md").read_text(encoding="utf-8")
+
+
+def exercises_folder() -> Path | None:
+    """Return the folder of the shipped exercises, or None if there is none."""
+    courses = courses_folder()
+    return None if courses is None else courses / "exercises"
+
+
+def exercise_names() -> list[str]:
+    """Return the names of the shipped exercises, from easy to difficult."""
+    folder = exercises_folder()
+    files = [] if folder is None else sorted(folder.glob(f"*/{EXERCISE_FILE}"))
+    exercises = [load_exercise(file.parent) for file in files]
+    return [exercise.id for exercise in sorted(exercises, key=lambda exercise: (exercise.difficulty, exercise.minutes))]
+
+
+def find_exercise(name: str) -> Exercise:
+    """Return an exercise: a shipped one by its name, or any by the path of its folder.
+
+    Raises:
+        LinkwrightError: LEARN141, there is no such exercise; or the errors of `load_exercise`.
+    """
+    shipped = exercises_folder()
+    for folder in (Path(name), *([] if shipped is None else [shipped / name])):
+        if (folder / EXERCISE_FILE).is_file():
+            return load_exercise(folder)
+    names = exercise_names()
+    raise LinkwrightError(
+        Diagnostic(
+            "LEARN141",
+            phrase("there is no exercise '{name}'", name=name),
+            hint=did_you_mean(name, names)
+            or phrase(
+                "name a folder with a {file}, or one of the shipped exercises: {names}",
+                file=EXERCISE_FILE,
+                names=quoted_names(names),
+            ),
+        )
+    )
+
+
+def load_exercise(folder: Path) -> Exercise:
+    """Read an exercise.
+
+    Raises:
+        LinkwrightError: LEARN102, the file cannot be read; LEARN104, it is not valid.
+    """
+    folder = folder.resolve()
+    path = folder / EXERCISE_FILE
+    try:
+        data = tomllib.loads(path.read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError) as error:
+        raise unreadable(path, error) from None
+    except tomllib.TOMLDecodeError as error:
+        raise file_error("LEARN104", path, phrase("the file is not valid TOML: {error}", error=str(error))) from None
+    try:
+        return _exercise_from(folder, data)
+    except KeyError as error:
+        raise file_error("LEARN104", path, phrase("the key '{name}' is missing", name=str(error.args[0]))) from None
+    except (TypeError, ValueError, AttributeError) as error:
+        raise file_error("LEARN104", path, phrase("a value is not valid: {error}", error=str(error))) from None
+
+
+def _exercise_from(folder: Path, data: Mapping[str, Any]) -> Exercise:
+    figure = data["figure"]
+    half, full = float(figure["half"]), float(figure["full"])
+    none = float(figure.get("none", 2.0 * half - full))
+    if not (none < half < full or none > half > full):
+        raise ValueError("figure.none, figure.half and figure.full must be in order")
+    return Exercise(
+        folder,
+        LocalText(data["title"]),
+        int(data["difficulty"]),
+        int(data["minutes"]),
+        tuple(data["needs"]),
+        str(data.get("robot", "")),
+        dict(data.get("arguments", {})),
+        str(data["model"]),
+        float(data["time_limit"]),
+        float(data.get("collision_cost", 10.0)),
+        Figure(LocalText(figure["name"]), str(figure["unit"]), none, half, full, int(figure.get("decimals", 1))),
+        dict(data.get("settings", {})),
+    )

@@ -1,0 +1,114 @@
+"""Judging a program: its runs in simulated worlds at maximum rate, one for each seed."""
+
+from __future__ import annotations
+
+import tempfile
+import traceback
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from linkwright.learning.judging.exercise import Exercise
+from linkwright.learning.judging.judge import Judge
+from linkwright.learning.judging.world import JudgePlugin, status, write_world
+from linkwright.testing import Program, SteppedSimulation
+
+_STEP_S = 0.2
+_AFTER_END_S = 2.0
+"""The simulated time for which a run continues after its program has ended, until the robot has stopped."""
+
+_SIMULATED_TIME = ("--ros-args", "-p", "use_sim_time:=true")
+
+
+@dataclass(frozen=True)
+class RunResult:
+    """The result of a run.
+
+    Attributes:
+        seed: the seed.
+        score: the points, from 0 to 100.
+        data: the state of the judge at the end, as in ``/judge/status``.
+        error: the traceback of the exception that ended the program, or None.
+    """
+
+    seed: int
+    score: float
+    data: dict[str, Any]
+    error: str | None
+
+    def to_data(self) -> dict[str, Any]:
+        """Return the result as data for JSON."""
+        return {"seed": self.seed, **self.data, "error": self.error}
+
+
+def judge_program(
+    exercise: Exercise, program: Path, seeds: Sequence[int], *, budget: float = 30.0
+) -> Iterator[RunResult]:
+    """Run a program in the worlds of an exercise, and yield the result for each seed.
+
+    The program runs in lockstep with the world, so a result depends on the program and the seed alone. It gets the
+    topics of its robot, but not the simulator's services, which could move the robot or tell its true pose.
+
+    Args:
+        exercise: the exercise.
+        program: the file of the program.
+        seeds: the seeds.
+        budget: the longest time for which the program may compute without waiting, in seconds of the computer's clock.
+
+    Raises:
+        LinkwrightError: the simulation is not installed, or a file of the exercise has errors.
+        OSError: the program cannot be read.
+    """
+    for seed in seeds:
+        with tempfile.TemporaryDirectory(prefix="linkwright-judge-") as folder:
+            yield _run(exercise, program, seed, Path(folder), budget)
+
+
+def _run(exercise: Exercise, program: Path, seed: int, folder: Path, budget: float) -> RunResult:
+    arrangement = write_world(exercise, seed, folder, publishes=False)
+    error: BaseException | None = None
+    with SteppedSimulation(
+        arrangement.world,
+        exercise.robot or None,
+        arguments=exercise.arguments,
+        pose=arrangement.pose,
+        seed=seed,
+        services=False,
+        robot_state_publisher=bool(exercise.robot),
+        strict=False,
+    ) as test:
+        judge = _find_judge(test)
+        arguments = [str(argument) for argument in exercise.settings.get("program_arguments", ())]
+        started = test.start_program(program, [*arguments, *_SIMULATED_TIME], budget=budget, seed=seed)
+        error = _advance_to_end(test, judge, started, exercise.time_limit)
+        data, score = status(judge), judge.score
+    lines = None if error is None else "".join(_user_traceback(error, program))
+    return RunResult(seed, score, data, lines)
+
+
+def _advance_to_end(test: SteppedSimulation, judge: Judge, program: Program, time_limit: float) -> BaseException | None:
+    """Advance until the run ends, and return the exception of the program."""
+    end_s = time_limit + 1.0
+    while not judge.is_finished and test.now < end_s:
+        test.advance(_STEP_S)
+        if not program.is_running:
+            end_s = min(end_s, test.now + _AFTER_END_S)
+    error = program.error or next(iter(test.errors), None)
+    if error is not None:
+        judge.note(en=f"the program ended with an error: {error}", zh=f"程序因错误而结束：{error}")
+    if not judge.is_finished:
+        judge.at_time_limit()
+    return error
+
+
+def _find_judge(test: SteppedSimulation) -> Judge:
+    plugin = next(plugin for plugin in test.world_plugins() if isinstance(plugin, JudgePlugin))
+    return plugin.judge
+
+
+def _user_traceback(error: BaseException, program: Path) -> list[str]:
+    """Return the lines of a traceback from the program's file on."""
+    frames = traceback.extract_tb(error.__traceback__)
+    first = next((i for i, frame in enumerate(frames) if frame.filename == str(program.resolve())), 0)
+    return [*traceback.format_list(list(frames)[first:]), *traceback.format_exception_only(error)]

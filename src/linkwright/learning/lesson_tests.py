@@ -1,0 +1,212 @@
+"""The tests of lessons: right and wrong solutions, which the checks must accept and refuse."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import tempfile
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from linkwright.diagnostics import Phrase, phrase
+from linkwright.learning.checks.declaring import load_checks, load_module
+from linkwright.learning.checks.running import check_in_process
+from linkwright.learning.course import CASES_FILE, CHECKS_FILE, Course, Lesson, Step
+from linkwright.learning.errors import file_error
+
+_IMAGE = re.compile(r"!\[[^\]]*\]\(([^)\s]+)")
+
+
+@dataclass(frozen=True)
+class Edit:
+    """A replacement in a file of the workspace.
+
+    Attributes:
+        file: the path in the workspace.
+        old: the text to replace, which must occur exactly once.
+        new: the text that replaces it.
+    """
+
+    file: str
+    old: str
+    new: str
+
+
+@dataclass(frozen=True)
+class Case:
+    """A solution of a step, right or wrong.
+
+    Attributes:
+        step: the name of the step.
+        title: what is special about the solution.
+        changes: the changes to the solution of the step, in order: edits; or new contents by path in the workspace,
+            None to delete the file.
+        says: for a wrong solution a part of the English message of its first failed check; None for a right solution.
+        answer: the answer instead of the right one; None for the right one.
+    """
+
+    step: str
+    title: str
+    changes: Sequence[Edit | Mapping[str, str | None]]
+    says: str | None
+    answer: str | None = None
+
+
+def right(step: str, title: str, *changes: Edit | Mapping[str, str | None], answer: str | None = None) -> Case:
+    """Return a right solution; see `Case`."""
+    return Case(step, title, changes, None, answer)
+
+
+def wrong(
+    step: str, title: str, *changes: Edit | Mapping[str, str | None], says: str, answer: str | None = None
+) -> Case:
+    """Return a wrong solution, whose message contains `says`; see `Case`."""
+    return Case(step, title, changes, says, answer)
+
+
+@dataclass(frozen=True)
+class TestResult:
+    """The result of one test of a lesson.
+
+    Attributes:
+        lesson: the name of the lesson.
+        title: the name of the test.
+        problem: what is wrong; None if nothing is.
+    """
+
+    __test__ = False  # pytest would collect it
+
+    lesson: str
+    title: str
+    problem: Phrase | None
+
+
+def test_lesson(course: Course, lesson: Lesson) -> Iterator[TestResult]:
+    """Test a lesson: its images, its checks, its solutions, and its right and wrong cases.
+
+    Each step must fail before its solution and pass after it. The workspace before a lesson has the solutions of all
+    steps before it.
+
+    Yields:
+        A result for each test, as soon as it is known.
+
+    Raises:
+        LinkwrightError: a file of the lesson cannot be read or run.
+    """
+    yield from _test_images(lesson)
+    checks = load_checks(lesson.folder / CHECKS_FILE)
+    unknown = sorted(set(checks) - {step.id for step in lesson.steps})
+    if unknown:
+        yield TestResult(lesson.id, CHECKS_FILE, phrase("there is no step '{step}'", step=unknown[0]))
+    cases = load_cases(lesson)
+    with tempfile.TemporaryDirectory(prefix="linkwright-lesson-") as scratch:
+        workspace = Path(scratch) / "before"
+        workspace.mkdir()
+        for step in _steps_before(course, lesson):
+            _overlay(step.lesson.start, workspace)
+            _overlay(step.solution, workspace)
+        _overlay(lesson.start, workspace)
+        for step in lesson.steps:
+            if step.id not in checks:
+                yield TestResult(lesson.id, step.id, phrase("the step has no checks"))
+            own = [case for case in cases if case.step == step.id]
+            yield from _test_step(step, workspace, own, Path(scratch) / "case")
+
+
+test_lesson.__test__ = False  # type: ignore[attr-defined]  # pytest would collect it
+
+
+def _steps_before(course: Course, lesson: Lesson) -> Iterator[Step]:
+    for earlier in course.lessons:
+        if earlier == lesson:
+            return
+        yield from earlier.steps
+
+
+def _test_step(step: Step, workspace: Path, cases: Sequence[Case], scratch: Path) -> Iterator[TestResult]:
+    """Test a step, and leave its solution in the workspace."""
+    answer = _right_answer(step)
+    if check_in_process(step, workspace).passed:
+        yield TestResult(step.lesson.id, step.id, phrase("the step passes before its solution"))
+    _overlay(step.solution, workspace)
+    yield TestResult(step.lesson.id, step.id, _objection(step, workspace, answer, None))
+    for case in cases:
+        shutil.rmtree(scratch, ignore_errors=True)
+        shutil.copytree(workspace, scratch)
+        _apply(case, scratch, step.lesson)
+        given = answer if case.answer is None else case.answer
+        yield TestResult(step.lesson.id, f"{step.id}: {case.title}", _objection(step, scratch, given, case.says))
+
+
+def _right_answer(step: Step) -> str | None:
+    path = step.solution.with_suffix(".answer")
+    return path.read_text(encoding="utf-8").strip() if path.is_file() else None
+
+
+def _objection(step: Step, workspace: Path, answer: str | None, says: str | None) -> Phrase | None:
+    """Return what is wrong about the result of the checks, or None if nothing is."""
+    result = check_in_process(step, workspace, answer=answer)
+    messages = [str(check.message) for check in result.checks if check.message is not None]
+    if says is None:
+        return None if result.passed else phrase("a right solution fails: {message}", message=(messages or [""])[0])
+    if result.passed:
+        return phrase("a wrong solution passes")
+    if not messages or says not in messages[0]:
+        return phrase("the message is '{message}' and lacks '{part}'", message=(messages or [""])[0], part=says)
+    return None
+
+
+def load_cases(lesson: Lesson) -> list[Case]:
+    """Return the cases of a lesson, in the order of its file.
+
+    Raises:
+        LinkwrightError: LEARN102, LEARN107: the file cannot be read or run, or has other values.
+    """
+    path = lesson.folder / CASES_FILE
+    if not path.is_file():
+        return []
+    cases = list(getattr(load_module(path), "CASES", ()))
+    names = {step.id for step in lesson.steps}
+    for case in cases:
+        if not isinstance(case, Case) or case.step not in names:
+            message = phrase("CASES must be a list of right(...) and wrong(...) for steps of the lesson")
+            raise file_error("LEARN107", path, message)
+    return cases
+
+
+def _apply(case: Case, workspace: Path, lesson: Lesson) -> None:
+    for change in case.changes:
+        if isinstance(change, Edit):
+            path = workspace / change.file
+            text = path.read_text(encoding="utf-8") if path.is_file() else ""
+            if text.count(change.old) != 1:
+                message = phrase(
+                    "case '{title}': '{text}' occurs {count} times in '{file}', and must occur once",
+                    title=case.title,
+                    text=change.old,
+                    count=text.count(change.old),
+                    file=change.file,
+                )
+                raise file_error("LEARN107", lesson.folder / CASES_FILE, message)
+            path.write_text(text.replace(change.old, change.new), encoding="utf-8")
+            continue
+        for name, content in change.items():
+            path = workspace / name
+            if content is None:
+                path.unlink()
+                continue
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(content, encoding="utf-8")
+
+
+def _overlay(source: Path, target: Path) -> None:
+    if source.is_dir():
+        shutil.copytree(source, target, dirs_exist_ok=True)
+
+
+def _test_images(lesson: Lesson) -> Iterator[TestResult]:
+    for text in lesson.texts.values():
+        for name in _IMAGE.findall(text.path.read_text(encoding="utf-8")):
+            if "://" not in name and not (lesson.folder / name).is_file():
+                yield TestResult(lesson.id, text.path.name, phrase("the image '{name}' is missing", name=name))

@@ -1,0 +1,73 @@
+"""The user that a run has where the grader is root: one that owns nothing else."""
+
+from __future__ import annotations
+
+import os
+import pwd
+from pathlib import Path
+
+from linkwright.learning.sandbox.linux import CAP_SETGID, CAP_SETUID, has_capability
+
+_HIGH_USERS = 0x7000_0000
+"""Plus the number of the supervisor's process, a user number that no other run has."""
+_LOW_USERS = range(61184, 65520)
+"""The user numbers for containers that have few: those of systemd's dynamic users."""
+
+
+def find_unused_user() -> int | None:
+    """Return a user number for the run, or None if this process cannot change its user."""
+    if os.geteuid() != 0 or not (has_capability(CAP_SETUID) and has_capability(CAP_SETGID)):
+        return None
+    count = min(_count_mapped("/proc/self/uid_map"), _count_mapped("/proc/self/gid_map"))
+    if count > _HIGH_USERS + 2**23:
+        return _HIGH_USERS + os.getpid()
+    busy = _users_of_processes()
+    for offset in range(len(_LOW_USERS)):
+        user = _LOW_USERS[(os.getpid() + offset) % len(_LOW_USERS)]
+        if user < count and user not in busy and not _is_known(user):
+            return user
+    return None
+
+
+def become(user: int) -> None:
+    """Change this process to a user and a group of the same number, without other groups."""
+    os.setgroups([])
+    os.setresgid(user, user, user)
+    os.setresuid(user, user, user)
+
+
+def can_be_reached(paths: list[str]) -> bool:
+    """Return whether a user who owns nothing may pass through all folders that contain these paths."""
+    for path in paths:
+        place = Path(path).resolve()
+        if any(not folder.stat().st_mode & 0o001 for folder in place.parents):
+            return False
+    return True
+
+
+def _count_mapped(path: str) -> int:
+    """Return how many users or groups from 0 on exist in this user namespace."""
+    for line in Path(path).read_text(encoding="ascii").splitlines():
+        first, _, count = map(int, line.split())
+        if first == 0:
+            return count
+    return 0
+
+
+def _users_of_processes() -> set[int]:
+    users = set()
+    for entry in os.scandir("/proc"):
+        if entry.name.isdecimal():
+            try:
+                users.add(entry.stat().st_uid)
+            except OSError:
+                continue
+    return users
+
+
+def _is_known(user: int) -> bool:
+    try:
+        pwd.getpwuid(user)
+    except KeyError:
+        return False
+    return True

@@ -1,0 +1,75 @@
+"""Limits that the kernel holds for each process: resource limits, priority, processors."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import resource
+import sys
+from collections.abc import Collection
+
+from linkwright.learning.sandbox.outcome import Limits
+
+_OPEN_FILES = 1024
+_NICENESS = 10
+_SPARE_PROCESSES = 16
+"""The kernel allows this many more processes than the limit, so that the watchdog sees that it is exceeded."""
+_GROWTH_OF_OTHERS = 100
+"""How many more threads the user's other programs may start meanwhile, so that the run does not suffer from them."""
+_OOM_SCORE = 1000
+
+
+def apply_limits(limits: Limits, *, others: int) -> None:
+    """Apply the resource limits to this process and its descendants.
+
+    Args:
+        limits: The limits of the run. Those of memory and of processor time hold for each process here; the watchdog
+            holds them for all processes together.
+        others: The number of threads outside the run that the kernel counts together with those of the run.
+    """
+    seconds = max(1, round(limits.cpu_seconds + 0.5))
+    _limit("RLIMIT_CPU", seconds, seconds + 1)
+    _limit("RLIMIT_FSIZE", limits.file_bytes)
+    _limit("RLIMIT_NOFILE", _OPEN_FILES)
+    _limit("RLIMIT_CORE", 0)
+    _limit("RLIMIT_MSGQUEUE", 0)
+    if sys.platform == "linux":
+        _limit("RLIMIT_DATA", limits.memory)
+    spare = _SPARE_PROCESSES if others == 0 else _GROWTH_OF_OTHERS
+    _limit("RLIMIT_NPROC", others + limits.processes + spare)
+
+
+def count_threads_of_user() -> int:
+    """Return the number of threads that the user of this process has."""
+    if sys.platform != "linux":
+        return _GROWTH_OF_OTHERS
+    count = 0
+    for entry in os.scandir("/proc"):
+        with contextlib.suppress(OSError):
+            if entry.name.isdecimal() and entry.stat().st_uid == os.getuid():
+                count += len(os.listdir(f"{entry.path}/task"))
+    return count
+
+
+def be_modest(processors: Collection[int]) -> None:
+    """Run at low priority on some processors, and be the first to end if the machine has no memory left."""
+    with contextlib.suppress(OSError):
+        os.nice(_NICENESS)
+    if sys.platform == "linux":
+        with contextlib.suppress(OSError):
+            if processors:
+                os.sched_setaffinity(0, processors)
+        with contextlib.suppress(OSError), open("/proc/self/oom_score_adj", "w", encoding="ascii") as file:
+            file.write(str(_OOM_SCORE))
+
+
+def _limit(name: str, soft: int, hard: int | None = None) -> None:
+    number = getattr(resource, name, None)
+    if number is None:
+        return  # this system has no such limit
+    _, allowed = resource.getrlimit(number)
+    hard = soft if hard is None else hard
+    if allowed != resource.RLIM_INFINITY:
+        soft, hard = min(soft, allowed), min(hard, allowed)
+    with contextlib.suppress(OSError, ValueError):
+        resource.setrlimit(number, (soft, hard))

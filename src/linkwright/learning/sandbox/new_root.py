@@ -1,0 +1,144 @@
+"""A root folder for the run that contains its folder, programs and libraries, and nothing else."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+from pathlib import Path
+
+from linkwright.learning.sandbox.linux import (
+    MS_BIND,
+    MS_NODEV,
+    MS_NOEXEC,
+    MS_NOSUID,
+    MS_PRIVATE,
+    MS_REC,
+    change_root,
+    make_read_only,
+    mount,
+)
+
+_BASE = "/tmp"
+_DEVICES = ("null", "zero", "full", "random", "urandom")
+_FILES_OF_PROC = ("cpuinfo", "meminfo", "stat", "version", "filesystems")
+
+
+def enter_new_root(readable: list[str], folder: str, temporary_bytes: int, *, own_processes: bool) -> None:
+    """Replace the root folder of this mount namespace.
+
+    Args:
+        readable: Files and whole folders that the run may read.
+        folder: The folder in which the run may write.
+        temporary_bytes: The size of /tmp and of /dev/shm, which are in memory and end with the run.
+        own_processes: Whether this process is in a new namespace of processes.
+
+    Raises:
+        OSError: The system does not allow it.
+    """
+    mount("none", "/", flags=MS_REC | MS_PRIVATE)
+    root = _Root(readable, folder)
+    root.mount_temporary_folders(temporary_bytes)
+    root.mount_devices()
+    root.mount_proc(own_processes=own_processes)
+    root.bind_readable()
+    root.bind_folder()
+    make_read_only(root.base, with_mounts_below=False)
+    change_root(root.base)
+
+
+class _Root:
+    """The new root while it is built, at `base`.
+
+    The sources of mounts are opened before the base covers them.
+    """
+
+    base = _BASE
+
+    def __init__(self, readable: list[str], folder: str) -> None:
+        self._folder = folder
+        self._links: dict[str, str] = {}
+        self._sources: dict[str, int] = {}
+        for path in readable:
+            if path.startswith("/proc/"):
+                continue
+            real = self._follow_links(path)
+            if real is not None:
+                self._sources[real] = os.open(real, os.O_PATH | os.O_CLOEXEC)
+        self._folder_source = os.open(folder, os.O_PATH | os.O_CLOEXEC | os.O_NOFOLLOW)
+        self._devices = {
+            name: os.open(f"/dev/{name}", os.O_PATH | os.O_CLOEXEC) for name in _DEVICES if Path("/dev", name).exists()
+        }
+        self._old_proc = os.open("/proc", os.O_PATH | os.O_CLOEXEC)
+        mount("linkwright", self.base, "tmpfs", MS_NOSUID | MS_NODEV, "mode=755,size=4m")
+
+    def _follow_links(self, path: str) -> str | None:
+        """Return the real path, and note the links on the way to it."""
+        for _ in range(40):
+            link = next((p for p in (*reversed(Path(path).parents), Path(path)) if p.is_symlink()), None)
+            if link is None:
+                return path if Path(path).exists() else None
+            target = os.readlink(link)
+            self._links[str(link)] = target
+            rest = Path(path).relative_to(link)
+            path = os.path.normpath(link.parent.resolve() / target / rest)
+        return None
+
+    def _at(self, path: str) -> str:
+        return self.base + path
+
+    def _bind(self, source: int, path: str) -> str:
+        """Mount an opened file or folder at its path in the new root, and return its place."""
+        place = self._at(path)
+        if Path(f"/proc/self/fd/{source}").is_dir():
+            Path(place).mkdir(parents=True, exist_ok=True)
+        else:
+            Path(place).parent.mkdir(parents=True, exist_ok=True)
+            Path(place).touch(exist_ok=True)
+        mount(f"/proc/self/fd/{source}", place, flags=MS_BIND | MS_REC)
+        return place
+
+    def mount_temporary_folders(self, size: int) -> None:
+        """Mount the folders that are in memory and end with the run, before what is mounted in them."""
+        for path in ("/dev/shm", "/tmp"):
+            Path(self._at(path)).mkdir(parents=True)
+            mount("linkwright", self._at(path), "tmpfs", MS_NOSUID | MS_NODEV, f"mode=1777,size={size}")
+
+    def mount_devices(self) -> None:
+        for name, source in self._devices.items():
+            self._bind(source, f"/dev/{name}")
+        for name, target in (("fd", "fd"), ("stdin", "fd/0"), ("stdout", "fd/1"), ("stderr", "fd/2")):
+            Path(self._at(f"/dev/{name}")).symlink_to(f"/proc/self/{target}")
+        Path(self._at("/dev/pts")).mkdir()
+        Path(self._at("/dev/ptmx")).symlink_to("pts/ptmx")
+        with contextlib.suppress(OSError):  # terminals are missing then
+            options = "newinstance,ptmxmode=0666,mode=620"
+            mount("devpts", self._at("/dev/pts"), "devpts", MS_NOSUID | MS_NOEXEC, options)
+
+    def mount_proc(self, *, own_processes: bool) -> None:
+        """Mount /proc of the new processes. Where that is not allowed, it contains only files about the machine."""
+        proc = Path(self._at("/proc"))
+        proc.mkdir()
+        if own_processes:
+            with contextlib.suppress(OSError):
+                mount("proc", str(proc), "proc", MS_NOSUID | MS_NODEV | MS_NOEXEC)
+                return
+        for name in _FILES_OF_PROC:
+            with contextlib.suppress(OSError):
+                source = os.open(name, os.O_PATH | os.O_CLOEXEC, dir_fd=self._old_proc)
+                make_read_only(self._bind(source, f"/proc/{name}"))
+
+    def bind_readable(self) -> None:
+        """Mount the files that the run may read. A mounted folder has those below it."""
+        done: list[str] = []
+        for real in sorted(self._sources, key=lambda path: path.count("/")):
+            if not any(real == above or real.startswith(above.rstrip("/") + "/") for above in done):
+                make_read_only(self._bind(self._sources[real], real))
+                done.append(real)
+        for link, target in self._links.items():
+            with contextlib.suppress(OSError):  # it exists in a folder that is mounted
+                Path(self._at(link)).parent.mkdir(parents=True, exist_ok=True)
+                Path(self._at(link)).symlink_to(target)
+
+    def bind_folder(self) -> None:
+        """Mount the folder of the run, which may be in a readable one."""
+        self._bind(self._folder_source, self._folder)

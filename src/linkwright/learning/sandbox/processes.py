@@ -1,0 +1,180 @@
+"""The processes of a run, what they use, and how they are ended."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import resource
+import signal
+import stat
+import subprocess
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+_TICKS_PER_SECOND = os.sysconf("SC_CLK_TCK") if hasattr(os, "sysconf") else 100
+
+
+@dataclass(frozen=True)
+class ProcessUsage:
+    """The resources that a process uses: times in seconds, sizes in bytes."""
+
+    pid: int
+    parent: int
+    threads: int
+    cpu_seconds: float
+    """With the time of its children that have ended."""
+    memory: int
+
+
+def descendants(root: int) -> list[ProcessUsage]:
+    """Return all processes that descend from one."""
+    children: dict[int, list[ProcessUsage]] = {}
+    for process in _all_processes():
+        children.setdefault(process.parent, []).append(process)
+    found: list[ProcessUsage] = []
+    waiting = [root]
+    while waiting:
+        below = children.pop(waiting.pop(), [])
+        found += below
+        waiting += [process.pid for process in below]
+    return found
+
+
+def _all_processes() -> Iterator[ProcessUsage]:
+    if sys.platform == "linux":
+        for name in os.listdir("/proc"):
+            if name.isdecimal():
+                with contextlib.suppress(OSError, ValueError, IndexError):
+                    yield _read_process(int(name))
+    else:
+        yield from _processes_of_ps()
+
+
+def _read_process(pid: int) -> ProcessUsage:
+    """Return the usage of a process by proc(5)."""
+    with open(f"/proc/{pid}/stat", "rb") as file:
+        fields = file.read().rpartition(b")")[2].split()  # the name before it may contain anything
+    cpu_ticks = sum(int(field) for field in fields[11:15])
+    return ProcessUsage(pid, int(fields[1]), int(fields[17]), cpu_ticks / _TICKS_PER_SECOND, int(fields[21]) * _PAGE)
+
+
+_PAGE = resource.getpagesize()
+
+
+def own_memory(process: ProcessUsage) -> int:
+    """Return the memory of a process without pages of files, and with its share of pages that others use too.
+
+    All its memory if the system does not tell more.
+    """
+    total = None
+    with contextlib.suppress(OSError), open(f"/proc/{process.pid}/smaps_rollup", "rb") as file:
+        for line in file:
+            name, _, value = line.partition(b":")
+            if name in {b"Pss_Anon", b"Pss_Shmem"}:
+                total = (total or 0) + int(value.split()[0]) * 1024
+    return process.memory if total is None else total
+
+
+def written_bytes(pid: int) -> int:
+    """Return how much a process has written to disks, its ended children included; 0 if it cannot be read."""
+    with contextlib.suppress(OSError, ValueError), open(f"/proc/{pid}/io", "rb") as file:
+        for line in file:
+            name, _, value = line.partition(b":")
+            if name == b"write_bytes":
+                return int(value)
+    return 0
+
+
+def nameless_files(pid: int) -> dict[tuple[int, int], int]:
+    """Return the sizes of the files that a process has open and that are in no folder, by device and number.
+
+    They were deleted, or made by memfd_create(2).
+    """
+    sizes = {}
+    with contextlib.suppress(OSError), os.scandir(f"/proc/{pid}/fd") as descriptors:
+        for descriptor in descriptors:
+            with contextlib.suppress(OSError):
+                status = descriptor.stat()
+                if stat.S_ISREG(status.st_mode) and status.st_nlink == 0:
+                    sizes[status.st_dev, status.st_ino] = status.st_blocks * 512
+    return sizes
+
+
+def _processes_of_ps() -> Iterator[ProcessUsage]:
+    """Read the table of processes that ps(1) prints, which POSIX describes. It has no threads."""
+    command = ["ps", "-A", "-o", "pid=,ppid=,rss=,time="]
+    with subprocess.Popen(  # noqa: S603 - fixed words
+        command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True
+    ) as table:
+        lines = table.communicate()[0].splitlines()
+    for line in lines:
+        with contextlib.suppress(ValueError):
+            pid, parent, kibibytes, time = line.split()
+            if int(pid) != table.pid:
+                yield ProcessUsage(int(pid), int(parent), 1, _seconds_of(time), int(kibibytes) * 1024)
+
+
+def _seconds_of(time: str) -> float:
+    """Return the seconds of a time of ps: [[days-]hours:]minutes:seconds."""
+    days, _, clock = time.rpartition("-")
+    seconds = 0.0
+    for part in clock.split(":"):
+        seconds = seconds * 60 + float(part)
+    return seconds + int(days or 0) * 86400
+
+
+def end_descendants(user: int | None) -> None:
+    """Kill all descendants of this process, and wait until none is left.
+
+    This process has adopted orphans, where the system allows that.
+
+    Args:
+        user: The user of the run, if no other process has it.
+    """
+    while True:
+        if user is not None:
+            _kill_processes_of(user)
+        for pid in _stop_descendants():
+            _signal(pid, signal.SIGKILL)
+        if not _wait_for_one_child():
+            return
+
+
+def _stop_descendants() -> set[int]:
+    """Stop all descendants, and return them. Those that were not found at first are children of running ones."""
+    stopped: set[int] = set()
+    while found := {process.pid for process in descendants(os.getpid())} - stopped:
+        for pid in found:
+            _signal(pid, signal.SIGSTOP)
+        stopped |= found
+    return stopped
+
+
+def _signal(pid: int, number: int) -> None:
+    with contextlib.suppress(ProcessLookupError, PermissionError):
+        os.kill(pid, number)
+
+
+def _kill_processes_of(user: int) -> None:
+    """Kill all processes of a user at once: kill(2) with -1 misses none that is forked meanwhile."""
+    from linkwright.learning.sandbox.identity import become
+
+    if (child := os.fork()) == 0:
+        try:
+            become(user)
+            os.kill(-1, signal.SIGKILL)
+        finally:
+            os._exit(0)
+    os.waitpid(child, 0)
+
+
+def _wait_for_one_child() -> bool:
+    """Wait for the end of a child, and of all others that have ended. Return whether there was one."""
+    try:
+        os.waitpid(-1, 0)
+        while os.waitpid(-1, os.WNOHANG)[0]:
+            pass
+    except ChildProcessError:
+        return False
+    return True

@@ -1,0 +1,32 @@
+"""The files that every run may read: Python, Linkwright, and the programs, libraries and settings of the system."""
+
+from __future__ import annotations
+
+import os
+import sys
+from pathlib import Path
+
+import linkwright
+from linkwright.packages.finder import shipped_folder
+
+_SYSTEM_FOLDERS = (
+    "/usr", "/bin", "/sbin", "/lib", "/lib32", "/lib64", "/libx32", "/nix/store", "/gnu/store",
+    "/System", "/Library",
+)  # fmt: skip
+_SETTINGS = (
+    "alternatives", "ca-certificates", "crypto-policies", "fonts", "glvnd", "group", "host.conf", "hosts",
+    "ld.so.cache", "ld.so.conf", "ld.so.conf.d", "locale.alias", "localtime", "mime.types", "nsswitch.conf",
+    "os-release", "passwd", "pki", "protocols", "resolv.conf", "services", "ssl", "timezone",
+)  # fmt: skip
+_STATES = ("/sys/devices/system", "/proc/cpuinfo", "/proc/meminfo", "/proc/stat", "/proc/version", "/proc/filesystems")
+
+
+def readable_everywhere() -> list[str]:
+    """Return the paths that every run may read, those of them that exist."""
+    installation = [sys.prefix, sys.exec_prefix, sys.base_prefix, sys.base_exec_prefix]
+    packages = [str(Path(folder).parent) for folder in linkwright.__path__]
+    shipped = [str(folder) for folder in [shipped_folder()] if folder is not None]
+    interpreter = [sys.executable, os.path.realpath(sys.executable)]
+    settings = [f"/etc/{name}" for name in _SETTINGS]
+    paths = dict.fromkeys([*installation, *interpreter, *packages, *shipped, *_SYSTEM_FOLDERS, *settings, *_STATES])
+    return [os.path.abspath(path) for path in paths if path and Path(path).exists()]

@@ -1,0 +1,180 @@
+"""Watching what a run uses, and naming the limit that it exceeds."""
+
+from __future__ import annotations
+
+import contextlib
+import errno
+import os
+import stat
+import sys
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from linkwright.learning.sandbox.outcome import Exceeded, Limits
+from linkwright.learning.sandbox.processes import ProcessUsage, descendants, nameless_files, own_memory, written_bytes
+
+_INTERVAL_SECONDS = 0.04
+_SHARE_OF_TIME = 0.1
+"""The part of the time that may pass with walks over the folder."""
+
+
+@dataclass(frozen=True)
+class FolderUsage:
+    """The size of a folder's contents."""
+
+    bytes: int
+    files: int
+    largest: int
+    """The length of the largest file."""
+
+
+def measure_folder(folder: str) -> FolderUsage:
+    """Return the size of a folder's contents, without following links.
+
+    A path that is too long counts as endlessly many files.
+    """
+    total = files = largest = 0
+    counted: set[tuple[int, int]] = set()
+    for status in _walk(folder):
+        if status is None:
+            return FolderUsage(total, 1 << 60, largest)
+        files += 1
+        if (status.st_dev, status.st_ino) not in counted:
+            if status.st_nlink > 1:
+                counted.add((status.st_dev, status.st_ino))
+            total += status.st_blocks * 512
+            if stat.S_ISREG(status.st_mode):
+                largest = max(largest, status.st_size)
+    return FolderUsage(total, files, largest)
+
+
+def _walk(folder: str) -> Iterator[os.stat_result | None]:
+    """Yield the status of all that a folder contains, and None for a path that is too long."""
+    waiting = [folder]
+    while waiting:
+        for path, status in _list_folder(waiting.pop()):
+            if status is not None and stat.S_ISDIR(status.st_mode):
+                waiting.append(path)
+            yield status
+
+
+def _list_folder(folder: str) -> Iterator[tuple[str, os.stat_result | None]]:
+    """Yield the paths in a folder with their status. Paths that the run deleted or made unreadable are left out."""
+    try:
+        with os.scandir(folder) as entries:
+            for entry in entries:
+                yield entry.path, entry.stat(follow_symlinks=False)
+    except OSError as error:
+        if error.errno == errno.ENAMETOOLONG:
+            yield folder, None
+
+
+class Watchdog:
+    """The resources that a run has used since its start, compared with its limits.
+
+    Attributes:
+        user: the user of the run, if it is not this process's.
+        cpu_seconds: the processor time of all processes so far.
+    """
+
+    def __init__(self, limits: Limits, folder: str) -> None:
+        self._limits = limits
+        self._folder = folder
+        self._before = measure_folder(folder)
+        self._start = time.monotonic()
+        self._next_walk = self._next_check = self._start
+        self._nameless_on_disk = 0
+        self._device = os.stat(folder).st_dev
+        self._may_trace = _may_trace_all()
+        self.user: int | None = None
+        self.cpu_seconds = 0.0
+
+    @property
+    def seconds(self) -> float:
+        """The wall time since the start."""
+        return time.monotonic() - self._start
+
+    def check_in_time(self) -> Exceeded | None:
+        """Return the limit that the run exceeds now, if it is time to look again."""
+        now = time.monotonic()
+        if now < self._next_check:
+            return None
+        exceeded = self._find_exceeded()
+        self._next_check = time.monotonic() + max(_INTERVAL_SECONDS, 4 * (time.monotonic() - now))
+        return exceeded
+
+    def _find_exceeded(self) -> Exceeded | None:
+        if self.seconds > self._limits.seconds:
+            return Exceeded.SECONDS
+        return self._check_processes() or self._check_folder()
+
+    def find_exceeded_at_end(self) -> Exceeded | None:
+        """Return the limit that the run exceeded in its last moments."""
+        self._next_walk = 0.0
+        return self._check_folder()
+
+    def _check_processes(self) -> Exceeded | None:
+        found = descendants(os.getpid())
+        ended = os.times()
+        now = ended.children_user + ended.children_system + sum(process.cpu_seconds for process in found)
+        self.cpu_seconds = max(self.cpu_seconds, now)
+        if self.cpu_seconds > self._limits.cpu_seconds:
+            return Exceeded.CPU_SECONDS
+        if sum(process.threads for process in found) > self._limits.processes:
+            return Exceeded.PROCESSES
+        with self._access_to_processes():
+            return self._check_memory(found) or self._check_written(found)
+
+    def _check_memory(self, found: list[ProcessUsage]) -> Exceeded | None:
+        """Compare the memory with the limit, at first by a sum that counts shared pages more than once."""
+        sizes: dict[tuple[int, int], int] = {}
+        for process in found:
+            sizes.update(nameless_files(process.pid))
+        self._nameless_on_disk = sum(size for (device, _), size in sizes.items() if device == self._device)
+        room = self._limits.memory - sum(sizes.values()) + self._nameless_on_disk
+        is_exceeded = sum(process.memory for process in found) > room and sum(map(own_memory, found)) > room
+        return Exceeded.MEMORY if is_exceeded else None
+
+    def _check_written(self, found: list[ProcessUsage]) -> Exceeded | None:
+        """Compare the bytes written with the limit. Those of an ended process are part of its parent's."""
+        written = sum(written_bytes(pid) for pid in (os.getpid(), *(process.pid for process in found)))
+        is_exceeded = max(written, self._nameless_on_disk) > self._limits.disk_bytes
+        return Exceeded.DISK_BYTES if is_exceeded else None
+
+    @contextlib.contextmanager
+    def _access_to_processes(self) -> Iterator[None]:
+        """Read /proc as the user of the run, where this process, though root, must not trace others."""
+        if self.user is None or self._may_trace:
+            yield
+            return
+        from linkwright.learning.sandbox.linux import set_file_user
+
+        set_file_user(self.user, self.user)
+        try:
+            yield
+        finally:
+            set_file_user(os.geteuid(), os.getegid())
+
+    def _check_folder(self) -> Exceeded | None:
+        start = time.monotonic()
+        if start < self._next_walk:
+            return None
+        usage = measure_folder(self._folder)
+        now = time.monotonic()
+        self._next_walk = now + (now - start) / _SHARE_OF_TIME
+        if usage.largest >= self._limits.file_bytes > self._before.largest:
+            return Exceeded.FILE_BYTES
+        if usage.bytes - self._before.bytes > self._limits.disk_bytes:
+            return Exceeded.DISK_BYTES
+        if usage.files - self._before.files > self._limits.files:
+            return Exceeded.FILES
+        return None
+
+
+def _may_trace_all() -> bool:
+    if sys.platform != "linux":
+        return False
+    from linkwright.learning.sandbox.linux import CAP_SYS_PTRACE, has_capability
+
+    return has_capability(CAP_SYS_PTRACE)

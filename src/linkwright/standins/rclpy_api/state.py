@@ -1,0 +1,48 @@
+"""The state of rclpy's functions that are called without a context.
+
+A process has one such state. A test that runs several programs in one process, one at a time, gives each of them its
+own.
+"""
+
+from __future__ import annotations
+
+import weakref
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from linkwright.graph import Graph
+
+
+class RclpyState:
+    """The default context of a program, its global executor, and the contexts that are not shut down.
+
+    Args:
+        create_graph: creates the graph of a context; None for a graph that joins the network.
+    """
+
+    def __init__(self, create_graph: Callable[[], Graph] | None = None) -> None:
+        self.create_graph = create_graph
+        self.default_context: Any = None
+        self.executor: Any = None
+        self.open_contexts: weakref.WeakSet[Any] = weakref.WeakSet()
+
+
+class _Current:
+    state = RclpyState()
+
+
+def current_state() -> RclpyState:
+    """Return the state that applies now."""
+    return _Current.state
+
+
+@contextmanager
+def use_state(state: RclpyState) -> Iterator[None]:
+    """Let a state apply in all threads until the end of the context."""
+    previous_state, _Current.state = _Current.state, state
+    try:
+        yield
+    finally:
+        _Current.state = previous_state

@@ -1,0 +1,1 @@
+"""Programs with a ``main`` that run in lockstep with a stepped graph."""

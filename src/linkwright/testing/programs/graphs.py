@@ -1,0 +1,41 @@
+"""The graph of a test as a program in it sees it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from linkwright.graph import Graph
+from linkwright.graph.loop.node_handle import NodeHandle
+from linkwright.graph.names.rules import NodeIdentity, Remappings
+
+
+class ProgramGraph:
+    """The nodes of a program's context in the graph of a test.
+
+    Their callbacks run when the program spins them. Closing destroys these nodes and no others.
+
+    Args:
+        graph: the graph of the test, which does everything else.
+    """
+
+    dispatcher = None
+
+    def __init__(self, graph: Graph) -> None:
+        self._graph = graph
+        self._handles: list[NodeHandle] = []
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._graph, name)
+
+    def open_node(self, identity: NodeIdentity, remappings: Remappings, **options: Any) -> NodeHandle:
+        """Add a node to the graph. See ``LocalGraph.open_node``."""
+        handle = self._graph.open_node(identity, remappings, **options)
+        handle.set_dispatcher(None)
+        self._handles.append(handle)
+        return handle
+
+    def close_threadsafe(self) -> None:
+        """Destroy the nodes."""
+        for handle in self._handles:
+            handle.destroy()
+        self._handles.clear()

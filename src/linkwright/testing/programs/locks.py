@@ -1,0 +1,83 @@
+"""Locks for threads that run in turns: a thread that waits for one gives its turn back."""
+
+from __future__ import annotations
+
+from _thread import allocate_lock
+from collections import deque
+from typing import Any
+
+from linkwright.testing.programs.threads import LockstepThread, current_thread
+
+
+class CooperativeLock:
+    """A lock like ``threading.Lock``, whose acquisition gives the turn to other threads.
+
+    Any thread may release it, also the graph's.
+    """
+
+    def __init__(self) -> None:
+        self._is_locked = False
+        self._waiting: deque[LockstepThread] = deque()
+
+    def acquire(self, blocking: bool = True, timeout: float = -1) -> bool:
+        """Take the lock, and wait for it if necessary.
+
+        Raises:
+            RuntimeError: a thread that does not run in turns would have to wait.
+        """
+        if not self._is_locked:
+            self._is_locked = True
+            return True
+        if not blocking or timeout == 0:
+            return False
+        thread = current_thread()
+        if thread is None:
+            raise RuntimeError("a thread of a program waits while it holds a lock that the graph needs")
+        deadline_ns = None if timeout < 0 else thread.time_after(timeout)
+        self._waiting.append(thread)
+        try:
+            while self.locked():
+                if deadline_ns is not None and thread.clock.steady_ns() >= deadline_ns:
+                    return False
+                thread.wait(deadline_ns)
+            self._is_locked = True
+            return True
+        finally:
+            self._waiting.remove(thread)
+            self._wake_next()
+
+    def release(self) -> None:
+        """Release the lock.
+
+        Raises:
+            RuntimeError: the lock is not taken.
+        """
+        if not self._is_locked:
+            raise RuntimeError("release unlocked lock")
+        self._is_locked = False
+        self._wake_next()
+
+    def locked(self) -> bool:
+        """Return whether the lock is taken."""
+        return self._is_locked
+
+    def _wake_next(self) -> None:
+        if self._waiting and not self._is_locked:
+            self._waiting[0].wake()
+
+    def _at_fork_reinit(self) -> None:
+        self.__init__()  # type: ignore[misc]  # as the interpreter's own lock does
+
+    def __enter__(self) -> bool:
+        return self.acquire()
+
+    def __exit__(self, *_: object) -> None:
+        self.release()
+
+
+class ThreadAwareLock:
+    """The replacement of ``threading.Lock``, which creates the lock that fits the calling thread."""
+
+    def __new__(cls) -> Any:
+        """Return a cooperative lock for a thread that runs in turns, otherwise an ordinary one."""
+        return CooperativeLock() if current_thread() is not None else allocate_lock()

@@ -1,0 +1,246 @@
+"""Functions of Python's modules that threads of programs wait in or read the time from.
+
+While programs run in a graph, each of these functions has a replacement. In a thread that runs in turns, it uses the
+time of the graph; in any other thread it does what the original does.
+"""
+
+from __future__ import annotations
+
+import queue
+import selectors
+import signal
+import sys
+import threading
+import time
+from collections.abc import Callable
+from contextlib import suppress
+from functools import wraps
+from pathlib import Path
+from typing import Any
+
+import linkwright.graph.executors.base as executors
+import linkwright.graph.time.clock as clocks
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
+from linkwright.testing.programs.locks import ThreadAwareLock
+from linkwright.testing.programs.threads import EndedByTest, LockstepThread, current_thread
+
+_PACKAGE_FOLDER = str(Path(__file__).parents[2])
+
+Original = Callable[..., Any]
+
+_original_values: dict[tuple[Any, str], Any] = {}
+_users: list[object] = []
+
+
+def install(user: object) -> None:
+    """Replace the functions until `uninstall` is called for each user."""
+    _users.append(user)
+    if len(_users) == 1:
+        for owner, name, make in _PATCHES:
+            original = vars(owner)[name]
+            _original_values[owner, name] = original
+            setattr(owner, name, make(original))
+
+
+def uninstall(user: object) -> None:
+    """Restore the functions after the last use."""
+    _users.remove(user)
+    if not _users:
+        for (owner, name), original in _original_values.items():
+            setattr(owner, name, original)
+        _original_values.clear()
+
+
+def _reading(read: Callable[[LockstepThread], Any]) -> Callable[[Original], Original]:
+    """Return what makes the replacement of a function that reads a time."""
+
+    def make(original: Original) -> Original:
+        @wraps(original)
+        def replacement(*args: Any) -> Any:
+            thread = current_thread()
+            if thread is None:
+                return original(*args)
+            if not sys._getframe(1).f_code.co_filename.startswith(_PACKAGE_FOLDER):
+                thread.count_poll()
+            return read(thread)
+
+        return replacement
+
+    return make
+
+
+_system_ns = _reading(lambda thread: thread.clock.now_ns())
+_system_s = _reading(lambda thread: thread.clock.now_ns() / NANOSECONDS_PER_SECOND)
+_steady_ns = _reading(lambda thread: thread.clock.steady_ns())
+_steady_s = _reading(lambda thread: thread.clock.steady_ns() / NANOSECONDS_PER_SECOND)
+
+
+def _polling(original: Original) -> Original:
+    """Return the replacement of a method by which a program may poll."""
+
+    @wraps(original)
+    def replacement(*args: Any, **kwargs: Any) -> Any:
+        thread = current_thread()
+        if thread is not None:
+            thread.count_poll()
+        return original(*args, **kwargs)
+
+    return replacement
+
+
+def _sleep(original: Original) -> Original:
+    @wraps(original)
+    def sleep(seconds: float, /) -> None:
+        thread = current_thread()
+        if thread is None:
+            original(seconds)
+            return
+        if seconds < 0:
+            raise ValueError("sleep length must be non-negative")
+        end_ns = thread.time_after(seconds)
+        if seconds == 0:
+            thread.count_poll()
+        while thread.clock.steady_ns() < end_ns:
+            thread.wait(end_ns)
+
+    return sleep
+
+
+def _simple_queue(original: Any) -> Any:
+    # `_PySimpleQueue` is the implementation in Python, whose locks are replaced.
+    return lambda: original() if current_thread() is None else queue._PySimpleQueue()  # type: ignore[attr-defined]
+
+
+def _recursive_lock(original: Original) -> Original:
+    # `_RLock` is the implementation in Python, whose lock is replaced.
+    return lambda: original() if current_thread() is None else threading._RLock()
+
+
+def _start(original: Original) -> Original:
+    @wraps(original)
+    def start(self: threading.Thread) -> None:
+        starter = current_thread()
+        if starter is not None:
+            thread = LockstepThread(starter.turns, starter.owner, is_daemon=self.daemon)
+            vars(self)["_linkwright_thread"] = thread
+            vars(self)["run"] = _ending_quietly(self.run)
+            starter.owner.add(thread)
+            thread.wake()
+        original(self)
+
+    return start
+
+
+def _ending_quietly(run: Callable[[], object]) -> Callable[[], None]:
+    def run_until_killed() -> None:
+        with suppress(EndedByTest):
+            run()
+
+    return run_until_killed
+
+
+def _bootstrap(original: Original) -> Original:
+    """Return the replacement of the first function that a new thread runs."""
+
+    @wraps(original)
+    def bootstrap(self: threading.Thread) -> None:
+        thread = _lockstep_thread(self)
+        if thread is None:
+            original(self)
+            return
+        thread.begin()
+        try:
+            original(self)
+        finally:
+            thread.end()
+
+    return bootstrap
+
+
+def _join(original: Original) -> Original:
+    @wraps(original)
+    def join(self: threading.Thread, timeout: float | None = None) -> None:
+        thread, current = _lockstep_thread(self), current_thread()
+        if thread is not None and current is not None and thread is not current:
+            thread.ended.add_waiter(current.wake)
+            clock = current.clock
+            end_ns = None if timeout is None else current.time_after(timeout)
+            while not thread.ended.ended() and (end_ns is None or clock.steady_ns() < end_ns):
+                current.wait(end_ns)
+            thread.ended.remove_waiter(current.wake)
+            if not thread.ended.ended():
+                return
+        original(self, timeout)
+
+    return join
+
+
+def _is_alive(original: Original) -> Original:
+    @wraps(original)
+    def is_alive(self: threading.Thread) -> bool:
+        thread = _lockstep_thread(self)
+        return bool(original(self)) and (thread is None or not thread.ended.ended())
+
+    return is_alive
+
+
+def _lockstep_thread(thread: threading.Thread) -> LockstepThread | None:
+    found: LockstepThread | None = vars(thread).get("_linkwright_thread")
+    return found
+
+
+def _select(original: Original) -> Original:
+    """Return the replacement of the wait of an event loop for its sockets."""
+
+    @wraps(original)
+    def select(self: selectors.BaseSelector, timeout: float | None = None) -> Any:
+        thread = current_thread()
+        if thread is None:
+            return original(self, timeout)
+        clock = thread.clock
+        end_ns = None if timeout is None else thread.time_after(timeout)
+        thread.turns.pollers.add(thread)
+        try:
+            while not (events := original(self, 0)) and (end_ns is None or clock.steady_ns() < end_ns):
+                thread.wait(end_ns)
+        finally:
+            thread.turns.pollers.discard(thread)
+        return events
+
+    return select
+
+
+def _set_signal(original: Original) -> Original:
+    @wraps(original)
+    def set_signal(number: int, handler: Any, /) -> Any:
+        thread = current_thread()
+        if thread is None:
+            return original(number, handler)
+        return thread.owner.set_signal_handler(number, handler)
+
+    return set_signal
+
+
+_PATCHES: list[tuple[Any, str, Callable[[Any], Any]]] = [
+    (time, "time", _system_s),
+    (time, "time_ns", _system_ns),
+    (time, "monotonic", _steady_s),
+    (time, "monotonic_ns", _steady_ns),
+    (time, "perf_counter", _steady_s),
+    (time, "perf_counter_ns", _steady_ns),
+    (time, "sleep", _sleep),
+    (threading, "_time", _steady_s),
+    (threading, "_allocate_lock", lambda _: ThreadAwareLock),
+    (threading, "Lock", lambda _: ThreadAwareLock),
+    (threading, "RLock", _recursive_lock),
+    (threading.Thread, "start", _start),
+    (threading.Thread, "_bootstrap", _bootstrap),
+    (threading.Thread, "join", _join),
+    (threading.Thread, "is_alive", _is_alive),
+    (queue, "time", _steady_s),
+    (queue, "SimpleQueue", _simple_queue),
+    (signal, "signal", _set_signal),
+    (selectors.DefaultSelector, "select", _select),
+    (clocks.Clock, "now", _polling),
+    (executors.SpinningExecutor, "_spin_single", _polling),
+]

@@ -1,0 +1,178 @@
+"""A program with a ``main`` that runs in a graph whose time passes in steps."""
+
+from __future__ import annotations
+
+import importlib
+import os
+import random
+import signal
+import sys
+import threading
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from functools import partial
+from pathlib import Path
+from types import ModuleType
+from typing import Any, cast
+
+from linkwright.graph import Graph
+from linkwright.graph.faults import ExternalShutdownException
+from linkwright.standins.rclpy_api.state import RclpyState, use_state
+from linkwright.testing.programs.graphs import ProgramGraph
+from linkwright.testing.programs.threads import EndedByTest, LockstepThread, Turns
+
+Main = str | Path | Callable[[], object]
+
+
+class Program:
+    """A program that runs in a stepped graph. `SteppedGraph.start_program` creates it.
+
+    Attributes:
+        exit_code: the exit code after the end: 0, 1 after an exception, or the argument of ``sys.exit``; None before.
+        error: the exception that ended the program, or None.
+    """
+
+    def __init__(self, main: Main, arguments: Sequence[str], graph: Graph, turns: Turns, seed: int) -> None:
+        self.name, self._main_function = _find_main(main)
+        self.exit_code: int | None = None
+        self.error: BaseException | None = None
+        self.is_interrupted = False
+        self._module = ModuleType("__main__")
+        self._folders = _module_folders(Path(self.name)) if _is_path(main) else []
+        self._arguments = [self.name, *arguments]
+        self._graphs: list[ProgramGraph] = []
+        self._state = RclpyState(partial(self._create_graph, graph))
+        self._seed = seed
+        self._signal_handlers: dict[int, Any] = {signal.SIGINT: signal.default_int_handler}
+        self._main_thread = LockstepThread(turns, self, is_daemon=False)
+        self._threads = [self._main_thread]
+        thread = threading.Thread(target=self._run, name=self.name, daemon=True)
+        thread.start()
+        self._main_thread.wake()
+
+    @property
+    def is_running(self) -> bool:
+        """Whether the program has not ended."""
+        return any(not thread.ended.ended() and not thread.is_daemon for thread in self._threads)
+
+    @property
+    def has_threads(self) -> bool:
+        """Whether a thread of the program has not ended."""
+        return any(not thread.ended.ended() for thread in self._threads)
+
+    def interrupt(self) -> None:
+        """Send the program Ctrl-C, as ``ros2 run`` does: rclpy shuts down, and the main thread is interrupted."""
+        self.is_interrupted = True
+        for context in tuple(self._state.open_contexts):
+            context.shutdown_by_signal()
+        handler = self._signal_handlers[signal.SIGINT]
+        if callable(handler):
+            self._main_thread.interrupt(partial(handler, signal.SIGINT, None))
+
+    def kill(self) -> None:
+        """End all threads of the program at the places where they wait."""
+        for thread in self._threads:
+            if not thread.ended.ended():
+                thread.kill()
+
+    # --- what the threads need ---------------------------------------------------------------------------------------
+
+    @contextmanager
+    def surroundings(self) -> Iterator[None]:
+        """Let the program find its own arguments, main module, modules and rclpy during a turn."""
+        argv, main_module, path = sys.argv, sys.modules["__main__"], list(sys.path)
+        sys.argv, sys.modules["__main__"] = self._arguments, self._module
+        sys.path[:0] = self._folders
+        try:
+            with use_state(self._state):
+                yield
+        finally:
+            sys.argv, sys.modules["__main__"] = argv, main_module
+            if self._folders:
+                sys.path[:] = path
+
+    def add(self, thread: LockstepThread) -> None:
+        """Add a thread that the program starts."""
+        self._threads = [thread for thread in self._threads if not thread.ended.ended()]
+        self._threads.append(thread)
+        thread.ended.add_waiter(self._end_if_done)
+
+    def set_signal_handler(self, number: int, handler: Any) -> Any:
+        """Set the handler of a signal, and return the previous one."""
+        previous_handler = self._signal_handlers.get(number, signal.SIG_DFL)
+        self._signal_handlers[number] = handler
+        return previous_handler
+
+    def _create_graph(self, graph: Graph) -> Graph:
+        self._graphs.append(ProgramGraph(graph))
+        return cast("Graph", self._graphs[-1])
+
+    # --- running -----------------------------------------------------------------------------------------------------
+
+    def run_file(self, path: Path, source: bytes) -> None:
+        """Run a file as ``python FILE`` does. If it only defines ``main``, call that, as ``ros2 run`` does."""
+        self._module.__file__ = str(path)
+        code = compile(source, str(path), "exec")
+        exec(code, vars(self._module))  # noqa: S102  # the user's program
+        main = vars(self._module).get("main")
+        if callable(main) and "__name__" not in code.co_names and not self._graphs:
+            main()
+
+    def _run(self) -> None:
+        thread = self._main_thread
+        thread.begin()
+        try:
+            self._call_main()
+        finally:
+            thread.ended.add_waiter(self._end_if_done)
+            thread.end()
+
+    def _call_main(self) -> None:
+        try:
+            random.seed(self._seed)
+            if "numpy" in sys.modules:
+                sys.modules["numpy"].random.seed(self._seed)
+            self._main_function(self)
+            self.exit_code = 0
+        except EndedByTest:
+            self.exit_code = -signal.SIGTERM
+        except SystemExit as end:
+            self.exit_code = end.code if isinstance(end.code, int) else int(end.code is not None)
+        except BaseException as error:  # noqa: BLE001  # the test raises it
+            is_expected = self.is_interrupted and isinstance(error, (KeyboardInterrupt, ExternalShutdownException))
+            self.exit_code = -signal.SIGINT if is_expected else 1
+            self.error = None if is_expected else error
+
+    def _end_if_done(self) -> None:
+        """End what a process ends when its last thread that is not a daemon has ended."""
+        if self.is_running:
+            return
+        with use_state(self._state):
+            for context in tuple(self._state.open_contexts):
+                context.try_shutdown()
+        self.kill()
+
+
+def _is_path(main: Main) -> bool:
+    return isinstance(main, Path) or (isinstance(main, str) and (main.endswith(".py") or os.sep in main))
+
+
+def _module_folders(path: Path) -> list[str]:
+    """Return the folders in which a file finds modules: its own, and that of the Python package that it is in."""
+    folder = path.parent
+    package_folder = folder
+    while (package_folder / "__init__.py").is_file():
+        package_folder = package_folder.parent
+    return list(dict.fromkeys(map(str, (folder, package_folder))))
+
+
+def _find_main(main: Main) -> tuple[str, Callable[[Program], object]]:
+    """Return the name of a program, and a function that runs it."""
+    if isinstance(main, (str, Path)) and _is_path(main):
+        path = Path(main).resolve()
+        source = path.read_bytes()
+        return str(path), lambda program: program.run_file(path, source)
+    if isinstance(main, str):
+        return main, lambda _: importlib.import_module(main).main()
+    function = cast("Callable[[], object]", main)
+    return getattr(function, "__name__", type(function).__name__), lambda _: function()

@@ -1,0 +1,39 @@
+"""Folders of students, and whether anything of a run is left."""
+
+from __future__ import annotations
+
+import contextlib
+import shutil
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+
+@pytest.fixture
+def class_folder() -> Iterator[Path]:
+    """A folder that every user may pass through, unlike those of pytest."""
+    folder = Path(tempfile.mkdtemp(prefix="linkwright-class-"))
+    folder.chmod(0o755)
+    yield folder
+    shutil.rmtree(folder, ignore_errors=True)
+
+
+@pytest.fixture
+def student(class_folder: Path) -> Path:
+    """A student's folder."""
+    folder = class_folder / "student"
+    folder.mkdir()
+    return folder
+
+
+def processes_with(word: str) -> list[int]:
+    """The numbers of the processes that have a word among their arguments."""
+    found = []
+    for process in Path("/proc").iterdir():
+        if process.name.isdecimal():
+            with contextlib.suppress(OSError):
+                if word.encode() in (process / "cmdline").read_bytes():
+                    found.append(int(process.name))
+    return found

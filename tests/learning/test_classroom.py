@@ -1,0 +1,160 @@
+"""A learner's way through a course: files, checks, hints, solutions, and the progress that is kept."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from linkwright.cli import main
+from linkwright.diagnostics import LinkwrightError
+from linkwright.learning.checks.running import check_in_process
+from linkwright.learning.classroom import open_classroom
+from linkwright.learning.course import find_course, load_course
+from linkwright.learning.lesson_tests import test_lesson as run_lesson_tests
+
+SOLUTION = "01-one-link/solution/one-link/robot.urdf"
+
+
+@pytest.fixture
+def workspace(tmp_path, monkeypatch):
+    (tmp_path / "ws").mkdir()
+    monkeypatch.chdir(tmp_path / "ws")
+    return tmp_path / "ws"
+
+
+def learn(capsys, *words):
+    status = main(["learn", *words])
+    output = capsys.readouterr()
+    return status, output.out, output.err
+
+
+def test_a_step_turns_green_when_the_work_is_done(workspace, capsys):
+    status, out, _ = learn(capsys, "check", "--course", "example")
+    assert status == 1
+    assert "✗ The robot has the link box.\n      'ws' has no file 'robot.urdf'\n  ✗ It looks like" in out
+    (workspace / "robot.urdf").write_text((find_course("example") / SOLUTION).read_text())
+    status, out, _ = learn(capsys, "check", "--course", "example")
+    assert (status, out.splitlines()[-1]) == (0, "passed; the next step is 01-one-link/mass")
+    status, out, _ = learn(capsys, "answer", "mass", "25")
+    assert status == 1
+    assert "the area of a side" in out
+    assert learn(capsys, "answer", "mass", "12.5")[0] == 0
+    _, out, _ = learn(capsys, "list")
+    assert out.count("✓") == 2
+
+
+def test_hints_come_one_by_one_and_the_solution_keeps_what_it_replaces(workspace, capsys):
+    (workspace / "robot.urdf").write_text("mine")
+    learn(capsys, "show", "--course", "example")
+    assert "### How" not in learn(capsys, "hint")[1]
+    assert "### How" in learn(capsys, "hint")[1]
+    status, out, _ = learn(capsys, "solution")
+    assert (status, out) == (0, "robot.urdf\n")
+    (kept,) = (workspace / "replaced").rglob("robot.urdf")
+    assert kept.read_text() == "mine"
+    text = (workspace / "learn.yaml").read_text()
+    assert "hints: 2" in text
+    assert "solution: true" in text
+
+
+def test_the_result_is_data_in_all_languages(workspace, capsys):
+    _, out, _ = learn(capsys, "check", "one-link", "--course", "example", "--json")
+    result = json.loads(out)
+    assert result["passed"] is False
+    assert result["checks"][0]["title"]["zh"] == "机器人有名为 box 的连杆。"
+    assert "没有文件" in result["checks"][0]["message"]["zh"]
+
+
+def test_a_broken_progress_file_is_refused_and_kept(workspace, capsys):
+    for text in ("a: [", "course: example\nsteps: {a: {nonsense: 1}}", "3", "course: example\nsteps: {a: {passed: 3}}"):
+        (workspace / "learn.yaml").write_text(text)
+        status, _, err = learn(capsys, "check", "one-link")
+        assert status == 1
+        assert "LEARN110" in err
+        assert (workspace / "learn.yaml").read_text() == text
+
+
+def test_a_workspace_belongs_to_one_course(workspace, capsys):
+    learn(capsys, "show", "--course", "example")
+    status, _, err = learn(capsys, "list", "--course", "robot")
+    assert status == 1
+    assert "LEARN114" in err
+    assert learn(capsys, "list", "--course", "example")[0] == 0
+
+
+def test_a_new_course_passes_its_tests_and_is_never_written_over_files(tmp_path, capsys):
+    folder = tmp_path / "mine"
+    assert learn(capsys, "new", str(folder))[0] == 0
+    status, out, err = learn(capsys, "test", str(folder))
+    assert (status, "FAIL" in out) == (0, False), out
+    assert "0 failed" in err
+    status, _, err = learn(capsys, "new", str(folder))
+    assert status == 1
+    assert "LEARN115" in err
+
+
+def edit(path: Path, old: str, new: str) -> None:
+    text = path.read_text(encoding="utf-8")
+    assert old in text
+    path.write_text(text.replace(old, new), encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    ("file", "old", "new", "problem"),
+    [
+        ("checks.py", "(0.5, 0.5, 0.5)", "(0.5, 0.5, 0.7)", "a right solution fails"),
+        ("checks.py", "def has_box", "def has_box(work): pass\ndef unused", "passes before"),
+        ("checks.py", 'check("mass"', 'check("weight"', "no step 'weight'"),
+        ("cases.py", "says=\"there is 'bax'\"", 'says="nothing"', "lacks 'nothing'"),
+        ("cases.py", "0.5 0.5 0.05", "0.5 0.5 0.50", "a wrong solution passes"),
+        ("lesson.zh.md", "# 一个连杆\n", "# 一个连杆\n\n![x](images/x.png)\n", "'images/x.png' is missing"),
+    ],
+)
+def test_the_tests_of_a_lesson_find_its_mistakes(tmp_path, capsys, file, old, new, problem):
+    folder = tmp_path / "mine"
+    learn(capsys, "new", str(folder))
+    edit(folder / "01-one-link" / file, old, new)
+    if problem == "passes before":
+        edit(folder / "01-one-link" / "checks.py", "def is_cube(work):", "def is_cube(work):\n    return")
+    course = load_course(folder)
+    problems = [str(result.problem) for result in run_lesson_tests(course, course.lessons[0]) if result.problem]
+    assert any(problem in found for found in problems), problems
+
+
+def test_a_check_that_hangs_or_dies_fails_and_leaves_no_process(tmp_path, capsys):
+    folder = tmp_path / "mine"
+    learn(capsys, "new", str(folder))
+    checks = folder / "01-one-link" / "checks.py"
+    marker = tmp_path / "pid"
+    start = (
+        "import os, subprocess, sys, time\n"
+        f"child = subprocess.Popen([sys.executable, '-c', 'import time; time.sleep(60)'])\n"
+        f"open({str(marker)!r}, 'w').write(str(child.pid))\n"
+    )
+    step = load_course(folder).steps[0]
+    checks.write_text(start + "while True: time.sleep(1)\n")
+    result = check_in_process(step, tmp_path, time_limit=3.0)
+    assert "took longer than 3 s" in str(result.checks[0].message)
+    if sys.platform != "win32":
+        assert not is_running(int(marker.read_text()))
+    checks.write_text("import os\nos._exit(7)\n")
+    result = check_in_process(step, tmp_path)
+    assert "ended early" in str(result.checks[0].message)
+    checks.write_text("1 / 0\n")
+    result = check_in_process(step, tmp_path)
+    assert "ZeroDivisionError" in str(result.checks[0].message)
+
+
+def is_running(pid: int) -> bool:
+    state = subprocess.run(["ps", "-o", "stat=", "-p", str(pid)], capture_output=True, text=True, check=False).stdout
+    return bool(state.strip()) and not state.startswith("Z")
+
+
+def test_a_read_only_workspace_is_one_error(tmp_path, monkeypatch):
+    classroom = open_classroom(tmp_path / "file" / "ws", "example")
+    (tmp_path / "file").write_text("")
+    with pytest.raises(LinkwrightError) as raised:
+        classroom.open_step(classroom.course.steps[0])
+    assert raised.value.diagnostics[0].code == "LEARN111"

@@ -1,0 +1,142 @@
+"""Exercises: their judges are fair, their solutions score as they should, and results repeat."""
+
+import json
+from statistics import mean
+
+import pytest
+
+from linkwright.cli.entry import main
+from linkwright.diagnostics import LinkwrightError
+from linkwright.learning.judging.exercise import Figure, exercise_names, find_exercise, load_exercise
+from linkwright.learning.judging.running import judge_program
+from linkwright.learning.judging.world import write_world
+from linkwright.learning.local_text import LocalText
+from linkwright.testing import SteppedSimulation
+
+pytestmark = pytest.mark.extra("sim")
+
+NAMES = exercise_names()
+SEEDS = (0, 1, 2)
+FAST = "avoid_obstacles"
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_texts_exist_in_both_languages(name):
+    exercise = find_exercise(name)
+    assert set(exercise.title.texts) == set(exercise.figure.name.texts) == {"en", "zh"}
+    assert exercise.text("en") != exercise.text("zh")
+    for text in (exercise.text("en"), exercise.text("zh")):
+        assert f"{exercise.figure.full:g}" in text
+        assert f"{exercise.figure.half:g}" in text
+
+
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.slow
+def test_the_reference_scores_over_90_with_every_seed(name):
+    exercise = find_exercise(name)
+    results = list(judge_program(exercise, exercise.solution("reference"), SEEDS))
+    assert [result.error for result in results] == [None] * len(SEEDS)
+    assert min(result.score for result in results) > 90.0, [result.data for result in results]
+
+
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.slow
+def test_the_simple_solution_scores_about_half(name):
+    exercise = find_exercise(name)
+    results = list(judge_program(exercise, exercise.solution("simple"), SEEDS))
+    assert [result.error for result in results] == [None] * len(SEEDS)
+    assert 30.0 < mean(result.score for result in results) < 70.0, [result.data for result in results]
+
+
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.slow
+def test_the_template_runs_and_scores_nearly_nothing(name):
+    exercise = find_exercise(name)
+    (result,) = judge_program(exercise, exercise.template, [0])
+    assert result.error is None
+    assert result.score < 10.0
+
+
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.slow
+def test_two_runs_are_bit_identical(name):
+    exercise = find_exercise(name)
+    first, second = (next(judge_program(exercise, exercise.solution("reference"), [3])) for _ in range(2))
+    assert first == second
+
+
+def test_a_program_that_fails_gets_its_traceback(tmp_path):
+    program = tmp_path / "program.py"
+    program.write_text("import rclpy\nrclpy.init()\nunknown\n", encoding="utf-8")
+    (result,) = judge_program(find_exercise(FAST), program, [0])
+    assert result.score == 0.0
+    assert "program.py" in result.error
+    assert "line 3" in result.error
+    assert result.error.startswith(f'  File "{program}"')
+    assert result.data["time"] < 5.0
+
+
+def test_a_program_cannot_ask_the_simulator(tmp_path):
+    program = tmp_path / "program.py"
+    program.write_text(
+        "import rclpy, time\nfrom rclpy.node import Node\nrclpy.init()\nnode = Node('n')\ntime.sleep(1.0)\n"
+        "print([n for n, _ in node.get_service_names_and_types()], [n for n, _ in node.get_topic_names_and_types()])\n"
+        "assert not [n for n, _ in node.get_service_names_and_types() if 'entity' in n or 'physics' in n]\n"
+        "assert not [n for n, _ in node.get_topic_names_and_types() if 'states' in n and 'joint' not in n]\n",
+        encoding="utf-8",
+    )
+    (result,) = judge_program(find_exercise(FAST), program, [0])
+    assert result.error is None
+    with SteppedSimulation(services=False) as test, pytest.raises(LookupError):
+        test.call("/get_entity_state", None)
+
+
+def test_the_command_prints_a_table_or_json(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert main(["learn", "judge", FAST, "--start"]) == 0
+    assert (tmp_path / f"{FAST}.py").read_text(encoding="utf-8") == find_exercise(FAST).template.read_text(
+        encoding="utf-8"
+    )
+    assert main(["learn", "judge", FAST, "--start"]) != 0, "a file of the user is not overwritten"
+    capsys.readouterr()
+    (tmp_path / "done.py").write_text("import sys\nprint('hello')\nsys.exit(0)\n", encoding="utf-8")
+    assert main(["learn", "judge", FAST, "done.py", "--seeds", "1", "--json"]) == 1
+    data = json.loads(capsys.readouterr().out)
+    assert data["exercise"] == FAST
+    assert data["runs"][0]["seed"] == 0
+    assert set(data["runs"][0]["reasons"][0]) == {"en", "zh"}
+    assert main(["learn", "judge", FAST, "missing.py"]) != 0
+    assert "LEARN142" in capsys.readouterr().err
+    assert main(["learn", "exercises"]) == 0
+    assert FAST in capsys.readouterr().out
+
+
+def test_mistakes_in_an_exercise_are_reported(tmp_path):
+    with pytest.raises(LinkwrightError, match="there is no exercise"):
+        find_exercise("avoid_obstacle")
+    (tmp_path / "exercise.toml").write_text("difficulty = 1\n", encoding="utf-8")
+    with pytest.raises(LinkwrightError, match="'figure' is missing"):
+        load_exercise(tmp_path)
+    (tmp_path / "exercise.toml").write_text("difficulty = \n", encoding="utf-8")
+    with pytest.raises(LinkwrightError, match="TOML"):
+        load_exercise(tmp_path)
+
+
+def test_a_world_in_real_time_has_the_judge(tmp_path):
+    arrangement = write_world(find_exercise(FAST), 1, tmp_path, publishes=True)
+    with SteppedSimulation(arrangement.world, find_exercise(FAST).robot, pose=arrangement.pose) as test:
+        status = test.record("/judge/status")
+        test.advance(1.0)
+        data = json.loads(status.last.data)
+        assert data["exercise"] == FAST
+        assert data["time"] == pytest.approx(1.0, abs=0.1)
+        test.reset()
+        test.advance(0.4)
+        assert json.loads(status.last.data)["time"] < 0.5
+
+
+def test_the_points_between_figures_are_linear():
+    figure = Figure(LocalText({"en": "time"}), "s", 100.0, 60.0, 30.0)
+    assert [figure.points(seconds) for seconds in (120.0, 100.0, 80.0, 60.0, 45.0, 30.0, 10.0)] == [
+        *(0.0, 0.0, 25.0, 50.0, 75.0, 100.0, 100.0)
+    ]

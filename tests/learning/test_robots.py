@@ -1,0 +1,140 @@
+"""Checks see the robot, however it was written, and say in one sentence what is not yet so."""
+
+import pytest
+
+from linkwright.geometry.shapes import Box, Cylinder, Sphere
+from linkwright.learning import NotYet, ShapeSpec, Work
+
+URDF = """<robot name="r">
+  <link name="base_link">
+    <visual><geometry><cylinder radius="0.2" length="0.16"/></geometry>
+      <material name="orange"><color rgba="1 0.4 0 1"/></material></visual>
+    <collision><origin xyz="0 0 0.1"/><geometry><box size="0.4 0.4 0.2"/></geometry></collision>
+    <inertial><mass value="2"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>
+  </link>
+  <link name="left_wheel_link">
+    <visual><origin rpy="1.57 0 0"/><geometry><cylinder radius="0.06" length="0.025"/></geometry></visual>
+  </link>
+  <joint name="left_wheel_joint" type="continuous">
+    <origin xyz="0 0.19 -0.05"/><parent link="base_link"/><child link="left_wheel_link"/><axis xyz="0 2 0"/>
+  </joint>
+</robot>
+"""
+
+
+@pytest.fixture
+def robot(tmp_path):
+    (tmp_path / "r.urdf").write_text(URDF)
+    return Work(tmp_path, lesson=tmp_path).robot("r.urdf")
+
+
+def test_what_is_there_passes(robot):
+    base, wheel = robot.link("base_link"), robot.link("left_wheel_link")
+    base.expect_shape(ShapeSpec(Cylinder(0.2, 0.16), along=(0, 0, 1), at=(0, 0, 0)))
+    base.expect_shape(ShapeSpec(Box((0.4, 0.4, 0.2)), at=(0, 0, 0.1)), "collision")
+    base.expect_color((1, 0.4, 0))
+    base.expect_mass(1.5, 2.5)
+    wheel.expect_shape(ShapeSpec(Cylinder(0.06, 0.025), along=(0, 1, 0)))
+    joint = robot.joint("left_wheel_joint")
+    joint.expect_type("continuous", "revolute")
+    joint.expect_links("base_link", "left_wheel_link")
+    joint.expect_axis((0, 1, 0))
+    robot.expect_position("left_wheel_link", (0, 0.19, -0.05))
+    robot.expect_position("base_link", (0, -0.19, 0.05), frame="left_wheel_link")
+
+
+@pytest.mark.parametrize(
+    ("expectation", "message"),
+    [
+        (
+            lambda robot: robot.link("left_whell_link"),
+            "no link is called 'left_whell_link'; there is 'left_wheel_link'",
+        ),
+        (lambda robot: robot.joint("x"), "no joint is called 'x'"),
+        (
+            lambda robot: robot.link("base_link").expect_shape(ShapeSpec(Cylinder(0.2, 0.1))),
+            "the visual of 'base_link': its length is 0.16 m, but should be 0.1 m",
+        ),
+        (
+            lambda robot: robot.link("base_link").expect_shape(ShapeSpec(Sphere(0.2))),
+            "the visual of 'base_link': it is a cylinder, but should be a sphere",
+        ),
+        (
+            lambda robot: robot.link("left_wheel_link").expect_shape(ShapeSpec(Cylinder(0.06, 0.025), along=(0, 0, 1))),
+            "its axis points along 0 -1 0.0008, but should point along 0 0 1",
+        ),
+        (
+            lambda robot: robot.link("left_wheel_link").expect_shape(ShapeSpec(Box((1, 1, 1))), "collision"),
+            "the link 'left_wheel_link' has no <collision>",
+        ),
+        (lambda robot: robot.link("left_wheel_link").expect_mass(1, 2), "has no <inertial>"),
+        (lambda robot: robot.link("base_link").expect_mass(3, 4), "is 2 kg, but should be between 3 and 4 kg"),
+        (lambda robot: robot.link("base_link").expect_color((0, 0, 1)), "has the color 1 0.4 0"),
+        (lambda robot: robot.link("left_wheel_link").expect_color((0, 0, 1)), "has no color"),
+        (lambda robot: robot.joint("left_wheel_joint").expect_type("fixed"), "has the type 'continuous'"),
+        (
+            lambda robot: robot.joint("left_wheel_joint").expect_links("left_wheel_link", "base_link"),
+            "has parent and child exchanged: the parent is 'left_wheel_link'",
+        ),
+        (
+            lambda robot: robot.joint("left_wheel_joint").expect_links("base_link", "x"),
+            "should connect 'base_link' and 'x'",
+        ),
+        (lambda robot: robot.joint("left_wheel_joint").expect_axis((0, -1, 0)), "has the wrong sign"),
+        (lambda robot: robot.joint("left_wheel_joint").expect_axis((1, 0, 0)), "is 0 2 0, but should be 1 0 0"),
+        (
+            lambda robot: robot.expect_position("left_wheel_link", (0, 0.2, 0)),
+            "the frame of 'left_wheel_link' is at 0 0.19 -0.05 in the frame of 'base_link', but should be at 0 0.2 0",
+        ),
+    ],
+)
+def test_what_is_missing_is_said(robot, expectation, message):
+    with pytest.raises(NotYet) as raised:
+        expectation(robot)
+    assert message in str(raised.value)
+    assert set(raised.value.text.texts) == {"en", "zh"}
+
+
+def test_an_invalid_description_is_said_with_its_line(tmp_path):
+    (tmp_path / "r.urdf").write_text(URDF.replace(' length="0.16"', ""))
+    with pytest.raises(NotYet, match=r"r\.urdf, line 3: .*'length'"):
+        Work(tmp_path, lesson=tmp_path).robot("r.urdf")
+    (tmp_path / "r.urdf").write_text("<robot>")
+    with pytest.raises(NotYet, match=r"r\.urdf, line 1"):
+        Work(tmp_path, lesson=tmp_path).robot("r.urdf")
+
+
+def test_missing_and_empty_files_are_said(tmp_path):
+    work = Work(tmp_path, lesson=tmp_path)
+    (tmp_path / "robot.urdf").write_text("")
+    with pytest.raises(NotYet, match=r"'robot\.urdf' is empty"):
+        work.robot("robot.urdf")
+    with pytest.raises(NotYet, match=r"has no file 'robto\.urdf'; it has 'robot\.urdf'"):
+        work.robot("robto.urdf")
+
+
+def test_a_package_is_found_by_its_manifest(tmp_path):
+    work = Work(tmp_path, lesson=tmp_path)
+    with pytest.raises(NotYet, match="no package 'mbot' below 'src'"):
+        work.package("mbot")
+    folder = tmp_path / "src" / "group" / "other"
+    folder.mkdir(parents=True)
+    (folder / "package.xml").write_text("<package><name>mbto</name></package>")
+    with pytest.raises(NotYet, match="its packages are 'mbto'"):
+        work.package("mbot")
+    (folder / "package.xml").write_text("<package><name>mbot</name></package>")
+    assert work.package("mbot").folder == folder
+
+
+def test_a_number_is_compared_and_typical_slips_have_their_message(tmp_path):
+    slip = NotYet(en="That is the diameter.")
+    work = Work(tmp_path, lesson=tmp_path, answer=" 0,06 ")
+    work.expect_number(0.06, tolerance=0.001)
+    with pytest.raises(NotYet, match="diameter"):
+        work.expect_number(0.03, tolerance=0.001, slips={0.06: slip})
+    with pytest.raises(NotYet, match="not the right number"):
+        work.expect_number(0.03, tolerance=0.001)
+    with pytest.raises(NotYet, match="no answer yet"):
+        Work(tmp_path, lesson=tmp_path).number()
+    with pytest.raises(NotYet, match="'six' is not a number"):
+        Work(tmp_path, lesson=tmp_path, answer="six").number()

@@ -1,0 +1,447 @@
+"""Programs with a ``main`` that run in lockstep with a stepped graph."""
+
+import random
+import threading
+import time
+import traceback
+from pathlib import Path
+from textwrap import dedent
+
+import pytest
+
+from linkwright.messages import String, get_service
+from linkwright.testing import BudgetExceededError, SteppedGraph, SteppedSimulation
+
+ROBOT = Path(__file__).parents[2] / "robots/my_robot_description/urdf/mbot_gazebo.xacro"
+DRIVE_SQUARE = Path(__file__).parents[2] / "robots/my_robot_control/my_robot_control/drive_square.py"
+AddTwoInts = get_service("example_interfaces/srv/AddTwoInts")
+
+HEAD = """
+import random
+import sys
+import threading
+import time
+
+import rclpy
+import rclpy.executors
+from rclpy.node import Node
+from std_msgs.msg import String
+
+"""
+
+
+@pytest.fixture
+def write(tmp_path):
+    def write_program(text: str, name: str = "program.py") -> Path:
+        path = tmp_path / name
+        path.write_text(HEAD + dedent(text), encoding="utf-8")
+        return path
+
+    return write_program
+
+
+def run(path, seconds=2.0, args=(), topic="/chatter"):
+    """Return the messages that a program publishes in simulated seconds, and the program."""
+    with SteppedGraph() as test:
+        chatter = test.record(topic, String)
+        program = test.start_program(path, args)
+        test.advance(seconds)
+        messages = [message.data for message in chatter]
+    return messages, program
+
+
+def test_a_spinning_node_runs_in_simulated_time(write):
+    program = write("""
+        def main():
+            rclpy.init()
+            node = Node("talker")
+            publisher = node.create_publisher(String, "chatter", 10)
+            node.create_timer(0.5, lambda: publisher.publish(String(data=f"{time.monotonic()} {time.time()}")))
+            rclpy.spin(node)
+
+        if __name__ == "__main__":
+            main()
+    """)
+    messages, ended = run(program)
+    assert messages == [f"{seconds} {1_700_000_000 + seconds}" for seconds in (0.5, 1.0, 1.5, 2.0)]
+    assert ended.error is None
+    assert not ended.is_running
+
+
+def test_a_loop_that_spins_once_and_sleeps(write):
+    program = write("""
+        rclpy.init()
+        node = Node("talker")
+        publisher = node.create_publisher(String, "chatter", 10)
+        while rclpy.ok():
+            rclpy.spin_once(node, timeout_sec=0.1)
+            publisher.publish(String(data=f"{time.monotonic():.3f}"))
+            time.sleep(0.4)
+    """)
+    assert run(program)[0] == ["0.100", "0.600", "1.100", "1.600"]
+
+
+def test_a_loop_that_never_waits_still_sees_time_pass(write):
+    program = write("""
+        rclpy.init()
+        node = Node("talker")
+        publisher = node.create_publisher(String, "chatter", 10)
+        node.create_timer(0.5, lambda: publisher.publish(String(data="tick")))
+        while rclpy.ok() and time.time() < 1_700_000_001.6:
+            rclpy.spin_once(node, timeout_sec=0)
+        end = node.get_clock().now().nanoseconds + 200_000_000
+        while node.get_clock().now().nanoseconds < end:
+            pass
+        publisher.publish(String(data="end"))
+    """)
+    assert run(program)[0] == ["tick", "tick", "tick", "end"]
+
+
+def test_a_rate_with_a_spinning_thread(write):
+    program = write("""
+        def spin(node):
+            try:
+                rclpy.spin(node)
+            except rclpy.executors.ExternalShutdownException:
+                pass
+
+        def main(args=None):
+            rclpy.init(args=args)
+            node = Node("talker")
+            thread = threading.Thread(target=spin, args=(node,), daemon=True)
+            thread.start()
+            publisher = node.create_publisher(String, "chatter", 10)
+            rate = node.create_rate(2)
+            try:
+                while rclpy.ok():
+                    rate.sleep()
+                    publisher.publish(String(data=str(node.get_clock().now().nanoseconds / 1e9 - 1.7e9)))
+            except KeyboardInterrupt:
+                pass
+            rclpy.try_shutdown()
+            thread.join()
+    """)
+    assert run(program)[0] == ["0.5", "1.0", "1.5", "2.0"]
+
+
+def test_a_client_waits_for_a_service_of_the_graph(write):
+    program = write("""
+        from example_interfaces.srv import AddTwoInts
+
+        rclpy.init()
+        node = Node("client")
+        publisher = node.create_publisher(String, "chatter", 10)
+        client = node.create_client(AddTwoInts, "add")
+        while not client.wait_for_service(timeout_sec=1.0):
+            publisher.publish(String(data=f"waiting at {time.monotonic()}"))
+        future = client.call_async(AddTwoInts.Request(a=1, b=2))
+        rclpy.spin_until_future_complete(node, future)
+        publisher.publish(String(data=str(future.result().sum)))
+    """)
+    with SteppedGraph() as test:
+        chatter = test.record("/chatter", String)
+        test.start_program(program)
+        test.advance(2.5)
+
+        def add(request, response):
+            response.sum = request.a + request.b
+            return response
+
+        test.create_node("server").create_service(AddTwoInts, "add", add)
+        test.advance(1.0)
+    assert [message.data for message in chatter] == ["waiting at 1.0", "waiting at 2.0", "3"]
+
+
+ACTION = """
+    from rclpy.action import ActionClient, ActionServer
+    from rclpy.executors import MultiThreadedExecutor
+    from example_interfaces.action import Fibonacci
+
+    def execute(goal):
+        sequence = [0, 1]
+        for _ in range(goal.request.order - 1):
+            time.sleep(0.2)
+            sequence.append(sequence[-1] + sequence[-2])
+            goal.publish_feedback(Fibonacci.Feedback(sequence=sequence))
+        goal.succeed()
+        return Fibonacci.Result(sequence=sequence)
+
+    rclpy.init()
+    node = Node("fibonacci")
+    publisher = node.create_publisher(String, "chatter", 10)
+    server = ActionServer(node, Fibonacci, "fibonacci", execute)
+    executor = MultiThreadedExecutor(4)
+    executor.add_node(node)
+    threading.Thread(target=executor.spin, daemon=True).start()
+    client = ActionClient(node, Fibonacci, "fibonacci")
+    client.wait_for_server()
+    done = threading.Event()
+
+    def say(text):
+        publisher.publish(String(data=f"{time.monotonic():.1f} {text}"))
+
+    def on_goal(future):
+        future.result().get_result_async().add_done_callback(on_result)
+
+    def on_result(future):
+        say(list(future.result().result.sequence))
+        done.set()
+
+    client.send_goal_async(
+        Fibonacci.Goal(order=4), feedback_callback=lambda feedback: say(len(feedback.feedback.sequence))
+    ).add_done_callback(on_goal)
+    done.wait()
+    say("end")
+"""
+
+
+def test_an_action_in_an_executor_of_several_threads(write):
+    program = write(ACTION)
+    messages, _ = run(program)
+    assert messages == ["0.2 3", "0.4 4", "0.6 5", "0.6 [0, 1, 1, 2, 3]", "0.6 end"]
+    assert run(program)[0] == messages
+
+
+def test_threads_queues_pools_and_conditions_of_a_program(write):
+    program = write("""
+        import queue
+        from concurrent.futures import ThreadPoolExecutor
+
+        rclpy.init()
+        node = Node("talker")
+        publisher = node.create_publisher(String, "chatter", 10)
+        work = queue.Queue()
+        lock = threading.Lock()
+
+        def produce():
+            for number in range(3):
+                time.sleep(0.2)
+                with lock:
+                    time.sleep(0.1)
+                    work.put(number)
+
+        thread = threading.Thread(target=produce)
+        thread.start()
+        while thread.is_alive() or not work.empty():
+            try:
+                item = work.get(timeout=0.25)
+            except queue.Empty:
+                item = "empty"
+            with lock:
+                publisher.publish(String(data=f"{time.monotonic():.2f} {item}"))
+        thread.join()
+        with ThreadPoolExecutor(2) as pool:
+            results = list(pool.map(lambda seconds: (time.sleep(seconds), time.monotonic())[1], [0.2, 0.1, 0.1]))
+        publisher.publish(String(data=" ".join(f"{result:.2f}" for result in results)))
+    """)
+    messages, ended = run(program)
+    assert messages[0] == "0.30 empty"
+    assert [message.split()[1] for message in messages if "empty" not in message][:3] == ["0", "1", "2"]
+    start = float(messages[-2].split()[0])
+    assert messages[-1] == " ".join(f"{start + seconds:.2f}" for seconds in (0.2, 0.1, 0.2))
+    assert ended.exit_code == 0
+    assert run(program)[0] == messages
+
+
+def test_asyncio_in_a_program(write):
+    program = write("""
+        import asyncio
+
+        rclpy.init()
+        publisher = Node("talker").create_publisher(String, "chatter", 10)
+
+        async def main():
+            await asyncio.gather(*(say(seconds) for seconds in (0.5, 0.2)))
+            await asyncio.to_thread(time.sleep, 0.5)
+            await say(0.1)
+
+        async def say(seconds):
+            await asyncio.sleep(seconds)
+            publisher.publish(String(data=f"{time.monotonic():.1f}"))
+
+        asyncio.run(main())
+    """)
+    assert run(program)[0] == ["0.2", "0.5", "1.1"]
+
+
+def test_simulated_time_of_the_clock_topic(write):
+    program = write("""
+        rclpy.init()
+        node = Node("talker")
+        publisher = node.create_publisher(String, "chatter", 10)
+        node.create_timer(0.5, lambda: publisher.publish(String(data=str(node.get_clock().now().nanoseconds / 1e9))))
+        rclpy.spin(node)
+    """)
+    with SteppedSimulation() as test:
+        chatter = test.record("/chatter", String)
+        test.start_program(program, ["--ros-args", "-p", "use_sim_time:=true"])
+        test.advance(1.6)
+        assert [message.data for message in chatter] == ["0.5", "1.0", "1.5"]
+
+
+def test_two_programs_have_contexts_and_arguments_of_their_own(write):
+    program = write("""
+        rclpy.init()
+        node = Node("talker")
+        publisher = node.create_publisher(String, "/chatter", 10)
+        for _ in range(2):
+            time.sleep(0.5)
+            publisher.publish(String(data=f"{node.get_namespace()} {sys.argv[1]} {__name__}"))
+        rclpy.shutdown()
+    """)
+    with SteppedGraph() as test:
+        chatter = test.record("/chatter", String)
+        for name in ("red", "blue"):
+            test.start_program(program, [name, "--ros-args", "-r", f"__ns:=/{name}"])
+        test.advance(0.7)
+        assert [node.identity.name for node in test.graph.nodes()].count("talker") == 2
+        test.advance(1.0)
+        names = [node.identity.name for node in test.graph.nodes()]
+        assert "talker" not in names, "a program that ends leaves the graph"
+    assert [message.data for message in chatter] == [f"/{name} {name} __main__" for name in ("red", "blue") * 2]
+
+
+def test_an_exception_reaches_the_test_with_the_place_in_the_file(write):
+    program = write("""
+        rclpy.init()
+        time.sleep(0.5)
+        unknown_name
+    """)
+    with SteppedGraph() as test:
+        started = test.start_program(program)
+        test.advance(0.4)
+        with pytest.raises(NameError, match="unknown_name") as caught:
+            test.advance(0.2)
+        assert str(program) in "".join(traceback.format_exception(caught.value))
+        assert started.exit_code == 1
+        test.advance(1.0)
+
+
+def test_sys_exit_ends_a_program(write):
+    assert run(write("sys.exit(3)"))[1].exit_code == 3
+    assert run(write("sys.exit('no robot')"))[1].exit_code == 1
+
+
+def test_ctrl_c_at_the_end_lets_a_program_stop_the_robot(write):
+    program = write("""
+        rclpy.init()
+        node = Node("talker")
+        publisher = node.create_publisher(String, "chatter", 10)
+        try:
+            rclpy.spin(node)
+        except KeyboardInterrupt:
+            publisher.publish(String(data="stop"))
+            time.sleep(0.5)
+            publisher.publish(String(data="stopped"))
+    """)
+    with SteppedGraph() as test:
+        chatter = test.record("/chatter", String)
+        ended = test.start_program(program)
+        test.advance(1.0)
+    assert [message.data for message in chatter] == ["stop", "stopped"]
+    assert ended.exit_code == 0
+
+
+def test_a_handler_of_the_program_receives_ctrl_c(write):
+    program = write("""
+        import signal
+
+        stopping = threading.Event()
+        signal.signal(signal.SIGINT, lambda number, frame: stopping.set())
+        stopping.wait()
+        sys.exit(4)
+    """)
+    assert run(program)[1].exit_code == 4
+
+
+def test_a_program_that_ignores_ctrl_c_is_ended(write):
+    program = write("""
+        while True:
+            try:
+                time.sleep(1.0)
+            except KeyboardInterrupt:
+                pass
+    """)
+    before = threading.active_count()
+    _, ended = run(program)
+    assert not ended.is_running
+    assert ended.exit_code != 0
+    assert threading.active_count() <= before + 1
+
+
+def test_an_endless_loop_is_ended_with_its_place(write):
+    program = write("""
+        def work():
+            count = 0
+            while True:
+                count += 1
+
+        time.sleep(0.1)
+        work()
+    """)
+    with SteppedGraph() as test:
+        test.start_program(program, budget=0.5)
+        with pytest.raises(BudgetExceededError, match=r"program.py:1[456], in work"):
+            test.advance(1.0)
+
+
+def test_random_numbers_are_the_same_in_each_run(write):
+    program = write("""
+        rclpy.init()
+        publisher = Node("talker").create_publisher(String, "chatter", 10)
+        time.sleep(0.1)
+        publisher.publish(String(data=str(random.random())))
+    """)
+    random.seed()
+    first = run(program)[0]
+    random.seed()
+    assert run(program)[0] == first
+
+
+def test_a_file_that_only_defines_main_is_a_program(write):
+    program = write("""
+        def main():
+            rclpy.init()
+            Node("talker").create_publisher(String, "chatter", 10).publish(String(data="once"))
+    """)
+    assert run(program)[0] == ["once"]
+    assert run(write(program.read_text()[len(HEAD) :] + "\nmain()", "calls_main.py"))[0] == ["once"]
+
+
+def test_functions_and_modules_are_programs_too(write, monkeypatch, tmp_path):
+    said = []
+
+    def main():
+        time.sleep(0.5)
+        said.append(time.monotonic())
+
+    run(main)
+    assert said == [0.5]
+    write("def main(): sys.exit(7)", "my_program_module.py")
+    monkeypatch.syspath_prepend(tmp_path)
+    assert run("my_program_module")[1].exit_code == 7
+
+
+def test_a_file_that_does_not_exist_is_an_error_at_once(tmp_path):
+    sleep = time.sleep
+    with SteppedGraph() as test, pytest.raises(FileNotFoundError):
+        test.start_program(tmp_path / "missing.py")
+    assert time.sleep is sleep
+
+
+def test_the_functions_of_python_are_restored(write):
+    originals = (time.sleep, time.time, threading.Lock, threading.Thread.start)
+    run(write("time.sleep(0.1)"))
+    assert (time.sleep, time.time, threading.Lock, threading.Thread.start) == originals
+
+
+def test_the_nodes_of_a_package_drive_in_a_simulation():
+    poses = []
+    for _ in range(2):
+        with SteppedSimulation("empty", ROBOT) as test:
+            program = test.start_program(DRIVE_SQUARE, ["--ros-args", "-p", "side:=0.5"])
+            test.advance(25.0)
+            poses.append(test.robot_pose())
+            assert any("the square is closed" in record.text for record in test.log)
+        assert program.exit_code == 0
+    assert poses[0] == poses[1]
