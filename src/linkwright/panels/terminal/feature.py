@@ -76,7 +76,7 @@ class TerminalFeature(PageFeature):
         self._folder, self._command = folder, command
         self._report()
 
-    def opening(self) -> list[ServerMessage]:
+    def opening_messages(self) -> list[ServerMessage]:
         """Return the terminals, if pages may run shells."""
         return [] if self._folder is None else [self._state(None)]
 
@@ -97,7 +97,7 @@ class TerminalFeature(PageFeature):
             problem = phrase("the terminal needs a package that is not installed: {hint}", hint=install_hint("learn"))
             page.send(self._state(page, problem))
 
-    def page_closed(self, page: Page) -> None:
+    def remove_page(self, page: Page) -> None:
         """Keep the terminals of a page that was closed."""
         left = [terminal for terminal in self._terminals.values() if terminal.page is page]
         for terminal in left:
