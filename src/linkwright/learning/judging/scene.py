@@ -105,6 +105,15 @@ class Scene:
             f'<link name="link"><kinematic>true</kinematic>{collision}{visuals}</link></model>'
         )
 
+    def add_block(self, name: str, position: Sequence[float], size: float, color: Color) -> None:
+        """Add a cube on the ground, which the judge moves."""
+        shape = f"<geometry><box><size>{size:.4f} {size:.4f} {size:.4f}</size></box></geometry>"
+        self._models.append(
+            f"<model name={quoteattr(name)}><pose>{_join((*position, size / 2))} 0 0 0</pose>"
+            f'<link name="link"><kinematic>true</kinematic><collision name="collision">{shape}</collision>'
+            f'<visual name="visual">{shape}{_material(color)}</visual></link></model>'
+        )
+
     def add_table(self, name: str, center: Sequence[float], yaw: float, half: float, color: Color = YELLOW) -> None:
         """Add a table with four legs, which a robot can drive below, and which the judge moves.
 
