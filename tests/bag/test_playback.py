@@ -174,7 +174,7 @@ class Shown:
 
     def listen(self, topic: str) -> None:
         self.listener.create_subscription(String, topic, lambda message: self.heard.append(message.data), 100)
-        self.playback.review()
+        self.playback.update_subscribed_topics()
 
     def _tick(self, message: Any) -> None:
         stamp = message.clock

@@ -407,10 +407,10 @@ def test_what_a_new_publisher_says_waits_for_who_is_known_to_be_able_to_hear_it(
     publisher.expects_listeners = expects
     now[0] += seconds - 0.1
     publisher.put(b"first")
-    assert publisher.waits
+    assert publisher.has_queued_messages
     now[0] += 0.1
-    assert publisher.settle()
-    assert not publisher.waits
+    assert publisher.process_pending()
+    assert not publisher.has_queued_messages
     graph.close_threadsafe()
 
 

@@ -75,7 +75,7 @@ def test_models_are_drawn_and_move(live, open_page):
 
 def test_the_bar_is_there_with_the_simulation_and_the_mouse_handles_models(live, open_page, monkeypatch, tmp_path):
     listed = threading.Event()
-    monkeypatch.setattr(entities, "choices", lambda packages: (listed.wait(SECONDS), ModelChoices([]))[1])
+    monkeypatch.setattr(entities, "model_choices", lambda packages: (listed.wait(SECONDS), ModelChoices([]))[1])
     viewer = described(live)
     asked: list[tuple[str, object]] = []
 

@@ -76,7 +76,7 @@ def test_greetings_are_counted_by_computer_until_the_table_is_taken():
         counts.count_topic_greeting(greeting(host))
     counts.count_multicast_greeting("hello, it's me robot")
     counts.count_multicast_greeting("")
-    assert counts.take_table("/t", 0.5).splitlines() == [
+    assert counts.pop_table("/t", 0.5).splitlines() == [
         "MULTIMACHINE COMMUNICATION SUMMARY",
         "Topic: /t, Published Msg Count: 2",
         "Subscribed from:",
@@ -89,7 +89,7 @@ def test_greetings_are_counted_by_computer_until_the_table_is_taken():
         f"{'':16}{'robot':21}{'1':10}",
         "-" * 60,
     ]
-    assert counts.take_table("/t", 0.5).count("robot") == 0
+    assert counts.pop_table("/t", 0.5).count("robot") == 0
 
 
 @with_multicast

@@ -9,15 +9,15 @@ import pytest
 from linkwright.diagnostics import Severity
 from linkwright.diagnostics.translation import translate
 from linkwright.doctor import (
-    ClockSeen,
-    DescriptionSeen,
-    DriversSeen,
     FixedFrame,
-    FrameSeen,
-    JointSeen,
     Observation,
-    StampSeen,
-    TransformSeen,
+    ObservedClock,
+    ObservedDescription,
+    ObservedDrivers,
+    ObservedFrame,
+    ObservedJoint,
+    ObservedStamp,
+    ObservedTransform,
     examine,
 )
 from linkwright.graph.endpoints.base import EndpointInfo, EndpointKind
@@ -60,12 +60,12 @@ WELL = Observation(
         subscription(RSP, "/joint_states", JOINT_STATE),
     ),
     transforms=(
-        TransformSeen("base", "wheel", (RSP,)),
-        TransformSeen("base", "copy", (RSP,)),
-        TransformSeen("base", "mast", (RSP,), static=True),
+        ObservedTransform("base", "wheel", (RSP,)),
+        ObservedTransform("base", "copy", (RSP,)),
+        ObservedTransform("base", "mast", (RSP,), is_static=True),
     ),
-    joints=(JointSeen("spin", (JSP,)),),
-    descriptions=(DescriptionSeen("/robot_description", RSP, ROBOT),),
+    joints=(ObservedJoint("spin", (JSP,)),),
+    descriptions=(ObservedDescription("/robot_description", RSP, ROBOT),),
     sim_time={RSP: False, JSP: False},
 )
 
@@ -139,7 +139,7 @@ def test_joint_states_stay_away():
 
 
 def test_a_joint_is_missing_from_the_joint_states_and_its_misspelling_is_named():
-    seen = replace(without(WELL, "wheel", "copy"), joints=(JointSeen("spinn", (JSP,)),))
+    seen = replace(without(WELL, "wheel", "copy"), joints=(ObservedJoint("spinn", (JSP,)),))
     found = {each.code: each for each in examine(seen)}
     assert set(found) == {"DOC403", "DOC405"}
     missing = found["DOC403"]
@@ -160,7 +160,7 @@ def test_a_static_transform_was_never_published():
 def test_a_joint_has_states_that_nobody_turns_into_transforms():
     seen = replace(
         without(WELL, "wheel", "copy"),
-        joints=(JointSeen("spin", (JSP,), ("/arm/joint_states",)),),
+        joints=(ObservedJoint("spin", (JSP,), ("/arm/joint_states",)),),
         endpoints=(*WELL.endpoints, publisher(JSP, "/arm/joint_states", JOINT_STATE)),
     )
     found = only(seen, "DOC305")
@@ -182,24 +182,24 @@ def test_two_nodes_publish_one_transform():
 
 
 def test_a_frame_with_two_parents():
-    other = TransformSeen("odom", "base", ("/a",)), TransformSeen("map", "base", ("/b",))
+    other = ObservedTransform("odom", "base", ("/a",)), ObservedTransform("map", "base", ("/b",))
     found = [each for each in examine(replace(WELL, transforms=(*WELL.transforms, *other))) if each.code == "DOC303"]
     assert found[0].message == "frame 'base' has 2 parents, 'map', 'odom', and jumps between them"
 
 
 def test_two_trees():
-    apart = TransformSeen("camera", "lens", ("/camera_driver",))
+    apart = ObservedTransform("camera", "lens", ("/camera_driver",))
     found = only(replace(WELL, transforms=(*WELL.transforms, apart)), "DOC308")
     assert "--frame-id base --child-frame-id camera" in found.hint
 
 
 def test_parents_in_a_circle():
-    circle = TransformSeen("a", "b", ("/x",)), TransformSeen("b", "a", ("/y",))
+    circle = ObservedTransform("a", "b", ("/x",)), ObservedTransform("b", "a", ("/y",))
     assert "DOC307" in codes(replace(WELL, transforms=(*WELL.transforms, *circle)))
 
 
 def test_a_transform_that_is_no_transform():
-    broken = replace(WELL.transforms[0], valid=False)
+    broken = replace(WELL.transforms[0], is_valid=False)
     assert codes(replace(WELL, transforms=(broken, *WELL.transforms[1:]))) == ["DOC306"]
 
 
@@ -208,7 +208,7 @@ def test_a_fixed_frame_that_does_not_exist():
     assert found.message == "the fixed frame 'map' of mbot.rviz does not exist, so nothing is shown"
     assert found.hint == "choose another Fixed Frame; the root of all frames is 'base'"
     assert codes(replace(WELL, fixed_frames=(FixedFrame("base", "mbot.rviz"),))) == []
-    mapped = (*WELL.transforms, TransformSeen("map", "base", ("/localization",), static=True))
+    mapped = (*WELL.transforms, ObservedTransform("map", "base", ("/localization",), is_static=True))
     found = only(replace(WELL, transforms=mapped, fixed_frames=(FixedFrame("odom", "x"),)), "DOC309")
     assert found.hint == "choose another Fixed Frame; the root of all frames is 'map'"
     near = only(replace(WELL, fixed_frames=(FixedFrame("bse", "x"),)), "DOC309")
@@ -216,19 +216,19 @@ def test_a_fixed_frame_that_does_not_exist():
 
 
 def test_messages_in_a_frame_that_does_not_exist():
-    lost = FrameSeen("/scan", "/laser", "lazer")
+    lost = ObservedFrame("/scan", "/laser", "lazer")
     found = only(replace(WELL, frames=(lost,)), "DOC310")
     assert found.message == "'/scan' of '/laser' is in frame 'lazer', which does not exist"
     assert "static_transform_publisher" in found.hint
-    near = only(replace(WELL, frames=(FrameSeen("/scan", "/laser", "whel"),)), "DOC310")
-    rays = [FrameSeen(topic, "/laser", "mbot::laser::lidar") for topic in ("/world_rays", "/world_rays/others")]
+    near = only(replace(WELL, frames=(ObservedFrame("/scan", "/laser", "whel"),)), "DOC310")
+    rays = [ObservedFrame(topic, "/laser", "mbot::laser::lidar") for topic in ("/world_rays", "/world_rays/others")]
     assert not codes(replace(WELL, frames=tuple(rays))), "they are in frames of the simulated world"
     assert near.hint == "did you mean 'wheel'?"
-    assert codes(replace(WELL, frames=(FrameSeen("/scan", "/laser", "base"),))) == []
+    assert codes(replace(WELL, frames=(ObservedFrame("/scan", "/laser", "base"),))) == []
 
 
 def test_messages_in_a_frame_are_well_where_nobody_publishes_transforms_at_all():
-    alone = Observation(seconds=3.0, nodes=("/laser",), frames=(FrameSeen("/scan", "/laser", "laser"),))
+    alone = Observation(seconds=3.0, nodes=("/laser",), frames=(ObservedFrame("/scan", "/laser", "laser"),))
     assert "DOC310" not in codes(alone)
 
 
@@ -240,13 +240,13 @@ def test_the_world_of_a_simulation_is_a_frame_that_can_be_shown():
 
 
 def test_the_root_of_a_robot_of_one_link_is_a_frame():
-    lonely = DescriptionSeen("/robot_description", RSP, '<robot name="r"><link name="only"/></robot>')
+    lonely = ObservedDescription("/robot_description", RSP, '<robot name="r"><link name="only"/></robot>')
     seen = replace(WELL, transforms=(), joints=(), descriptions=(lonely,), fixed_frames=(FixedFrame("only", "x"),))
     assert examine(seen) == []
 
 
 def test_a_fixed_frame_that_does_not_exist_beside_several_trees():
-    apart = (*WELL.transforms, TransformSeen("camera", "lens", ("/camera",)))
+    apart = (*WELL.transforms, ObservedTransform("camera", "lens", ("/camera",)))
     found = examine(replace(WELL, transforms=apart, fixed_frames=(FixedFrame("odom", "x"),)))
     (hint,) = [each.hint for each in found if each.code == "DOC309"]
     assert hint == "choose another Fixed Frame; the roots of the trees of frames are 'base', 'camera'"
@@ -257,7 +257,7 @@ def test_frames_are_listed_with_chinese_quotes_in_chinese():
         f'<link name="l{i}"/><joint name="j{i}" type="continuous"><parent link="base"/><child link="l{i}"/></joint>'
         for i in range(8)
     )
-    robot = DescriptionSeen("/robot_description", RSP, f'<robot name="r"><link name="base"/>{joints}</robot>')
+    robot = ObservedDescription("/robot_description", RSP, f'<robot name="r"><link name="base"/>{joints}</robot>')
     seen = replace(WELL, descriptions=(robot,), joints=(), endpoints=(publisher(RSP, "/tf", TF),))
     (found,) = [each for each in examine(seen) if each.code == "DOC401"]
     names = "“l0”、“l1”、“l2”、“l3”、“l4”、“l5”和另外 2 个"
@@ -268,20 +268,20 @@ def test_frames_are_listed_with_chinese_quotes_in_chinese():
 
 
 def test_a_description_that_is_a_files_name():
-    wrong = DescriptionSeen("/robot_description", RSP, "mbot.urdf")
+    wrong = ObservedDescription("/robot_description", RSP, "mbot.urdf")
     found = only(replace(WELL, descriptions=(wrong,), joints=()), "DOC501")
     assert "not the name of a file" in found.hint
 
 
 @pytest.mark.parametrize(("text", "severity"), [(ROBOT, Severity.WARNING), (ROBOT + " ", Severity.ERROR)])
 def test_two_descriptions_on_one_topic(text, severity):
-    second = DescriptionSeen("/robot_description", "/other", text)
+    second = ObservedDescription("/robot_description", "/other", text)
     found = only(replace(WELL, descriptions=(*WELL.descriptions, second)), "DOC502")
     assert found.severity is severity
 
 
 def test_two_nodes_publish_one_joint():
-    found = only(replace(WELL, joints=(JointSeen("spin", ("/driver", JSP)),)), "DOC404")
+    found = only(replace(WELL, joints=(ObservedJoint("spin", ("/driver", JSP)),)), "DOC404")
     assert found.message.startswith("2 nodes publish the state of joint 'spin' on '/joint_states'")
 
 
@@ -364,7 +364,7 @@ def test_a_misspelt_command_is_told_once():
 
 def test_two_drivers_on_one_topic():
     seen = more(WELL, publisher("/teleop", "/cmd_vel", TWIST), subscription("/drive", "/cmd_vel", TWIST))
-    found = only(replace(seen, disputed=(DriversSeen("/cmd_vel", ("/planner", "/teleop")),)), "DOC208")
+    found = only(replace(seen, disputed=(ObservedDrivers("/cmd_vel", ("/planner", "/teleop")),)), "DOC208")
     assert (
         found.message
         == "two nodes drive the robot: '/planner', '/teleop' publish contradictory velocities on '/cmd_vel'"
@@ -434,7 +434,7 @@ def test_a_service_of_another_type():
 
 def test_simulated_time_for_some():
     clock = publisher("/gazebo", "/clock", "rosgraph_msgs/msg/Clock")
-    seen = replace(more(WELL, clock), sim_time={RSP: True, JSP: False, "/gazebo": False}, clock=ClockSeen(9, 1, 9))
+    seen = replace(more(WELL, clock), sim_time={RSP: True, JSP: False, "/gazebo": False}, clock=ObservedClock(9, 1, 9))
     found = only(seen, "DOC601")
     assert found.message == (
         "use_sim_time is true for '/robot_state_publisher', but false for '/joint_state_publisher'"
@@ -443,7 +443,7 @@ def test_simulated_time_for_some():
 
 def test_hidden_nodes_and_who_makes_time_need_not_follow_it():
     seen = more(WELL, publisher("/gazebo", "/clock", "rosgraph_msgs/msg/Clock"))
-    clock = ClockSeen(9, 5, 6)
+    clock = ObservedClock(9, 5, 6)
     times = {RSP: True, JSP: True, "/gazebo": False, "/_gzclient": False}
     assert codes(replace(seen, sim_time=times, clock=clock)) == []
 
@@ -452,7 +452,7 @@ def test_simulated_time_without_a_clock():
     assert codes(replace(WELL, sim_time={RSP: True, JSP: True})) == ["DOC602"]
 
 
-@pytest.mark.parametrize("clock", [None, ClockSeen(9, 5, 5)])
+@pytest.mark.parametrize("clock", [None, ObservedClock(9, 5, 5)])
 def test_a_clock_that_stands_still(clock):
     seen = more(WELL, publisher("/gazebo", "/clock", "rosgraph_msgs/msg/Clock"))
     assert codes(replace(seen, sim_time={RSP: True, JSP: True}, clock=clock)) == ["DOC603"]
@@ -466,12 +466,12 @@ def test_two_clocks():
 
 @pytest.mark.parametrize(("behind_s", "message"), [(3600, "3600.0 s behind"), (-60, "60.0 s ahead of")])
 def test_stamps_far_from_now(behind_s, message):
-    stamp = StampSeen("/scan", "/lidar", behind_s * 10**9)
+    stamp = ObservedStamp("/scan", "/lidar", behind_s * 10**9)
     assert f"are {message} the clock here" in only(replace(WELL, stamps=(stamp,)), "DOC605").message
 
 
 def test_stamps_that_were_never_set():
-    assert codes(replace(WELL, stamps=(StampSeen("/joint_states", JSP, 0, zero=True),))) == ["DOC606"]
+    assert codes(replace(WELL, stamps=(ObservedStamp("/joint_states", JSP, 0, is_zero=True),))) == ["DOC606"]
 
 
 def test_managed_nodes_that_wait():
@@ -481,5 +481,7 @@ def test_managed_nodes_that_wait():
 
 
 def test_errors_come_before_warnings():
-    seen = replace(WELL, nodes=(RSP, RSP), transforms=(replace(WELL.transforms[0], valid=False), *WELL.transforms[1:]))
+    seen = replace(
+        WELL, nodes=(RSP, RSP), transforms=(replace(WELL.transforms[0], is_valid=False), *WELL.transforms[1:])
+    )
     assert codes(seen) == ["DOC306", "DOC101"]

@@ -21,7 +21,7 @@ TELEOP = EndpointInfo(EndpointKind.PUBLISHER, NodeIdentity("teleop", "/"), "/cmd
 LATE = EndpointInfo(EndpointKind.SUBSCRIPTION, None, "/cmd_vel", TWIST_STAMPED, QoSProfile(10), bytes(16))
 
 
-class Outside(Transport):
+class RemoteTransport(Transport):
     """What other processes have, as a test says."""
 
     def __init__(self, *endpoints: EndpointInfo) -> None:
@@ -56,25 +56,25 @@ async def joined() -> AsyncIterator[Graph]:
     await graph.close()
 
 
-async def seen_of(graph: Graph, outside: Outside, seconds: float = 0.05) -> Observation:
-    graph.attach(outside)
+async def seen_of(graph: Graph, transport: RemoteTransport, seconds: float = 0.05) -> Observation:
+    graph.attach(transport)
     return await observe(graph, graph.create_node("_ros2cli_1"), seconds, environment={})
 
 
 async def test_a_command_that_has_just_come_is_known_as_one_before_anything_is_said_of_it(joined: Graph) -> None:
-    outside = Outside(TELEOP, LATE)
+    transport = RemoteTransport(TELEOP, LATE)
 
     def name() -> None:
-        outside.endpoints = [TELEOP, replace(LATE, node=NodeIdentity("_ros2cli_2", "/"))]
+        transport.endpoints = [TELEOP, replace(LATE, node=NodeIdentity("_ros2cli_2", "/"))]
 
     asyncio.get_running_loop().call_later(0.2, name)
-    seen = await seen_of(joined, outside)
+    seen = await seen_of(joined, transport)
     assert seen.endpoints == (TELEOP,)
 
 
 async def test_an_endpoint_of_no_node_is_waited_for_no_longer_than_a_second(joined: Graph) -> None:
     begun = time.monotonic()
-    seen = await seen_of(joined, Outside(TELEOP, LATE))
+    seen = await seen_of(joined, RemoteTransport(TELEOP, LATE))
     assert seen.endpoints == (TELEOP, LATE)
     assert time.monotonic() - begun > 0.9
 
@@ -96,7 +96,7 @@ async def test_who_drives_at_the_same_time_is_written_down(joined: Graph) -> Non
             (node, TWIST, "/own/cmd_vel"),
         )
     ]
-    watched = asyncio.ensure_future(seen_of(joined, Outside(), seconds=2.0))
+    watched = asyncio.ensure_future(seen_of(joined, RemoteTransport(), seconds=2.0))
     while not watched.done():
         for number, each in enumerate(publishers):
             message = each.msg_type()
@@ -114,7 +114,7 @@ async def test_two_commands_that_drive_are_written_down_and_not_what_else_they_s
     first, second = joined.create_node("_ros2cli_7"), joined.create_node("_ros2cli_8")
     publishers = [each.create_publisher(TWIST, "/cmd_vel", 10) for each in (first, second)]
     publishers.append(first.create_publisher("sensor_msgs/msg/JointState", "/joint_states", 10))
-    watched = asyncio.ensure_future(seen_of(joined, Outside(), seconds=2.0))
+    watched = asyncio.ensure_future(seen_of(joined, RemoteTransport(), seconds=2.0))
     while not watched.done():
         for number, each in enumerate(publishers):
             message = each.msg_type()
@@ -133,7 +133,7 @@ async def test_what_a_bridge_hands_on_is_neither_a_second_publisher_nor_far_from
     own = simulator.create_publisher(TRANSFORMS, "/model/vehicle/tf", 10)
     other = simulator.create_publisher(TRANSFORMS, "/robot1/tf", 10)
     handed_on = bridge.create_publisher(TRANSFORMS, "/tf", 10)
-    watched = asyncio.ensure_future(seen_of(joined, Outside(), seconds=0.5))
+    watched = asyncio.ensure_future(seen_of(joined, RemoteTransport(), seconds=0.5))
     message = own.msg_type()
     message.transforms = [TransformStamped(child_frame_id="base")]
     message.transforms[0].header.frame_id = "odom"
@@ -154,7 +154,7 @@ async def test_a_simulators_own_stamps_and_poses_are_taken_for_what_they_are(joi
     simulator = joined.create_node("gazebo")
     clock = simulator.create_publisher("rosgraph_msgs/msg/Clock", "/clock", 10)
     poses, frames = (simulator.create_publisher(TRANSFORMS, topic, 10) for topic in ("/world_poses", "/robot1/tf"))
-    watched = asyncio.ensure_future(seen_of(joined, Outside(), seconds=0.5))
+    watched = asyncio.ensure_future(seen_of(joined, RemoteTransport(), seconds=0.5))
     message = frames.msg_type()
     message.transforms = [TransformStamped(child_frame_id="base")]
     message.transforms[0].header.frame_id = "odom"
@@ -176,14 +176,14 @@ async def test_what_was_kept_for_late_subscribers_and_what_goes_by_a_steady_cloc
     unset = server.create_publisher("nav_msgs/msg/OccupancyGrid", "/unset", kept)
     bond = server.create_publisher("bond/msg/Status", "/bond", 10)
     scan = server.create_publisher("sensor_msgs/msg/LaserScan", "/scan", 10)
-    watched = asyncio.ensure_future(seen_of(joined, Outside(), seconds=0.5))
+    watched = asyncio.ensure_future(seen_of(joined, RemoteTransport(), seconds=0.5))
     while not watched.done():
         for each in (old_map, unset, bond, scan):
             message = each.msg_type()
             message.header.stamp.sec = 0 if each is unset else 17
             each.publish(message)
         await asyncio.sleep(0.01)
-    assert [(stamp.topic, stamp.zero) for stamp in watched.result().stamps] == [("/scan", False), ("/unset", True)]
+    assert [(stamp.topic, stamp.is_zero) for stamp in watched.result().stamps] == [("/scan", False), ("/unset", True)]
 
 
 @pytest.mark.parametrize("topic", ["/tf", "/tf_static"])
@@ -191,10 +191,10 @@ async def test_transforms_that_are_published_and_have_not_come_are_waited_for(jo
     sender = joined.create_node("robot_state_publisher").create_publisher(TRANSFORMS, topic, 10)
     message = sender.msg_type(transforms=[TransformStamped(child_frame_id="base")])
     asyncio.get_running_loop().call_later(0.5, sender.publish, message)
-    assert [transform.child for transform in (await seen_of(joined, Outside())).transforms] == ["base"]
+    assert [transform.child for transform in (await seen_of(joined, RemoteTransport())).transforms] == ["base"]
 
 
 async def test_transforms_that_never_come_are_waited_for_a_few_seconds_only(joined: Graph, monkeypatch) -> None:
     monkeypatch.setattr("linkwright.doctor.watching._TRANSFORMS_WITHIN", 0.3)
     joined.create_node("robot_state_publisher").create_publisher(TRANSFORMS, "/tf", 10)
-    assert not (await seen_of(joined, Outside())).transforms
+    assert not (await seen_of(joined, RemoteTransport())).transforms

@@ -205,11 +205,11 @@ async def test_arguments_that_pages_give_make_the_robot(tmp_path: Path) -> None:
         viewer = view._viewer
         assert viewer is not None
         feature = viewer.add_feature(ArgumentsFeature)
-        await eventually(lambda: feature.opening() != [NOTHING_ASKED])
-        (form,) = feature.opening()
+        await eventually(lambda: feature.opening_messages() != [NOTHING_ASKED])
+        (form,) = feature.opening_messages()
         assert isinstance(form, ArgumentForm)
         assert form.names == ["side"]
         feature.receive(None, GiveArguments({"side": "left", "other": "x"}))  # type: ignore[arg-type]
         await until("[robot_state_publisher-3]: started")
-        assert feature.opening() == [NOTHING_ASKED]
+        assert feature.opening_messages() == [NOTHING_ASKED]
         assert viewer.manager.fixed_frame == "left_link"

@@ -11,8 +11,8 @@ import pytest
 from linkwright.graph import Graph
 from linkwright.launch.ros import Node
 from linkwright.nodes import EXECUTABLES, NodeOptions
-from linkwright.nodes.followed_files import FileFollower
 from linkwright.nodes.options import SingleNode, create_node
+from linkwright.nodes.watched_files import FileWatcher
 
 INCOMPLETE = (
     "<robot name='boat'><link name='hull'/><joint name='mast' type='fixed'><parent link='hull'/></joint></robot>"
@@ -25,12 +25,12 @@ class Boat(SingleNode):
     DEFAULT_NAME = "boat"
     description_parameter = "plan"
 
-    def __init__(self, graph: Graph, options: NodeOptions, hosts: list[FileFollower]) -> None:
+    def __init__(self, graph: Graph, options: NodeOptions, hosts: list[FileWatcher]) -> None:
         self._node, _ = create_node(graph, options, self.DEFAULT_NAME, any_parameters=True)
         self._hosts = hosts
         self.finished: asyncio.Future[int] = asyncio.get_running_loop().create_future()
 
-    def follow_files(self, host: FileFollower) -> None:
+    def watch_files(self, host: FileWatcher) -> None:
         self._hosts.append(host)
         self._node.get_logger().info(f"called by {host.launcher_node.get_name().rstrip('0123456789')}")
         self.finished.set_result(0)
@@ -39,7 +39,7 @@ class Boat(SingleNode):
 async def test_a_node_of_another_package_has_its_files_followed_and_its_description_checked(
     launch: Callable[..., Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    hosts: list[FileFollower] = []
+    hosts: list[FileWatcher] = []
     entry = type("EntryPoint", (), {"load": staticmethod(lambda: lambda graph, options: Boat(graph, options, hosts))})()
     monkeypatch.setitem(EXECUTABLES.entry_points, ("my_sea", "boat"), entry)
     launched = await launch(

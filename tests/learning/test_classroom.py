@@ -63,7 +63,7 @@ def test_the_result_is_data_in_all_languages(workspace, capsys):
     _, out, _ = learn(capsys, "check", "one-link", "--course", "example", "--json")
     result = json.loads(out)
     assert result["passed"] is False
-    assert result["checks"][0]["title"]["zh"] == "机器人有名为 box 的 link。"
+    assert result["checks"][0]["title"]["zh"] == "机器人有名为 box 的连杆。"
     assert "没有文件" in result["checks"][0]["message"]["zh"]
 
 
@@ -109,7 +109,7 @@ def edit(path: Path, old: str, new: str) -> None:
         ("checks.py", 'check("mass"', 'check("weight"', "no step 'weight'"),
         ("cases.py", "says=\"there is 'bax'\"", 'says="nothing"', "lacks 'nothing'"),
         ("cases.py", "0.5 0.5 0.05", "0.5 0.5 0.50", "a wrong solution passes"),
-        ("lesson.zh.md", "# 一个 link\n", "# 一个 link\n\n![x](images/x.png)\n", "'images/x.png' is missing"),
+        ("lesson.zh.md", "# 一个连杆\n", "# 一个连杆\n\n![x](images/x.png)\n", "'images/x.png' is missing"),
     ],
 )
 def test_the_tests_of_a_lesson_find_its_mistakes(tmp_path, capsys, file, old, new, problem):

@@ -227,8 +227,8 @@ class TestNewDescription:
     async def test_joints_that_are_still_there_keep_their_places(self, stage, clock):
         publisher = stage.joint_state_publisher(source_list=["source"])
         await stage.describe(robot(joint("a"), joint("b"), joint("gone")))
-        publisher.joints.set("a", 1.5)
-        publisher.joints.set("b", 0.5)
+        publisher.joints.set_position("a", 1.5)
+        publisher.joints.set_position("b", 0.5)
         await stage.describe(robot(joint("new"), joint("b"), joint("a", limit="lower='-1' upper='1'")))
         assert stage.positions() == {"new": 0.0, "b": 0.5, "a": 1.0}
 

@@ -9,7 +9,7 @@ import pytest
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.graph import Graph, Parameter, ParameterType
-from linkwright.nodes.parameter_tables import declared, entries, for_each, one_of, parameter
+from linkwright.nodes.parameter_tables import declare_table, entries, for_each, one_of, parameter
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -27,27 +27,27 @@ class Settings:
 
 async def test_a_table_is_declared_under_a_prefix_and_read(graph: Graph) -> None:
     node = graph.create_node("planner", parameters={"plan.start.x": 2.0})
-    assert declared(node, Settings, "plan") == Settings(start=Place(x=2.0))
+    assert declare_table(node, Settings, "plan") == Settings(start=Place(x=2.0))
     assert node.get_parameter("plan.places").type_ is ParameterType.STRING_ARRAY
     assert node.describe_parameters(["plan.frame"])[0].description == "of the plan"
 
 
 async def test_a_second_reading_sees_what_was_set(graph: Graph) -> None:
     node = graph.create_node("planner")
-    declared(node, Settings)
+    declare_table(node, Settings)
     node.set_parameters([Parameter("frame", value="odom"), Parameter("limit", value=1.5)])
-    assert declared(node, Settings) == Settings(frame="odom", limit=1.5)
+    assert declare_table(node, Settings) == Settings(frame="odom", limit=1.5)
 
 
 async def test_defaults_other_than_those_of_the_table(graph: Graph) -> None:
     usual = Settings(frame="odom", places=("a", "b"))
-    assert declared(graph.create_node("planner"), Settings, usual=usual) == usual
+    assert declare_table(graph.create_node("planner"), Settings, usual=usual) == usual
 
 
 async def test_a_value_of_another_type_is_refused(graph: Graph) -> None:
     node = graph.create_node("planner", parameters={"frame": 1.0})
     with pytest.raises(LinkwrightError) as caught:
-        declared(node, Settings)
+        declare_table(node, Settings)
     assert caught.value.diagnostics[0].code == "GRAPH201"
 
 

@@ -10,7 +10,7 @@ from linkwright.nodes.topic_tools.expressions import RelayField, Transform
 from linkwright.nodes.topic_tools.mux import Demux, Mux
 from linkwright.nodes.topic_tools.relay import Delay, Drop, Relay, Throttle
 from linkwright.testing.stepped import AsyncSteppedGraph
-from tests.outside import Outside, Stranger
+from tests.remote_publishers import RemotePublisher, RemoteTransport
 
 
 @pytest.fixture
@@ -274,7 +274,7 @@ async def test_a_stop_is_sent_when_who_sent_the_last_velocity_is_lost(test, kind
     test.node.create_publisher(twist, "drive", 10)
     driven = test.record("/cmd_vel", twist)
     await test.settle()
-    driver = Stranger(Outside(test.graph), "/drive")
+    driver = RemotePublisher(RemoteTransport(test.graph), "/drive")
     message = twist()
     message.linear.x = 0.3
     driver.send(message)

@@ -247,13 +247,13 @@ def test_a_line_learns_from_acknowledgements():
     line = ConnectionMeter(clock)
     line.sending(10)
     clock.now += 0.05
-    line.received(1)
+    line.record_acknowledged(1)
     assert line.rate is None
     for number in range(2, 12):
         line.sending(line.room)
         assert line.is_full
         clock.now += 0.05 + line.room / 1e6
-        line.received(number)
+        line.record_acknowledged(number)
     assert line.rate == pytest.approx(1e6, rel=0.1)
     assert line.room == pytest.approx(1e5, rel=0.1)
 
@@ -261,7 +261,7 @@ def test_a_line_learns_from_acknowledgements():
 def test_small_messages_never_fill_a_line():
     line = ConnectionMeter(Hand())
     line.sending(10)
-    line.received(1)
+    line.record_acknowledged(1)
     for _ in range(1000):
         line.sending(1000)
     assert not line.is_full
@@ -270,7 +270,7 @@ def test_small_messages_never_fill_a_line():
 def test_a_page_cannot_upset_its_line():
     line = ConnectionMeter(Hand())
     for count in (-5, 10**12, 0):
-        line.received(count)
+        line.record_acknowledged(count)
     line.sending(10_000)
     assert 0 < line.room < 10**6
     assert not line.is_full

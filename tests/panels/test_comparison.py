@@ -85,11 +85,11 @@ class Compared:
 
     def pose(self, frame: str) -> np.ndarray | None:
         """Where a frame is in `base`: x y z qx qy qz qw."""
-        names, poses = self.made.viewer.manager.opening()[1].names, None
+        names, poses = self.made.viewer.manager.opening_state()[1].names, None
         if frame in names:
             from linkwright.page.protocol.message import unpack_transforms
 
-            frames = self.made.viewer.manager.opening()[2]
+            frames = self.made.viewer.manager.opening_state()[2]
             poses = unpack_transforms(next(frame for frame in frames if isinstance(frame, bytes)))[1][
                 names.index(frame)
             ]
@@ -199,7 +199,9 @@ async def test_what_is_given_away_has_no_paths(tmp_path):
     async with compared(tmp_path) as (both, client):
         await client.until("compared_descriptions")
         manager = both.made.viewer.manager
-        result = next(each for each in both.made.viewer.configured(manager) if isinstance(each, ComparedDescriptions))
+        result = next(
+            each for each in both.made.viewer.configuration_messages(manager) if isinstance(each, ComparedDescriptions)
+        )
         bare = without_paths(result)
         assert (bare.old.label, bare.new.label) == ("old.urdf", "new.urdf")
         places = [place for item in bare.items for place in (item.old_place, item.new_place) if place is not None]

@@ -71,7 +71,7 @@ async def filled(graph, panel):
 
 
 def test_without_a_panel_there_are_no_joints(bridge):
-    assert bridge.opening() == [Joints(None)]
+    assert bridge.opening_messages() == [Joints(None)]
     bridge.receive(PAGE, RandomizeJoints())
 
 
@@ -86,7 +86,7 @@ async def test_a_panel_is_shown(graph, bridge, panel, published):
     follow = by_name["follow"]
     assert (follow.mimic, follow.multiplier, follow.offset) == ("open", -1.0, 0.0)
     assert positions.positions == pytest.approx({"turn": 0.0, "open": 0.03, "follow": -0.03})
-    assert bridge.opening() == published
+    assert bridge.opening_messages() == published
 
 
 async def test_rows_follow_the_description(graph, bridge, panel, published):

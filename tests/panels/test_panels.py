@@ -166,7 +166,7 @@ async def test_where_there_is_no_file_panels_are_no_edit(tmp_path):
     async with opened(RVIZ_PANELS + DISPLAYS) as (made, client):
         await client.send("show_panels", shown=["time"])
         await client.drain(0.03)
-        assert not made.viewer.manager.history.unsaved
+        assert not made.viewer.manager.history.has_unsaved_edits
         await client.send("save_configuration", path=str(tmp_path / "a.rviz"), replace=False)
         await client.until("configuration_saved")
     assert RvizConfig.load(tmp_path / "a.rviz").panels.shown == ["time"]

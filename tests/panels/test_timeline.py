@@ -47,7 +47,7 @@ async def shown(folder: Path, **other: str) -> AsyncIterator[World]:
             made.viewer.context.node.set_parameters([Parameter("use_sim_time", value=True)])
             player = made.graph.create_node("player")
             output = PublishedRecording(player, bag)
-            playback = Playback(player.handle, bag, output, made.viewer.playback_failed)
+            playback = Playback(player.handle, bag, output, made.viewer.on_playback_error)
             made.viewer.attach_recording(playback, bag)
             yield made
             playback.close()

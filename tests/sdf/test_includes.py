@@ -385,7 +385,7 @@ def test_a_file_address_in_other_capitals_names_the_file_that_is_meant(tmp_path)
 
 def test_few_lines_cannot_include_without_end(tmp_path, monkeypatch):
     """Thirty models, each of which includes the next one twice, would be a thousand million."""
-    monkeypatch.setattr("linkwright.sdf.includes._MOST", 500)
+    monkeypatch.setattr("linkwright.sdf.includes._MAX_MODELS", 500)
     twice = "<include><uri>model://m{0}</uri><name>a</name></include><include><uri>model://m{0}</uri><name>b</name></include>"
     files = {f"m{at}/model.sdf": sdf(f'<model name="m{at}">{twice.format(at + 1)}</model>') for at in range(30)}
     write(tmp_path, {**files, "m30/model.sdf": BOX})

@@ -172,7 +172,7 @@ async def test_masses_and_joints_are_changed_by_services():
             False,
             (
                 "this mass or inertia is not physically possible; give a positive mass and moments that "
-                "fulfil the triangle inequality"
+                "fulfill the triangle inequality"
             ),
         )
 

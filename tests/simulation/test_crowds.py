@@ -4,7 +4,7 @@ import pytest
 
 import linkwright.simulation.server.worlds
 from linkwright.diagnostics import LinkwrightError
-from linkwright.simulation.scene.compiling import MOST_LINKS
+from linkwright.simulation.scene.compiling import MAX_LINKS
 from linkwright.simulation.server.worlds import load_world
 
 LINK = '<model name="m"><link name="l"/></model>'
@@ -16,7 +16,7 @@ def world(inside: str, before: str = "") -> str:
 
 @pytest.mark.parametrize(
     "inside",
-    [LINK * (MOST_LINKS + 1), "<include><uri>model://m</uri></include>" * MOST_LINKS + LINK],
+    [LINK * (MAX_LINKS + 1), "<include><uri>model://m</uri></include>" * MAX_LINKS + LINK],
     ids=["links", "includes"],
 )
 def test_a_crowd_is_refused_before_it_is_read(tmp_path, monkeypatch, inside):

@@ -130,11 +130,11 @@ async def test_a_link_that_is_not_there_and_parameters_that_lack_are_told():
 
 async def test_a_model_that_comes_anew_holds_what_it_held_and_nothing_else():
     async with served(GROUND, carrier(), LOAD) as (server, graph, log):
-        server.renew(model(carrier().replace("0.2 0.2 0.2", "0.2 0.2 0.1")), "carrier")
+        server.replace_model(model(carrier().replace("0.2 0.2 0.2", "0.2 0.2 0.1")), "carrier")
         server.advance(SECOND)
         assert server.simulation.link_pose("load::link")[2] == pytest.approx(1.75, abs=1e-3)
         await tell(server, graph, DETACH, 0.2)
-        server.renew(model(carrier()), "carrier")
+        server.replace_model(model(carrier()), "carrier")
         server.advance(SECOND // 2)
         assert server.simulation.link_pose("load::link")[2] < 1.0
         assert not log

@@ -15,7 +15,7 @@ from linkwright.simulation.plugins.plugin import SimulatedPlugin
 from linkwright.simulation.plugins.registry import SENSORS
 from linkwright.simulation.server import server as server_module
 from linkwright.testing import Recording, SteppedSimulation
-from tests.outside import Outside, Stranger
+from tests.remote_publishers import RemotePublisher, RemoteTransport
 from tests.simulation.sensors.rooms import block
 from tests.simulation.sensors.test_topics import EYE, RAYS, carrier, plugin, sensor
 from tests.simulation.test_plugins import SECOND, joint_states, robot, served
@@ -103,20 +103,20 @@ async def test_a_plugin_that_fails_anywhere_ends_and_nothing_else_does(where):
             Recording(graph, server.node, "/joint_states"),
             Recording(graph, server.node, "/said", STRING),
         ]
-        outside = Outside(graph)
-        commander = Stranger(outside, "/told", msg_type=STRING)
+        transport = RemoteTransport(graph)
+        commander = RemotePublisher(transport, "/told", msg_type=STRING)
         commander.send(get_message(STRING)())
         asked = server.node.create_client(get_service(TRIGGER), "/asked")
         if asked.service_is_ready():
             asked.call_async(get_service(TRIGGER).Request())
         await _pass(server, graph)
-        if outside.lose is not None:
+        if transport.lose is not None:
             commander.be_lost()
         await _pass(server, graph)
         server.reset()
         nodes = [name for name, _ in graph.get_node_names_and_namespaces()]
         assert ("faulty" in nodes) is (where in ("comparing", "going on", STOP))
-        server.renew(server.simulation.scene.models["mbot"].model, "mbot")
+        server.replace_model(server.simulation.scene.models["mbot"].model, "mbot")
         recordings[0].clear()
         await _pass(server, graph)
         assert len(recordings[0]) == 20  # both plugins beside it

@@ -74,7 +74,7 @@ def test_a_push_brings_a_joint_to_its_velocity_and_no_further(force: float):
 def test_a_joint_that_is_faster_is_braked_by_no_bound():
     simulation = simulated(arm("<velocity>0.8</velocity>"), gravity="0 0 0")
     simulation.data.joint("arm::turn").qvel[0] = 3.0
-    simulation.set_moved()
+    simulation.mark_moved()
     assert speed_when_pushed(simulation, 5.0, 0.1) == pytest.approx(3.0)
     assert speed_when_pushed(simulation, -5.0, 0.1) == pytest.approx(2.5, rel=0.01)
 

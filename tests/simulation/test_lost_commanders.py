@@ -7,7 +7,7 @@ import pytest
 from linkwright.graph.log.logger import LogLevel
 from linkwright.messages import get_message
 from linkwright.simulation.server.server import ServerOptions
-from tests.outside import Outside, Stranger
+from tests.remote_publishers import RemotePublisher, RemoteTransport
 from tests.simulation.test_ackermann import car, plugin
 from tests.simulation.test_diff_drive import classic, gz
 from tests.simulation.test_movers import moving_box, planar
@@ -51,7 +51,7 @@ def warnings(log) -> list[str]:
 @pytest.mark.parametrize("model", DRIVES.values(), ids=DRIVES.keys())
 async def test_a_drive_stops_when_its_commander_is_lost_and_says_so_once(model: str) -> None:
     async with served(GROUND, model) as (server, graph, log):
-        driver = Stranger(Outside(graph), "/cmd_vel")
+        driver = RemotePublisher(RemoteTransport(graph), "/cmd_vel")
         driver.send(forward(0.3))
         await advance(server, graph, 1.5)
         assert speed(server) == pytest.approx(0.3, abs=0.02)
@@ -64,9 +64,9 @@ async def test_a_drive_stops_when_its_commander_is_lost_and_says_so_once(model: 
 @pytest.mark.parametrize("model", DRIVES.values(), ids=DRIVES.keys())
 async def test_a_drive_says_once_that_two_drive_it_at_the_same_time(model: str) -> None:
     async with served(GROUND, model) as (server, graph, log):
-        outside = Outside(graph)
-        drivers = [Stranger(outside, "/cmd_vel", name) for name in ("keys", "planner")]
-        silent = Stranger(outside, "/cmd_vel", "behaviors")
+        transport = RemoteTransport(graph)
+        drivers = [RemotePublisher(transport, "/cmd_vel", name) for name in ("keys", "planner")]
+        silent = RemotePublisher(transport, "/cmd_vel", "behaviors")
         silent.send(forward(0.0))
         for _ in range(30):
             for driver, wanted in zip(drivers, (0.1, 0.3), strict=True):
@@ -80,8 +80,8 @@ async def test_a_drive_says_once_that_two_drive_it_at_the_same_time(model: str) 
 
 async def test_a_drive_goes_on_whose_last_command_is_that_of_another() -> None:
     async with served(GROUND, robot(classic())) as (server, graph, log):
-        outside = Outside(graph)
-        lost, other = Stranger(outside, "/cmd_vel", "lost"), Stranger(outside, "/cmd_vel", "other")
+        transport = RemoteTransport(graph)
+        lost, other = RemotePublisher(transport, "/cmd_vel", "lost"), RemotePublisher(transport, "/cmd_vel", "other")
         lost.send(forward(0.1))
         other.send(forward(0.3))
         lost.be_lost()
@@ -92,7 +92,7 @@ async def test_a_drive_goes_on_whose_last_command_is_that_of_another() -> None:
 
 async def test_who_is_lost_is_told_after_its_last_command() -> None:
     async with served(GROUND, robot(classic())) as (server, graph, log):
-        driver = Stranger(Outside(graph), "/cmd_vel")
+        driver = RemotePublisher(RemoteTransport(graph), "/cmd_vel")
         driver.send(forward(0.3))
         driver.be_lost()  # before the command was taken
         await advance(server, graph, 1.0)
@@ -102,7 +102,7 @@ async def test_who_is_lost_is_told_after_its_last_command() -> None:
 
 async def test_nothing_is_said_where_the_robot_stands_already() -> None:
     async with served(GROUND, robot(classic())) as (server, graph, log):
-        driver = Stranger(Outside(graph), "/cmd_vel")
+        driver = RemotePublisher(RemoteTransport(graph), "/cmd_vel")
         driver.send(forward(0.3))
         driver.send(forward(0.0))
         await advance(server, graph, 0.5)
@@ -114,8 +114,11 @@ async def test_nothing_is_said_where_the_robot_stands_already() -> None:
 async def test_a_drive_with_two_names_of_its_topic_knows_which_command_holds() -> None:
     plugin = gz().replace("<topic>cmd_vel</topic>", "")
     async with served(GROUND, robot(plugin), options=ServerOptions(usual_names=True)) as (server, graph, log):
-        outside = Outside(graph)
-        mine, usual = Stranger(outside, "/model/mbot/cmd_vel", "mine"), Stranger(outside, "/cmd_vel", "usual")
+        transport = RemoteTransport(graph)
+        mine, usual = (
+            RemotePublisher(transport, "/model/mbot/cmd_vel", "mine"),
+            RemotePublisher(transport, "/cmd_vel", "usual"),
+        )
         mine.send(forward(0.1))
         await graph.settle()
         usual.send(forward(0.3))

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from linkwright.messages import get_message
-from tests.outside import Outside, Stranger
+from tests.remote_publishers import RemotePublisher, RemoteTransport
 from tests.simulation.test_lost_commanders import advance, forward, warnings
 from tests.simulation.test_plugins import served
 from tests.simulation.worlds import GROUND
@@ -130,7 +130,7 @@ async def test_it_turns_and_flies_in_its_own_axes() -> None:
 
 async def test_it_falls_when_it_is_switched_off_and_hovers_when_its_pilot_is_lost() -> None:
     async with served(GROUND, quadcopter()) as (server, graph, log):
-        pilot = Stranger(Outside(graph), "/X3/cmd_vel")
+        pilot = RemotePublisher(RemoteTransport(graph), "/X3/cmd_vel")
         pilot.send(up(0.5))
         await advance(server, graph, 4.0)
         pilot.be_lost()

@@ -171,9 +171,9 @@ async def test_a_simulation_that_runs_makes_no_single_steps(tmp_path):
         answer = await it.ask("simulation_interfaces/srv/StepSimulation", "/step_simulation", steps=1)
         assert answer.result.result == answer.result.RESULT_INCORRECT_STATE
         await it.ask("std_srvs/srv/Empty", "/pause_physics")
-        assert it.simulator.runner.paused
+        assert it.simulator.runner.is_paused
         await it.ask("std_srvs/srv/Empty", "/unpause_physics")
-        assert not it.simulator.runner.paused
+        assert not it.simulator.runner.is_paused
 
 
 async def test_an_explosion_pauses_it(tmp_path):
@@ -193,7 +193,7 @@ async def test_an_explosion_pauses_it(tmp_path):
             duration=duration,
         )
         assert answer.success
-        await eventually(lambda: it.simulator.runner.paused)
+        await eventually(lambda: it.simulator.runner.is_paused)
 
 
 async def test_a_wrench_acts_for_its_time(tmp_path):
@@ -334,9 +334,9 @@ async def test_what_is_wrong_with_a_model_is_among_the_findings_while_that_is_in
         server.on_findings.append(lambda: messages.append([finding.code for finding in server.findings]))
         [finding] = server.findings
         assert (finding.code, finding.span.line) == ("SIM143", 1)
-        it.simulator.services.renew(seen.replace('mass value="1"', 'mass value="2"'), "first")
+        it.simulator.services.replace_model(seen.replace('mass value="1"', 'mass value="2"'), "first")
         await eventually(lambda: messages == [[], ["SIM143"]])
-        it.simulator.services.renew(URDF, "first")
+        it.simulator.services.replace_model(URDF, "first")
         await eventually(lambda: messages[2:] == [[]])
         await it.ask("gazebo_msgs/srv/SpawnEntity", "/spawn_entity", name="second", xml=seen)
         assert [finding.code for finding in server.findings] == ["SIM143"]

@@ -128,6 +128,6 @@ def test_a_second_model_of_a_name_is_left_out():
 
 
 def test_more_links_than_can_be_simulated_are_refused(monkeypatch):
-    monkeypatch.setattr("linkwright.simulation.scene.compiling.MOST_LINKS", 3)
+    monkeypatch.setattr("linkwright.simulation.scene.compiling.MAX_LINKS", 3)
     with pytest.raises(LinkwrightError, match="the world has 4 links, more than can be simulated"):
         simulated(*(box(f"box{index}", f"{index} 0 5 0 0 0") for index in range(4)))

@@ -25,7 +25,7 @@ def driving(*more: str, robots: int = ROBOTS) -> Simulation:
         [simulation.add_velocity_motor(f"mbot{number}::{side}_joint", 20.0, 5.0) for side in ("left", "right")]
         for number in range(robots)
     ]
-    simulation.renew()
+    simulation.recompile_if_changed()
     for number, pair in enumerate(motors):
         for motor in pair:
             motor.target = 1.0 + number

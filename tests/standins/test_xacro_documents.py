@@ -213,7 +213,7 @@ def test_a_launch_hears_which_file_is_wrong(write):
         with pytest.raises(DescriptionError) as caught:
             xacro.process_file(malformed)
         assert caught.value.call.path == malformed
-        assert not caught.value.missing
+        assert not caught.value.is_missing
 
 
 def test_output_files(tmp_path, capsys):

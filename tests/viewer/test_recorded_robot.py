@@ -64,7 +64,7 @@ class Shown:
         self.places: dict[str, list[float]] = {}
         listener.create_subscription(TFMessage, "/tf", self._heard, TF_QOS)
         listener.create_subscription(TFMessage, "/tf_static", self._heard, STATIC_TF_PUBLISHER_QOS)
-        self.playback.review()
+        self.playback.update_subscribed_topics()
 
     def _heard(self, message: TFMessage) -> None:
         self.places.update(zip(message.batch.children, message.batch.poses[:, :3].tolist(), strict=True))

@@ -47,7 +47,7 @@ class OurProgram:
         child = os.fork()
         if not child:
             self.publisher.publish(Int32(data=1))
-            os._exit(7 if self.publisher.outside is None else 8)
+            os._exit(7 if self.publisher.send_remote is None else 8)
         return [os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), threading.active_count()]
 
     @staticmethod

@@ -36,7 +36,7 @@ def test_no_more_large_samples_are_underway_than_the_writer_keeps():
     assert writer.send(3)
     assert writer.written == [1, 2]
     writer.acknowledged = True
-    assert not writer.backlog.review()
+    assert not writer.backlog.write_queued()
     assert writer.written == [1, 2, 3]
 
 
@@ -44,7 +44,7 @@ def test_newer_samples_replace_those_that_wait():
     writer = Writer()
     assert writer.send(1, 2, 3, 4, 5)
     writer.acknowledged = True
-    assert not writer.backlog.review()
+    assert not writer.backlog.write_queued()
     assert writer.written == [1, 2, 4, 5]
 
 
@@ -75,7 +75,7 @@ def test_a_reader_that_does_not_answer_holds_a_topic_up_once():
     writer = Writer()
     assert writer.send(1, 2, 3)
     writer.now = PATIENCE
-    assert not writer.backlog.review()
+    assert not writer.backlog.write_queued()
     assert not writer.send(4, 5)
     assert writer.written == [1, 2, 3, 4, 5]
     writer.acknowledged = True

@@ -41,7 +41,7 @@ class Scene:
 
     def after(self, seconds: float) -> float | None:
         self.time += seconds
-        return self.departures.review()
+        return self.departures.report_lost_publishers()
 
 
 def test_who_withdraws_a_publisher_before_it_goes_has_left():

@@ -122,13 +122,13 @@ def test_early_requests_get_the_numbers_before_the_first_that_was_heard(monkeypa
     server = FastServer(service, participant)
     for number, text in enumerate(["six", "seven"]):
         server.on_early_request(EarlyRequest(b"w" * 16, serialize(says(text)), 1_000_000 * number, now))
-    server.review()
+    server.write_pending_replies()
     assert service.asked == []
     participant.heard_at = now
-    server.review()
+    server.write_pending_replies()
     assert server.has_more_to_do
     now += 0.2
-    server.review()
+    server.write_pending_replies()
     assert service.asked == [("six", 6), ("seven", 7)]
     assert not server.has_more_to_do
     server.on_early_request(EarlyRequest(b"w" * 16, serialize(says("eight")), 9_000_000, now))
@@ -142,7 +142,7 @@ def test_an_early_request_that_comes_late_with_its_number_is_carried_out_once(mo
     server = FastServer(service, participant)
     server.on_early_request(EarlyRequest(b"w" * 16, serialize(says("first")), 5_000_000, now))
     now += 0.2
-    server.review()
+    server.write_pending_replies()
     for number, text in enumerate(["first", "second"], 1):
         request = serialize(says(text))
         participant.deliver(Data(b"w" * 12, b"r" * 4, b"w" * 16, number, "<", {}, request, 5_000_000 * number + 1))

@@ -46,11 +46,11 @@ def test_nothing_is_serialised_while_nobody_outside_listens(processes):
     a, b = processes("a"), processes("b")
     publisher = a.node.create_publisher(String, "chatter", 10)
     assert a.transport.wait_until_ready(60)
-    assert publisher.outside is None
+    assert publisher.send_remote is None
     subscription = b.node.create_subscription(String, "chatter", print, 10)
-    a.spin_until(lambda: publisher.outside is not None)
+    a.spin_until(lambda: publisher.send_remote is not None)
     b.node.destroy_subscription(subscription)
-    a.spin_until(lambda: publisher.outside is None)
+    a.spin_until(lambda: publisher.send_remote is None)
     assert publisher.get_subscription_count() == 0
 
 
@@ -128,7 +128,7 @@ def test_callbacks_learn_where_a_message_comes_from(processes, wire):
     publisher.publish(String())
     b.spin_until(lambda: infos)
     (info,) = infos
-    assert info.from_outside
+    assert info.is_remote
     assert info.publisher_gid == publisher.gid
     assert info.publication_sequence_number == (1 if wire == "zenoh" else None)  # Cyclone does not hand it on
     assert before <= info.source_timestamp <= info.received_timestamp <= time.time_ns()

@@ -4,7 +4,7 @@ from linkwright.geometry.shapes import Box
 from linkwright.learning import NotYet, ShapeSpec, check
 
 
-@check("one-link", en="The robot has the link box.", zh="机器人有名为 box 的 link。")
+@check("one-link", en="The robot has the link box.", zh="机器人有名为 box 的连杆。")
 def has_box(work):
     work.robot("robot.urdf").link("box")
 

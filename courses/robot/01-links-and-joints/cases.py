@@ -1,12 +1,47 @@
 from linkwright.learning import Edit, right, wrong
 
 URDF = "src/my_robot_description/urdf/mbot_base.urdf"
+LEFT_ORIGIN = '<origin xyz="0 0.19 -0.05" rpy="0 0 0"/>'
+RIGHT_ORIGIN = '<origin xyz="0 -0.19 -0.05" rpy="0 0 0"/>'
+
+XACRO_PREFIX = '<robot name="mbot" xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:property name="r" value="0.2"/>'
 
 CASES = [
     right("body", "with another color", Edit(URDF, "1 0.4 0 1", "0 0 1 1")),
     right("body", "with numbers written differently", Edit(URDF, 'radius="0.20"', 'radius="2e-1"')),
+    right(
+        "body",
+        "with a property of xacro",
+        Edit(URDF, '<robot name="mbot">', XACRO_PREFIX),
+        Edit(URDF, '"0.20"', '"${r}"'),
+    ),
     wrong("body", "a misspelt name", Edit(URDF, "base_link", "base_lnk"), says="there is 'base_lnk'"),
     wrong("body", "the diameter as radius", Edit(URDF, '"0.20"', '"0.40"'), says="radius is 0.4 m"),
     wrong("body", "a misspelt attribute", Edit(URDF, "length=", "lenght="), says="has no 'length'"),
+    wrong("body", "millimeters", Edit(URDF, '"0.20" length="0.16"', '"200" length="160"'), says="radius is 200 m"),
     wrong("body", "no closing tag", Edit(URDF, "</robot>", ""), says="mbot_base.urdf, line"),
+    right("left-wheel", "turned the other way", Edit(URDF, "1.5707 0 0", "-1.5708 0 0")),
+    right("left-wheel", "an axis of length 2", Edit(URDF, '<axis xyz="0 1 0"/>', '<axis xyz="0 2 0"/>')),
+    wrong("left-wheel", "flat on the ground", Edit(URDF, "1.5707 0 0", "0 0 0"), says="points along 0 0 1"),
+    wrong("left-wheel", "degrees", Edit(URDF, "1.5707 0 0", "90 0 0"), says="angles are in radians"),
+    wrong("left-wheel", "on the right", Edit(URDF, "0 0.19 -0.05", "0 -0.19 -0.05"), says="should be at 0 0.19 -0.05"),
+    wrong("left-wheel", "a fixed wheel", Edit(URDF, 'type="continuous"', 'type="fixed"'), says="has the type 'fixed'"),
+    wrong("left-wheel", "the default axis", Edit(URDF, '    <axis xyz="0 1 0"/>\n', ""), says="is 1 0 0"),
+    wrong("right-wheel", "on the left wheel", Edit(URDF, RIGHT_ORIGIN, LEFT_ORIGIN), says="is at 0 0.19 -0.05"),
+    wrong(
+        "right-wheel",
+        "no joint",
+        Edit(URDF, "right_wheel_joint", "rigth_wheel_joint"),
+        says="there is 'rigth_wheel_joint'",
+    ),
+    wrong("casters", "both at the front", Edit(URDF, "-0.18 0", "0.18 0"), says="should be at -0.18 0 -0.095"),
+    wrong(
+        "camera",
+        "a sphere",
+        Edit(URDF, '<box size="0.03 0.04 0.04"/>', '<sphere radius="0.02"/>'),
+        says="should be a box",
+    ),
+    wrong("ground", "only the axle", says="down to the axle", answer="0.05"),
+    wrong("ground", "the diameter", says="counts the diameter", answer="0.17"),
+    right("ground", "with a comma", answer="0,11"),
 ]

@@ -336,7 +336,7 @@ class History:
     """
 
     def __init__(self, max_bytes: int, now_ns: Callable[[], int]) -> None:
-        self.most_bytes = max_bytes
+        self.max_bytes = max_bytes
         self.lock = threading.RLock()
         self.size = 0
         self.count = 0
@@ -361,7 +361,7 @@ class History:
                 needs no additional memory; None if the content is not compared.
         """
         size = _stored_size(data)
-        if size > self.most_bytes:
+        if size > self.max_bytes:
             return
         with self.lock:
             self._newest_ns = max(self._newest_ns, self._now_ns() if at_ns is None else at_ns)
@@ -382,7 +382,7 @@ class History:
                 self._largest_track = track
             self.count += 1
             self.size += size
-            while self.size > self.most_bytes and self._free_memory():
+            while self.size > self.max_bytes and self._free_memory():
                 pass
             number = self.count - 1
         self._shrinker.offer((track, number), data)
@@ -410,8 +410,8 @@ class History:
         Return False if nothing could be freed.
         """
         largest = self._largest_track
-        if largest is not None and largest.size > self.most_bytes // 2 and largest.can_be_thinned:
-            freed = largest.thin(self.most_bytes // _FREED_DIVISOR)
+        if largest is not None and largest.size > self.max_bytes // 2 and largest.can_be_thinned:
+            freed = largest.thin(self.max_bytes // _FREED_DIVISOR)
             self.size -= freed
             return freed > 0
         oldest = self._first()

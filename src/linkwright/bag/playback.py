@@ -191,13 +191,13 @@ class Playback:
             self.seek(next_message[1])
         self._notify()
 
-    def take_over(self, stamp_ns: int) -> None:
+    def continue_from(self, stamp_ns: int) -> None:
         """Continue from a time at which the subscribers already have the state."""
         self.position_ns, self._target_ns = stamp_ns, None
         self._subscribed_topics = self._output.subscribed_topics()
         self._open_stream()
 
-    def before(self, topics: Collection[str], length_ns: int, max_bytes: int) -> list[Recorded]:
+    def messages_before(self, topics: Collection[str], length_ns: int, max_bytes: int) -> list[Recorded]:
         """Return the messages of topics shortly before the current position.
 
         Args:
@@ -221,7 +221,7 @@ class Playback:
             self._fail(error)
         return messages
 
-    def review(self) -> None:
+    def update_subscribed_topics(self) -> None:
         """Update the set of subscribed topics.
 
         Publish the last message of each topic that was added.

@@ -75,11 +75,11 @@ async def _carry(first: Side, second: Side, directions: tuple[Direction, Directi
     loop = asyncio.get_running_loop()
     change_event = asyncio.Event()
 
-    def changed() -> None:
+    def on_change() -> None:
         loop.call_soon_threadsafe(change_event.set)
 
-    first.watch(changed)
-    second.watch(changed)
+    first.watch(on_change)
+    second.watch(on_change)
     change_event.set()
     unsettled_until = 0.0
     while True:
@@ -91,11 +91,11 @@ async def _carry(first: Side, second: Side, directions: tuple[Direction, Directi
             # Withdraw first in both directions: a service that both sides offer must not be carried in either
             # direction, so that no request travels in a circle.
             for direction in directions:
-                direction.withdraw()
+                direction.remove_mirrors()
             for direction in directions:
-                direction.add()
+                direction.add_mirrors()
             unsettled_until = loop.time() + _UNSETTLED_S
-        settled = [direction.settle() for direction in directions]
+        settled = [direction.process_pending() for direction in directions]
         settled += [directions[0].announce(directions[1]), directions[1].announce(directions[0])]
         pause_s = _IDLE_INTERVAL_S if all(settled) and loop.time() > unsettled_until else _BUSY_INTERVAL_S
         wait_task = asyncio.ensure_future(change_event.wait())
@@ -111,8 +111,8 @@ def _without_mirrored_nodes(log: LogSink) -> LogSink:
     Mirrored nodes warn about a quality of service that they did not choose.
     """
 
-    def take(record: LogRecord) -> None:
+    def log_unless_mirrored(record: LogRecord) -> None:
         if record.node in _BRIDGE_LOGGERS or record.level >= LogLevel.ERROR:
             log(record)
 
-    return take
+    return log_unless_mirrored

@@ -86,7 +86,7 @@ class Direction:
 
     # --- after changes -----------------------------------------------------------------------------------------------
 
-    def withdraw(self) -> None:
+    def remove_mirrors(self) -> None:
         """Decide which endpoints to mirror now, and remove the mirrors of endpoints that have left."""
         self._select_endpoints()
         self._departed_publishers = {
@@ -99,7 +99,7 @@ class Direction:
             self._presences.pop(gid).destroy()
         self._remove_departed()
 
-    def add(self) -> None:
+    def add_mirrors(self) -> None:
         """Mirror new nodes, publishers and services in the target."""
         for name, node in self._selected_nodes.items():
             if name not in self._nodes:
@@ -108,7 +108,7 @@ class Direction:
             if gid not in self._publishers:
                 stream = publisher_stream(info, keyed=self._source.needs_hashes)
                 self._publishers[gid] = MirroredPublisher(self._mirror_node(info), info, stream)
-            if self._publishers[gid].waits:
+            if self._publishers[gid].has_queued_messages:
                 self._publishers[gid].expects_listeners = self._is_expected(info)
         for key, info in self._selected_services.items():
             if key not in self._services:
@@ -151,15 +151,15 @@ class Direction:
             for publisher in self._publishers.values()
         )
 
-    def settle(self) -> bool:
+    def process_pending(self) -> bool:
         """Continue pending work (messages, removals, matching), and return whether all is done."""
         is_settled = not self._departed_publishers
         self._publish_early()
         self._remove_departed()
         for publisher in self._publishers.values():
-            is_settled = publisher.settle() and is_settled
+            is_settled = publisher.process_pending() and is_settled
         for service in self._services.values():
-            is_settled = service.settle() and is_settled
+            is_settled = service.process_pending() and is_settled
         self._update_taps()
         return is_settled and not self._early_messages
 
@@ -266,7 +266,9 @@ class Direction:
             if (publisher.stream in self._taps and publisher.stream.has_history)
             or (publisher.info.name in subscriptions and publisher.listeners())
         }
-        matched_names = {publisher.info.name for publisher in self._publishers.values() if not publisher.waits}
+        matched_names = {
+            publisher.info.name for publisher in self._publishers.values() if not publisher.has_queued_messages
+        }
         streams |= {stream for stream in self._awaited_streams if stream.name not in matched_names}
         for stream in self._taps.keys() - streams:
             self._taps.pop(stream).close()
@@ -280,7 +282,7 @@ class Direction:
 
         A message whose publisher has not been discovered yet is queued.
         """
-        if not info.from_outside:
+        if not info.is_remote:
             return
         publisher = self._publisher(info.publisher_gid)
         if publisher is not None:

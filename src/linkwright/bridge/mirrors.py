@@ -101,7 +101,7 @@ class MirroredPublisher:
         return self._publisher.get_subscription_count() - len(self._publisher.local_subscriptions())
 
     @property
-    def waits(self) -> bool:
+    def has_queued_messages(self) -> bool:
         """Whether messages are queued until a subscription is matched."""
         return self._waiting is not None
 
@@ -111,9 +111,9 @@ class MirroredPublisher:
             self._publish(data)
         else:
             self._waiting.append(data)
-            self.settle()
+            self.process_pending()
 
-    def settle(self) -> bool:
+    def process_pending(self) -> bool:
         """Publish the queued messages once a subscription is matched, or after a while.
 
         Returns whether the queue is empty. Messages with history are published immediately.
@@ -164,7 +164,7 @@ class MirroredService:
         self._client = home.add(client)
         self._service: Service[Any, Any] | None = None
 
-    def settle(self) -> bool:
+    def process_pending(self) -> bool:
         """Offer the service once it can be called, and return whether it is offered."""
         if self._service is None and self._client.service_is_ready():
             service: Service[Any, Any] = Service(

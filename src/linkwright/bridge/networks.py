@@ -81,7 +81,7 @@ class Network:
         if reason:
             message = phrase("{network} cannot be joined", network=self.label)
             raise LinkwrightError(Diagnostic("CLI454", message, notes=(Note(reason),)))
-        graph = Graph(on_log=log, on_namesakes=_ignore_names)
+        graph = Graph(on_log=log, on_shared_names=_ignore_names)
         transport = kind.open_transport(self.domain_id, bridge_id, graph.get_logger(self.kind))
         graph.attach(transport)
         side = Side(self.label, graph, transport, bridge_id, needs_hashes=kind.needs_hashes)

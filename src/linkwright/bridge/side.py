@@ -78,7 +78,9 @@ class Side:
         Raises:
             LinkwrightError: DDS102, DDS111, DDS112, the network cannot be joined.
         """
-        while not await asyncio.to_thread(self._transport.wait_until_ready, seconds) and self._transport.waits:
+        while (
+            not await asyncio.to_thread(self._transport.wait_until_ready, seconds) and self._transport.waits_for_others
+        ):
             pass  # the transport logs what it is waiting for
         if self._transport.problem is not None:
             raise self._transport.problem

@@ -71,7 +71,7 @@ async def _greet(session: Session, arguments: argparse.Namespace) -> int:
             counts.sent += 1
 
         def print_table() -> None:
-            print(counts.take_table(arguments.topic, arguments.print_period))
+            print(counts.pop_table(arguments.topic, arguments.print_period))
 
         try:
             emit()

@@ -60,12 +60,12 @@ def run(arguments: argparse.Namespace) -> int:
     """Run the launch file until it ends, and return the exit status."""
     from linkwright import standins
     from linkwright.launch import LaunchOptions, parse_launch_words, print_description, run_launch, show_arguments
-    from linkwright.shell.programs import offer_programs, offer_ros_variables
+    from linkwright.shell.programs import append_programs_to_path, set_ros_variables
 
     target, values = parse_launch_words(arguments.words)
     standins.activate()
-    offer_ros_variables(os.environ)
-    offer_programs(os.environ)
+    set_ros_variables(os.environ)
+    append_programs_to_path(os.environ)
     if arguments.show_args:
         print(show_arguments(target))
         return 0

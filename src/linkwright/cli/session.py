@@ -278,7 +278,7 @@ async def join_others(graph: Graph, spin_time: float | None, *, read_only: bool 
                 hint=phrase("unset LINKWRIGHT_DDS") if os.environ.get("LINKWRIGHT_DDS") else None,
             )
         )
-    while not await asyncio.to_thread(transport.wait_until_ready, _JOIN_TIMEOUT) and transport.waits:
+    while not await asyncio.to_thread(transport.wait_until_ready, _JOIN_TIMEOUT) and transport.waits_for_others:
         pass  # the transport logs what it is waiting for
     if transport.problem is not None:
         raise transport.problem

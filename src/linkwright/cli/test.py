@@ -31,11 +31,11 @@ def run(arguments: argparse.Namespace) -> int:
     """Run the tests in a separate process with the stand-ins, and return 0 if all tests passed."""
     from linkwright.packages import PackageFinder
     from linkwright.packages.programs.workspace_environment import workspace_environment
-    from linkwright.shell.programs import offer_programs, offer_ros_variables
+    from linkwright.shell.programs import append_programs_to_path, set_ros_variables
     from linkwright.standins import process
 
-    offer_ros_variables(os.environ)
-    offer_programs(os.environ)
+    set_ros_variables(os.environ)
+    append_programs_to_path(os.environ)
     options = [f"--{name.replace('_', '-')}" for name in ("show_args", "verbose") if getattr(arguments, name)]
     for name in ("junit_xml", "package_name"):
         if getattr(arguments, name) is not None:

@@ -6,29 +6,29 @@ The graph is observed for a few seconds.
 from linkwright.doctor.examination import examine
 from linkwright.doctor.parameter_files import examine_parameter_files
 from linkwright.doctor.record import (
-    ClockSeen,
-    DescriptionSeen,
-    DriversSeen,
     FixedFrame,
-    FrameSeen,
-    JointSeen,
     Observation,
-    StampSeen,
-    TransformSeen,
+    ObservedClock,
+    ObservedDescription,
+    ObservedDrivers,
+    ObservedFrame,
+    ObservedJoint,
+    ObservedStamp,
+    ObservedTransform,
 )
 from linkwright.doctor.report import report
 from linkwright.doctor.watching import observe
 
 __all__ = [
-    "ClockSeen",
-    "DescriptionSeen",
-    "DriversSeen",
     "FixedFrame",
-    "FrameSeen",
-    "JointSeen",
     "Observation",
-    "StampSeen",
-    "TransformSeen",
+    "ObservedClock",
+    "ObservedDescription",
+    "ObservedDrivers",
+    "ObservedFrame",
+    "ObservedJoint",
+    "ObservedStamp",
+    "ObservedTransform",
     "examine",
     "examine_parameter_files",
     "observe",

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from linkwright.diagnostics import Diagnostic, Note, Severity, phrase
-from linkwright.doctor.record import Observation, StampSeen, listed, nodes_of
+from linkwright.doctor.record import Observation, ObservedStamp, listed, nodes_of
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 _MAX_DIFFERENCE_NS = 5 * NANOSECONDS_PER_SECOND
@@ -19,7 +19,7 @@ _CLOCK_TOPIC = "/clock"
 def examine_clocks(observation: Observation) -> Iterator[Diagnostic]:
     """Yield findings about stamps and simulated time."""
     yield from _examine_simulated_time(observation)
-    yield from _stamps(observation)
+    yield from _examine_stamps(observation)
 
 
 def _is_hidden(node: str) -> bool:
@@ -37,8 +37,9 @@ def _examine_simulated_time(observation: Observation) -> Iterator[Diagnostic]:
         yield Diagnostic(
             "DOC602",
             phrase(
-                "use_sim_time is true for {on}, but no node publishes /clock, so their time does not advance",
-                on=listed(simulated_nodes),
+                "use_sim_time is true for {simulated_nodes}, but no node publishes /clock, "
+                "so their time does not advance",
+                simulated_nodes=listed(simulated_nodes),
             ),
             hint=phrase("start the simulation or play the bag with --clock, or set use_sim_time to false"),
         )
@@ -67,9 +68,9 @@ def _examine_simulated_time(observation: Observation) -> Iterator[Diagnostic]:
         yield Diagnostic(
             "DOC601",
             phrase(
-                "use_sim_time is true for {on}, but false for {off}",
-                on=listed(simulated_nodes),
-                off=listed(other_nodes),
+                "use_sim_time is true for {simulated_nodes}, but false for {other_nodes}",
+                simulated_nodes=listed(simulated_nodes),
+                other_nodes=listed(other_nodes),
             ),
             severity=Severity.WARNING,
             notes=(Note(phrase("the stamps of these nodes are far apart, so transforms and messages do not match")),),
@@ -86,11 +87,11 @@ def _examine_simulated_time(observation: Observation) -> Iterator[Diagnostic]:
         )
 
 
-def _stamps(observation: Observation) -> Iterator[Diagnostic]:
+def _examine_stamps(observation: Observation) -> Iterator[Diagnostic]:
     unset_topics: dict[str, list[str]] = {}
-    wrong_stamps: dict[str, list[StampSeen]] = {}
+    wrong_stamps: dict[str, list[ObservedStamp]] = {}
     for stamp in observation.stamps:
-        if stamp.zero:
+        if stamp.is_zero:
             unset_topics.setdefault(stamp.sender, []).append(stamp.topic)
         elif abs(stamp.behind_ns) > _MAX_DIFFERENCE_NS:
             wrong_stamps.setdefault(stamp.sender, []).append(stamp)
@@ -112,16 +113,16 @@ def _stamps(observation: Observation) -> Iterator[Diagnostic]:
         yield Diagnostic(
             "DOC605",
             phrase(
-                "the stamps of '{sender}' on {where} are {seconds:.1f} s behind the clock here",
+                "the stamps of '{sender}' on {topics} are {seconds:.1f} s behind the clock here",
                 sender=sender,
-                where=topics_text,
+                topics=topics_text,
                 seconds=farthest.behind_ns / NANOSECONDS_PER_SECOND,
             )
             if farthest.behind_ns > 0
             else phrase(
-                "the stamps of '{sender}' on {where} are {seconds:.1f} s ahead of the clock here",
+                "the stamps of '{sender}' on {topics} are {seconds:.1f} s ahead of the clock here",
                 sender=sender,
-                where=topics_text,
+                topics=topics_text,
                 seconds=-farthest.behind_ns / NANOSECONDS_PER_SECOND,
             ),
             severity=Severity.WARNING,

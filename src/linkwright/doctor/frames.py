@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from linkwright.diagnostics import Diagnostic, Note, Phrase, Severity, did_you_mean, foreign, phrase
-from linkwright.doctor.record import Observation, TransformSeen, listed, nodes_of
-from linkwright.doctor.robots import MOVING_TYPES, RobotSeen
+from linkwright.doctor.record import Observation, ObservedTransform, listed, nodes_of
+from linkwright.doctor.robots import MOVING_TYPES, ObservedRobot
 from linkwright.graph.endpoints.base import EndpointKind
 from linkwright.urdf import Joint
 
@@ -19,7 +19,7 @@ _WORLD_TOPICS = ("/world_rays", "/world_rays/others")
 Viewers receive the poses of these frames on a separate topic and not by tf."""
 
 
-def examine_frames(observation: Observation, robots: Sequence[RobotSeen]) -> Iterator[Diagnostic]:
+def examine_frames(observation: Observation, robots: Sequence[ObservedRobot]) -> Iterator[Diagnostic]:
     """Yield findings about frames and their transforms."""
     yield from _examine_contradictions(observation)
     yield from _examine_numbers(observation)
@@ -27,7 +27,7 @@ def examine_frames(observation: Observation, robots: Sequence[RobotSeen]) -> Ite
     if cycle:
         yield Diagnostic(
             "DOC307",
-            phrase("the parents of frames form a cycle: {circle}", circle=" -> ".join(cycle)),
+            phrase("the parents of frames form a cycle: {cycle}", cycle=" -> ".join(cycle)),
             hint=phrase("publish each frame's transform from one node only: two nodes disagree about the parents"),
         )
     for robot in robots:
@@ -38,7 +38,7 @@ def examine_frames(observation: Observation, robots: Sequence[RobotSeen]) -> Ite
 
 
 def _examine_contradictions(observation: Observation) -> Iterator[Diagnostic]:
-    by_child: dict[str, list[TransformSeen]] = {}
+    by_child: dict[str, list[ObservedTransform]] = {}
     for transform in observation.transforms:
         by_child.setdefault(transform.child, []).append(transform)
     children_by_senders: dict[tuple[str, ...], list[str]] = {}
@@ -87,7 +87,7 @@ def _examine_contradictions(observation: Observation) -> Iterator[Diagnostic]:
 
 def _examine_numbers(observation: Observation) -> Iterator[Diagnostic]:
     for transform in observation.transforms:
-        if not transform.valid:
+        if not transform.is_valid:
             yield Diagnostic(
                 "DOC306",
                 phrase(
@@ -101,7 +101,7 @@ def _examine_numbers(observation: Observation) -> Iterator[Diagnostic]:
             )
 
 
-def _find_cycle(transforms: Sequence[TransformSeen]) -> list[str]:
+def _find_cycle(transforms: Sequence[ObservedTransform]) -> list[str]:
     """Return the frames of a cycle in the tree of frames, or an empty list if there is no cycle.
 
     The first frame is repeated as the last one.
@@ -120,7 +120,7 @@ def _find_cycle(transforms: Sequence[TransformSeen]) -> list[str]:
     return []
 
 
-def _examine_missing(observation: Observation, robot: RobotSeen) -> Iterator[Diagnostic]:
+def _examine_missing(observation: Observation, robot: ObservedRobot) -> Iterator[Diagnostic]:
     """Yield findings about the frames of a robot's links that have no transform.
 
     Frames whose transforms are missing for the same reason share a finding.
@@ -167,11 +167,11 @@ def _examine_missing(observation: Observation, robot: RobotSeen) -> Iterator[Dia
         yield _unused_state_finding(observation, robot, joints_with_state)
 
 
-def _has_state(observation: Observation, robot: RobotSeen, joint: Joint) -> bool:
+def _has_state(observation: Observation, robot: ObservedRobot, joint: Joint) -> bool:
     return robot.leader(joint) in {joint.name for joint in observation.joints}
 
 
-def _missing_static_finding(robot: RobotSeen, joints: Sequence[Joint]) -> Diagnostic:
+def _missing_static_finding(robot: ObservedRobot, joints: Sequence[Joint]) -> Diagnostic:
     frames = [robot.frame(joint.child) for joint in joints]
     return Diagnostic(
         "DOC304",
@@ -188,7 +188,7 @@ def _missing_static_finding(robot: RobotSeen, joints: Sequence[Joint]) -> Diagno
 
 
 def _missing_state_findings(
-    observation: Observation, robot: RobotSeen, joints: Sequence[Joint]
+    observation: Observation, robot: ObservedRobot, joints: Sequence[Joint]
 ) -> Iterator[Diagnostic]:
     names = list(dict.fromkeys(robot.leader(joint) for joint in joints))
     frames = [robot.frame(joint.child) for joint in joints]
@@ -249,7 +249,7 @@ def _missing_state_findings(
             )
 
 
-def _unused_state_finding(observation: Observation, robot: RobotSeen, joints: Sequence[Joint]) -> Diagnostic:
+def _unused_state_finding(observation: Observation, robot: ObservedRobot, joints: Sequence[Joint]) -> Diagnostic:
     frames = [robot.frame(joint.child) for joint in joints]
     leader_names = {robot.leader(joint) for joint in joints}
     topics = sorted({topic for joint in observation.joints if joint.name in leader_names for topic in joint.topics})
@@ -286,7 +286,7 @@ def _format_frames(names: Sequence[str]) -> Phrase:
     return phrase("{count} frames, {names}", count=len(names), names=listed(names))
 
 
-def _examine_trees(observation: Observation, robots: Sequence[RobotSeen]) -> Iterator[Diagnostic]:
+def _examine_trees(observation: Observation, robots: Sequence[ObservedRobot]) -> Iterator[Diagnostic]:
     children = {transform.child for transform in observation.transforms}
     roots = sorted({transform.parent for transform in observation.transforms} - children)
     if len(roots) < 2:
@@ -316,7 +316,7 @@ def _examine_trees(observation: Observation, robots: Sequence[RobotSeen]) -> Ite
     )
 
 
-def _tree_size(root: str, transforms: Sequence[TransformSeen]) -> int:
+def _tree_size(root: str, transforms: Sequence[ObservedTransform]) -> int:
     children_by_parent: dict[str, set[str]] = {}
     for transform in transforms:
         children_by_parent.setdefault(transform.parent, set()).add(transform.child)
@@ -329,7 +329,7 @@ def _tree_size(root: str, transforms: Sequence[TransformSeen]) -> int:
     return len(descendants)
 
 
-def _examine_fixed_frames(observation: Observation, robots: Sequence[RobotSeen]) -> Iterator[Diagnostic]:
+def _examine_fixed_frames(observation: Observation, robots: Sequence[ObservedRobot]) -> Iterator[Diagnostic]:
     known_frames = {name for transform in observation.transforms for name in (transform.parent, transform.child)}
     known_frames |= {robot.frame(robot.root) for robot in robots}
     if observation.publishers_of(_WORLD_POSES):
@@ -359,7 +359,7 @@ def _examine_fixed_frames(observation: Observation, robots: Sequence[RobotSeen])
         )
 
 
-def _examine_message_frames(observation: Observation, robots: Sequence[RobotSeen]) -> Iterator[Diagnostic]:
+def _examine_message_frames(observation: Observation, robots: Sequence[ObservedRobot]) -> Iterator[Diagnostic]:
     """Yield findings about message frames that have no transform and do not belong to a robot."""
     if not observation.transforms:
         return

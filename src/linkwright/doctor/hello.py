@@ -56,7 +56,7 @@ class Greetings:
         if host and host != self.own_host:
             counts[host] += 1
 
-    def take_table(self, topic: str, period: float) -> str:
+    def pop_table(self, topic: str, period: float) -> str:
         """Return the table in the format of ``ros2 doctor hello``, and reset the counts.
 
         Args:

@@ -15,26 +15,26 @@ UNKNOWN_NODE = "an unknown node"
 
 
 @dataclass(frozen=True, slots=True)
-class TransformSeen:
+class ObservedTransform:
     """The transforms that were observed from a frame to one of its parents.
 
     Attributes:
         parent: the parent frame.
         child: the child frame.
         senders: the sorted full names of the nodes that published the transform.
-        static: whether the transform was published as a static transform.
-        valid: whether all numbers are finite, and the quaternion is not zero.
+        is_static: whether the transform was published as a static transform.
+        is_valid: whether all numbers are finite, and the quaternion is not zero.
     """
 
     parent: str
     child: str
     senders: tuple[str, ...]
-    static: bool = False
-    valid: bool = True
+    is_static: bool = False
+    is_valid: bool = True
 
 
 @dataclass(frozen=True, slots=True)
-class JointSeen:
+class ObservedJoint:
     """The states of a joint that were observed.
 
     Attributes:
@@ -49,7 +49,7 @@ class JointSeen:
 
 
 @dataclass(frozen=True, slots=True)
-class DescriptionSeen:
+class ObservedDescription:
     """A robot description that was observed.
 
     Attributes:
@@ -64,24 +64,24 @@ class DescriptionSeen:
 
 
 @dataclass(frozen=True, slots=True)
-class StampSeen:
+class ObservedStamp:
     """The stamps that were observed of a node on a topic.
 
     Attributes:
         topic: the name of the topic.
         sender: the full name of the publishing node.
         behind_ns: the clock at arrival minus the last stamp, in nanoseconds; negative if the stamp was in the future.
-        zero: whether the stamp was 0, so that it was probably never set.
+        is_zero: whether the stamp was 0, so that it was probably never set.
     """
 
     topic: str
     sender: str
     behind_ns: int
-    zero: bool = False
+    is_zero: bool = False
 
 
 @dataclass(frozen=True, slots=True)
-class FrameSeen:
+class ObservedFrame:
     """The frame that was observed in a node's messages on a topic.
 
     Attributes:
@@ -96,7 +96,7 @@ class FrameSeen:
 
 
 @dataclass(frozen=True, slots=True)
-class DriversSeen:
+class ObservedDrivers:
     """The nodes that published contradictory velocities on a topic at the same time.
 
     Attributes:
@@ -109,7 +109,7 @@ class DriversSeen:
 
 
 @dataclass(frozen=True, slots=True)
-class ClockSeen:
+class ObservedClock:
     """The messages of ``/clock`` that were observed.
 
     Attributes:
@@ -162,13 +162,13 @@ class Observation:
     seconds: float = 0.0
     nodes: tuple[str, ...] = ()
     endpoints: tuple[EndpointInfo, ...] = ()
-    transforms: tuple[TransformSeen, ...] = ()
-    joints: tuple[JointSeen, ...] = ()
-    descriptions: tuple[DescriptionSeen, ...] = ()
-    stamps: tuple[StampSeen, ...] = ()
-    frames: tuple[FrameSeen, ...] = ()
-    disputed: tuple[DriversSeen, ...] = ()
-    clock: ClockSeen | None = None
+    transforms: tuple[ObservedTransform, ...] = ()
+    joints: tuple[ObservedJoint, ...] = ()
+    descriptions: tuple[ObservedDescription, ...] = ()
+    stamps: tuple[ObservedStamp, ...] = ()
+    frames: tuple[ObservedFrame, ...] = ()
+    disputed: tuple[ObservedDrivers, ...] = ()
+    clock: ObservedClock | None = None
     sim_time: Mapping[str, bool] = field(default_factory=dict)
     lifecycle: Mapping[str, str] = field(default_factory=dict)
     fixed_frames: tuple[FixedFrame, ...] = ()
@@ -202,7 +202,7 @@ def listed(names: Iterable[str], limit: int = 6) -> Phrase:
     all_names = list(names)
     shown_names = quoted_names(all_names[:limit])
     return (
-        phrase("{names} and {more} more", names=shown_names, more=len(all_names) - limit)
+        phrase("{names} and {count} more", names=shown_names, count=len(all_names) - limit)
         if len(all_names) > limit
         else shown_names
     )

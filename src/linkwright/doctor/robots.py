@@ -18,7 +18,7 @@ robot_state_publisher treats other joints as fixed.
 
 
 @dataclass(frozen=True, slots=True)
-class RobotSeen:
+class ObservedRobot:
     """A robot whose description was observed on a topic.
 
     Attributes:
@@ -67,18 +67,18 @@ class RobotSeen:
         return joint.name
 
 
-def robots_in(observation: Observation) -> tuple[list[RobotSeen], list[Diagnostic]]:
+def robots_in(observation: Observation) -> tuple[list[ObservedRobot], list[Diagnostic]]:
     """Return the robots with an observed description, and findings about invalid descriptions.
 
     A description is invalid if it cannot be parsed.
     """
-    robots: dict[tuple[str, str], RobotSeen] = {}
+    robots: dict[tuple[str, str], ObservedRobot] = {}
     findings = []
     for description in observation.descriptions:
         read_description = DescriptionLibrary().read(description.text)
         if read_description.robot is not None:
             prefix = _frame_prefix(read_description.robot, observation)
-            robots[description.topic, description.text] = RobotSeen(
+            robots[description.topic, description.text] = ObservedRobot(
                 description.topic, description.sender, read_description.robot, prefix
             )
             continue
@@ -110,7 +110,7 @@ def _frame_prefix(robot: Robot, observation: Observation) -> str:
     return max(prefixes, key=lambda prefix: sum(prefix + link in frames for link in robot.links), default="")
 
 
-def examine_robots(observation: Observation, robots: Sequence[RobotSeen]) -> Iterator[Diagnostic]:
+def examine_robots(observation: Observation, robots: Sequence[ObservedRobot]) -> Iterator[Diagnostic]:
     """Yield findings about robot descriptions and joint states."""
     yield from _examine_descriptions(observation)
     yield from _examine_joint_senders(observation)
@@ -167,7 +167,7 @@ def _examine_joint_senders(observation: Observation) -> Iterator[Diagnostic]:
         )
 
 
-def _examine_unknown_joints(observation: Observation, robot: RobotSeen) -> Iterator[Diagnostic]:
+def _examine_unknown_joints(observation: Observation, robot: ObservedRobot) -> Iterator[Diagnostic]:
     published_names = {joint.name for joint in observation.joints}
     unpublished_names = [
         joint.name for joint in robot.joints if joint.type in MOVING_TYPES and joint.name not in published_names

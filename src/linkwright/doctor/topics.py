@@ -247,26 +247,27 @@ def _examine_misnamed_topics(observation: Observation) -> Iterator[Diagnostic]:
         yield Diagnostic(
             "DOC204",
             phrase(
-                "no node publishes topic '{topic}', which {nodes_of} subscribes to, but '{like}' is published",
+                "no node publishes topic '{topic}', which {subscribers} subscribes to, "
+                "but '{similar_topic}' is published",
                 topic=topic,
-                nodes_of=listed(nodes_of(endpoints)),
-                like=published_topic,
+                subscribers=listed(nodes_of(endpoints)),
+                similar_topic=published_topic,
             ),
             severity=Severity.WARNING,
             notes=(
                 Note(
                     phrase(
-                        "'{like}' has the same type, {type_name}, and is published by {senders}",
-                        like=published_topic,
+                        "'{similar_topic}' has the same type, {type_name}, and is published by {senders}",
+                        similar_topic=published_topic,
                         type_name=type_name,
                         senders=listed(senders),
                     )
                 ),
             ),
             hint=phrase(
-                "if the two topics belong together, remap one of them: --ros-args -r {topic}:={like}",
+                "if the two topics belong together, remap one of them: --ros-args -r {topic}:={similar_topic}",
                 topic=topic,
-                like=published_topic,
+                similar_topic=published_topic,
             ),
         )
 
@@ -303,8 +304,8 @@ def _examine_commands(observation: Observation) -> Iterator[Diagnostic]:
         yield Diagnostic(
             "DOC207",
             phrase(
-                "{nodes_of} publishes velocities on '{topic}', but no node subscribes to it, so nothing moves",
-                nodes_of=listed(nodes_of(publishers)),
+                "{publishers} publishes velocities on '{topic}', but no node subscribes to it, so nothing moves",
+                publishers=listed(nodes_of(publishers)),
                 topic=topic,
             ),
             severity=Severity.WARNING,
@@ -314,13 +315,13 @@ def _examine_commands(observation: Observation) -> Iterator[Diagnostic]:
 
 def _examine_drivers(observation: Observation) -> Iterator[Diagnostic]:
     """Yield findings about nodes that published contradictory velocities on a topic."""
-    for drivers_seen in observation.disputed:
+    for observed_drivers in observation.disputed:
         yield Diagnostic(
             "DOC208",
             phrase(
                 "two nodes drive the robot: {drivers} publish contradictory velocities on '{topic}'",
-                drivers=listed(drivers_seen.drivers),
-                topic=drivers_seen.topic,
+                drivers=listed(observed_drivers.drivers),
+                topic=observed_drivers.topic,
             ),
             severity=Severity.WARNING,
             notes=(Note(phrase("the robot obeys each message in turn, so its motion is jerky")),),
@@ -355,11 +356,11 @@ def _examine_clients(observation: Observation) -> Iterator[Diagnostic]:
             yield Diagnostic(
                 "DOC205",
                 phrase(
-                    "service '{name}' is called by {callers} as {type_name}, but has the type {served}",
+                    "service '{name}' is called by {callers} as {type_name}, but has the type {service_type}",
                     name=name,
                     callers=callers,
                     type_name=type_name,
-                    served=service_types[name],
+                    service_type=service_types[name],
                 ),
                 hint=phrase("use the same type for the client and the server"),
             )
@@ -375,8 +376,9 @@ def _examine_clients(observation: Observation) -> Iterator[Diagnostic]:
             severity=Severity.WARNING,
             notes=(Note(phrase("it is of type {type_name}", type_name=type_name)),),
             hint=phrase(
-                "service '{near}' has the same type; remap one of them: --ros-args -r {name}:={near}",
-                near=similar_services[0],
+                "service '{similar_service}' has the same type; "
+                "remap one of them: --ros-args -r {name}:={similar_service}",
+                similar_service=similar_services[0],
                 name=name,
             )
             if similar_services

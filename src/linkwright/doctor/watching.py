@@ -14,15 +14,15 @@ from linkwright.doctor.record import (
     TWIST,
     TWIST_STAMPED,
     UNKNOWN_NODE,
-    ClockSeen,
-    DescriptionSeen,
-    DriversSeen,
     FixedFrame,
-    FrameSeen,
-    JointSeen,
     Observation,
-    StampSeen,
-    TransformSeen,
+    ObservedClock,
+    ObservedDescription,
+    ObservedDrivers,
+    ObservedFrame,
+    ObservedJoint,
+    ObservedStamp,
+    ObservedTransform,
     node_of,
 )
 from linkwright.graph.endpoints.base import EndpointInfo, EndpointKind, MessageInfo
@@ -129,8 +129,8 @@ async def observe(
         transforms=watcher.transforms(),
         joints=watcher.joints(),
         descriptions=tuple(watcher.descriptions.values()),
-        stamps=watcher.stamps_seen(sim_time),
-        frames=watcher.frames_seen(),
+        stamps=watcher.observed_stamps(sim_time),
+        frames=watcher.observed_frames(),
         disputed=watcher.disputed(),
         clock=watcher.clock,
         sim_time=sim_time,
@@ -154,8 +154,8 @@ class _Watcher:
         self._transform_topics: set[str] = set()
         self._frames: dict[tuple[str, str], str] = {}
         self._disputes: dict[str, Dispute] = {}
-        self.descriptions: dict[tuple[str, str], DescriptionSeen] = {}
-        self.clock: ClockSeen | None = None
+        self.descriptions: dict[tuple[str, str], ObservedDescription] = {}
+        self.clock: ObservedClock | None = None
 
     def nodes(self) -> list[str]:
         """Return the full names of the nodes in the graph.
@@ -297,15 +297,15 @@ class _Watcher:
 
     def _on_description(self, topic: str, message: Any, info: MessageInfo) -> None:
         sender = self._sender(topic, info)
-        self.descriptions[topic, sender] = DescriptionSeen(topic, sender, message.data)
+        self.descriptions[topic, sender] = ObservedDescription(topic, sender, message.data)
 
     def _on_clock(self, message: Any) -> None:
         now_ns = message.clock.nanoseconds
         previous = self.clock
         self.clock = (
-            ClockSeen(1, now_ns, now_ns)
+            ObservedClock(1, now_ns, now_ns)
             if previous is None
-            else ClockSeen(previous.ticks + 1, previous.first_ns, now_ns)
+            else ObservedClock(previous.ticks + 1, previous.first_ns, now_ns)
         )
 
     def _on_velocity(self, topic: str, data: bytes, info: MessageInfo) -> None:
@@ -331,34 +331,34 @@ class _Watcher:
 
     # --- observations from the messages ------------------------------------------------------------------------------
 
-    def transforms(self) -> tuple[TransformSeen, ...]:
+    def transforms(self) -> tuple[ObservedTransform, ...]:
         """Return the transforms, sorted by parent and child.
 
         The senders of a transform are the nodes that publish it on one topic, because a bridge may forward transforms
         to another topic.
         """
         return tuple(
-            TransformSeen(parent, child, max(map(tuple, map(sorted, senders.values())), key=len), is_static, valid)
+            ObservedTransform(parent, child, max(map(tuple, map(sorted, senders.values())), key=len), is_static, valid)
             for (parent, child), (senders, is_static, valid) in sorted(self._transforms.items())
         )
 
-    def joints(self) -> tuple[JointSeen, ...]:
+    def joints(self) -> tuple[ObservedJoint, ...]:
         """Return the observed joints, sorted by name."""
         return tuple(
-            JointSeen(name, tuple(sorted(senders)), tuple(sorted(topics)))
+            ObservedJoint(name, tuple(sorted(senders)), tuple(sorted(topics)))
             for name, (senders, topics) in sorted(self._joints.items())
         )
 
-    def disputed(self) -> tuple[DriversSeen, ...]:
+    def disputed(self) -> tuple[ObservedDrivers, ...]:
         """Return the nodes that published contradictory velocities, by topic."""
         drivers_by_topic = []
         for topic, dispute in sorted(self._disputes.items()):
             drivers = find_drivers(self._graph, find_publishers(self._graph, dispute.parties))
             if len(drivers) > 1:
-                drivers_by_topic.append(DriversSeen(topic, tuple(drivers)))
+                drivers_by_topic.append(ObservedDrivers(topic, tuple(drivers)))
         return tuple(drivers_by_topic)
 
-    def stamps_seen(self, sim_time: Mapping[str, bool]) -> tuple[StampSeen, ...]:
+    def observed_stamps(self, sim_time: Mapping[str, bool]) -> tuple[ObservedStamp, ...]:
         """Return the age of the last stamps, measured with the clock of their senders.
 
         This clock is simulated time if the sender uses or publishes it. Any other sender may forward the stamps of
@@ -374,13 +374,13 @@ class _Watcher:
             behind_ns = now_ns - stamp_ns
             if self.clock is not None:  # bridges and robot_state_publisher forward stamps of simulated time
                 behind_ns = min(behind_ns, self.clock.last_ns - stamp_ns, key=abs)
-            stamps.append(StampSeen(topic, sender, behind_ns, zero=stamp_ns == 0))
+            stamps.append(ObservedStamp(topic, sender, behind_ns, is_zero=stamp_ns == 0))
         return tuple(stamps)
 
-    def frames_seen(self) -> tuple[FrameSeen, ...]:
+    def observed_frames(self) -> tuple[ObservedFrame, ...]:
         """Return the frames of messages by topic and sender, without empty frames."""
         named_frames = sorted(item for item in self._frames.items() if item[1])
-        return tuple(FrameSeen(topic, sender, frame) for (topic, sender), frame in named_frames)
+        return tuple(ObservedFrame(topic, sender, frame) for (topic, sender), frame in named_frames)
 
     # --- service calls -----------------------------------------------------------------------------------------------
 

@@ -39,11 +39,11 @@ def read_source(path: Path, file_kind: Phrase, code: str) -> SourceText:
     try:
         return SourceText(str(path), read_text(path))
     except FileNotFoundError:
-        message = phrase("{what} '{shown}' does not exist", what=file_kind, shown=shown_path)
+        message = phrase("{kind} '{path}' does not exist", kind=file_kind, path=shown_path)
         raise LinkwrightError(Diagnostic(code, message, hint=missing_file_hint(path))) from None
     except (OSError, UnicodeDecodeError) as error:
         reason = foreign(getattr(error, "strerror", None) or error)
-        message = phrase("{what} '{shown}' cannot be read: {reason}", what=file_kind, shown=shown_path, reason=reason)
+        message = phrase("{kind} '{path}' cannot be read: {reason}", kind=file_kind, path=shown_path, reason=reason)
         raise LinkwrightError(Diagnostic(code, message)) from None
 
 

@@ -13,7 +13,7 @@ from linkwright.graph.endpoints.publisher import Publisher
 from linkwright.graph.endpoints.service import Client, Service
 from linkwright.graph.endpoints.subscription import Subscription
 from linkwright.graph.faults import InvalidHandleError
-from linkwright.graph.introspection.graph_queries import GraphQueries, OnNamesakes, SharedNameMonitor
+from linkwright.graph.introspection.graph_queries import GraphQueries, OnSharedNames, SharedNameMonitor
 from linkwright.graph.log.console import print_to_console
 from linkwright.graph.log.logger import Logger, LogLevels, LogSink
 from linkwright.graph.loop.dispatcher import LoopDispatcher
@@ -34,7 +34,7 @@ class LocalGraph(GraphQueries):
         on_log: receives log records; by default they are written to standard error in ROS 2's console format.
         threads: whether other threads run the callbacks, instead of the running event loop.
         levels: the levels of the graph's loggers; new ones by default.
-        on_namesakes: receives the names that nodes of this process share with nodes of other processes; by default a
+        on_shared_names: receives the names that nodes of this process share with nodes of other processes; by default a
             warning is logged.
 
     Attributes:
@@ -49,7 +49,7 @@ class LocalGraph(GraphQueries):
         on_log: LogSink | None = None,
         threads: bool = False,
         levels: LogLevels | None = None,
-        on_namesakes: OnNamesakes | None = None,
+        on_shared_names: OnSharedNames | None = None,
     ) -> None:
         self.timebase: Timebase = clock or SystemClock()
         self.bus = Bus()
@@ -63,7 +63,7 @@ class LocalGraph(GraphQueries):
         self._lock = threading.RLock()
         self._changed = threading.Condition()
         self._watchers: dict[Callable[[], object], None] = {}
-        self._namesakes = SharedNameMonitor(on_namesakes)
+        self._shared_name_monitor = SharedNameMonitor(on_shared_names)
         self._closed = False
         self._watches_lost = False
         loop = None if threads else asyncio._get_running_loop()
@@ -133,7 +133,7 @@ class LocalGraph(GraphQueries):
             self._taken_names[full_name] += 1
             if self._transport is not None and not stays_inside:
                 self._transport.open_node(identity)
-        self._on_outside_change()
+        self._on_remote_change()
         return node
 
     def get_logger(self, name: str) -> Logger:
@@ -166,8 +166,8 @@ class LocalGraph(GraphQueries):
                     _open_endpoint(transport, endpoint)
             if self._watches_lost:
                 transport.watch_lost(self._on_lost_publisher)
-        transport.watch(self._on_outside_change)
-        self._on_outside_change()
+        transport.watch(self._on_remote_change)
+        self._on_remote_change()
 
     def detach(self) -> None:
         """Close the transport, if there is one.
@@ -183,7 +183,7 @@ class LocalGraph(GraphQueries):
     # --- called by nodes ---------------------------------------------------------------------------------------------
 
     def add(self, endpoint: Endpoint) -> None:
-        """Connect a new endpoint to the endpoints with the same name, in this process and outside."""
+        """Connect a new endpoint to the endpoints with the same name, in this process and others."""
         with self._lock:
             self.bus.add(endpoint)
             if self._transport is not None and not endpoint.node.stays_inside:
@@ -191,7 +191,7 @@ class LocalGraph(GraphQueries):
         self.notify_change()
 
     def remove(self, endpoint: Endpoint) -> None:
-        """Remove an endpoint, in this process and outside."""
+        """Remove an endpoint, in this process and others."""
         with self._lock:
             self.bus.remove(endpoint)
             if self._transport is not None and not endpoint.node.stays_inside:
@@ -249,10 +249,10 @@ class LocalGraph(GraphQueries):
         if transport is not None:
             transport.close()
 
-    def _on_outside_change(self) -> None:
+    def _on_remote_change(self) -> None:
         transport = self._transport
         if transport is not None:
-            self._namesakes.review(self.nodes(), transport.remote_nodes())
+            self._shared_name_monitor.update(self.nodes(), transport.remote_nodes())
         self.notify_change()
 
     def _on_lost_publisher(self, publisher: EndpointInfo) -> None:

@@ -504,7 +504,7 @@ def _values_by_name(parameters: Mapping[str, Any] | Sequence[Parameter]) -> Mapp
 
 
 def _endpoint_profiles(ask: Callable[[str, bool], list[TopicEndpointInfo]], topic: str) -> Iterator[QoSProfile]:
-    """Iterate over the QoS profiles of a topic's endpoints, in this process and outside.
+    """Iterate over the QoS profiles of a topic's endpoints, in this process and others.
 
     The graph is queried only when the first profile is needed.
     """

@@ -43,11 +43,11 @@ def run_bag_view(files: Sequence[Path], options: HostOptions, *, foxglove: int |
     log = LaunchLog()
 
     def run(signals: SignalWatch) -> bool:
-        async def show() -> bool:
+        async def run_on_loop() -> bool:
             signals.session = view = BagView(bag, finder, options, log)
             return await view.run(foxglove)
 
-        return signals.run(show)
+        return signals.run(run_on_loop)
 
     with BagReader(path, files=[path, *other_files] if other_files else ()) as bag:
         return run_to_end(run, finder, log)
@@ -67,9 +67,9 @@ class BagView(ModelView):
         super().__init__(XacroCall(bag.path, ()), finder, options, log)
         self._bag = bag
 
-    def _publish(self) -> bool:
+    def _plan_description(self) -> bool:
         """Prepare the topics of the recording, and return whether the view can continue."""
-        self.log.diagnostics(self._bag.findings)
+        self.log.write_diagnostics(self._bag.findings)
         from linkwright.viewer.recorded_robot import published
 
         self._output = published(self._bag, self._player, self._robot)
@@ -95,7 +95,7 @@ class BagView(ModelView):
         )
 
     def _attach(self, viewer: Viewer) -> None:
-        playback = Playback(self._player.handle, self._bag, self._output, viewer.playback_failed)
+        playback = Playback(self._player.handle, self._bag, self._output, viewer.on_playback_error)
         viewer.attach_recording(playback, self._bag)
 
     def _viewer_config(self) -> RvizConfig:

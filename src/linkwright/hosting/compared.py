@@ -44,11 +44,11 @@ def run_compared_view(pair: Pair, options: HostOptions, *, foxglove: int | None 
         pair.old.read()  # The user cannot fix a version in a commit while the view is shown.
 
     def run(signals: SignalWatch) -> bool:
-        async def show() -> bool:
+        async def run_on_loop() -> bool:
             signals.session = view = ComparedView(pair, options, log)
             return await view.run(foxglove)
 
-        return signals.run(show)
+        return signals.run(run_on_loop)
 
     return run_to_end(run, pair.new.finder, log)
 
@@ -72,9 +72,9 @@ class ComparedView(ModelView):
         self.reload = LiveReload(self.descriptions, self._show_findings, log)
         self._old_reload = LiveReload(self._old, self._show_findings, log)
 
-    def _publish(self) -> bool:
+    def _plan_description(self) -> bool:
         if self._pair.old.path.is_file():
-            return super()._publish()
+            return super()._plan_description()
         self._read_old()  # logs the error
         self.shut_down("there is no model")
         return False
@@ -96,15 +96,15 @@ class ComparedView(ModelView):
         )
         publish = viewer.attach_comparison(self._pair, node)
 
-        def show(text: str) -> None:
+        def publish_old(text: str) -> None:
             self.clear_failure(self._old_call)
             publish(text)
 
         text = self._read_old()
         if text is not None:
-            show(text)
+            publish_old(text)
         if self._pair.old.revision is None:
-            self._old_reload.bind(self._old_call, show)
+            self._old_reload.bind(self._old_call, publish_old)
             self._old_reload.start()
 
     def _read_old(self) -> str | None:

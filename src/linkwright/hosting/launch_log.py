@@ -29,7 +29,7 @@ SHARED_OWN_LOG = "own_log of both"
 
 LAUNCH_LOG = "launch.log"
 
-_LEVEL_COLOURS = {"DEBUG": "32", "WARNING": "33", "ERROR": "31"}
+_LEVEL_COLORS = {"DEBUG": "32", "WARNING": "33", "ERROR": "31"}
 _OWN_FILES = frozenset({OWN_LOG, SHARED_OWN_LOG})
 
 _OUTPUT_MODES: Mapping[str, tuple[frozenset[str], frozenset[str]]] = {
@@ -81,7 +81,7 @@ class LaunchLog:
 
     def __init__(self, stdout: IO[str] | None = None, stderr: IO[str] | None = None, *, debug: bool = False) -> None:
         self._streams = {1: stdout or sys.stdout, 2: stderr or sys.stderr}
-        self._uses_colour = wants_colour(self._streams[2])
+        self._uses_color = wants_colour(self._streams[2])
         self._debug = debug
         self._files: dict[str, IO[str] | None] = {}
         self._folder: Path | None = None
@@ -111,36 +111,36 @@ class LaunchLog:
         """Log the first lines, which name the folder of the log files and the log level."""
         folder = self.folder
         if self._has_folder:
-            self.info_line("launch", f"All log files can be found below {folder}")
-        self.info_line("launch", f"Default logging verbosity is set to {'DEBUG' if self._debug else 'INFO'}")
+            self.write_info("launch", f"All log files can be found below {folder}")
+        self.write_info("launch", f"Default logging verbosity is set to {'DEBUG' if self._debug else 'INFO'}")
 
-    def debug_line(self, name: str, text: str) -> None:
+    def write_debug(self, name: str, text: str) -> None:
         """Log a line for debugging a launch file, if debug lines are enabled."""
         if self._debug:
-            self._own_line("DEBUG", name, text)
+            self._write_own_line("DEBUG", name, text)
 
-    def info_line(self, name: str, text: str) -> None:
+    def write_info(self, name: str, text: str) -> None:
         """Log a line of information."""
-        self._own_line("INFO", name, text)
+        self._write_own_line("INFO", name, text)
 
-    def warning_line(self, name: str, text: str) -> None:
+    def write_warning(self, name: str, text: str) -> None:
         """Log a warning."""
-        self._own_line("WARNING", name, text)
+        self._write_own_line("WARNING", name, text)
 
-    def error_line(self, name: str, text: str) -> None:
+    def write_error(self, name: str, text: str) -> None:
         """Log an error."""
-        self._own_line("ERROR", name, text)
+        self._write_own_line("ERROR", name, text)
 
     def announce(self, line: str) -> None:
         """Print a line to stdout and flush the stream, for programs that read the output."""
         self._print(1, line)
 
-    def diagnostics(self, diagnostics: Iterable[Diagnostic]) -> None:
+    def write_diagnostics(self, diagnostics: Iterable[Diagnostic]) -> None:
         """Log findings about the user's files."""
         with suppress(OSError):
             print_diagnostics(diagnostics, self._streams[2])
 
-    def node_record(self, process: str, record: LogRecord, destinations: frozenset[str]) -> None:
+    def write_node_record(self, process: str, record: LogRecord, destinations: frozenset[str]) -> None:
         """Log a record of a node in this process.
 
         The line consists of the process name and the record in rcutils' format.
@@ -149,11 +149,11 @@ class LaunchLog:
 
         line = f"[{process}] {console_line(record)}"
         if SCREEN in destinations:
-            colour = {"WARN": "33", "ERROR": "31", "FATAL": "31"}.get(record.level.name)
-            self._print(2, self._colourize(line, colour))
+            color = {"WARN": "33", "ERROR": "31", "FATAL": "31"}.get(record.level.name)
+            self._print(2, self._colorize(line, color))
         self._write_to_files(process, 2, line, destinations)
 
-    def process_line(self, process: str, stream: int, line: str, destinations: frozenset[str]) -> None:
+    def write_process_line(self, process: str, stream: int, line: str, destinations: frozenset[str]) -> None:
         """Log a line that a process wrote.
 
         Args:
@@ -174,8 +174,8 @@ class LaunchLog:
                 file.close()
         self._files.clear()
 
-    def _own_line(self, level: str, name: str, text: str) -> None:
-        self._print(2, self._colourize(self._format_screen_line(level, name, text), _LEVEL_COLOURS.get(level)))
+    def _write_own_line(self, level: str, name: str, text: str) -> None:
+        self._print(2, self._colorize(self._format_screen_line(level, name, text), _LEVEL_COLORS.get(level)))
         self._write(LAUNCH_LOG, self._format_file_line(level, name, text))
 
     def _write_to_files(self, process: str, stream: int, line: str, destinations: frozenset[str]) -> None:
@@ -190,8 +190,8 @@ class LaunchLog:
         with suppress(OSError):  # the reader (such as head) may have exited, or the disk be full
             print(line, file=self._streams[stream], flush=True)
 
-    def _colourize(self, line: str, colour: str | None) -> str:
-        return f"\x1b[{colour}m{line}\x1b[0m" if colour and self._uses_colour else line
+    def _colorize(self, line: str, color: str | None) -> str:
+        return f"\x1b[{color}m{line}\x1b[0m" if color and self._uses_color else line
 
     def _write(self, name: str, line: str) -> None:
         if self._closed:
@@ -217,7 +217,7 @@ class LaunchLog:
 
     def _report_unwritable(self, path: Path, error: OSError) -> None:
         message = phrase("log file '{path}' cannot be written: {strerror}", path=path, strerror=foreign(error.strerror))
-        self.diagnostics([Diagnostic("LAUNCH145", message, severity=Severity.WARNING)])
+        self.write_diagnostics([Diagnostic("LAUNCH145", message, severity=Severity.WARNING)])
 
 
 FORMATS = {

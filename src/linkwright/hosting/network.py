@@ -44,7 +44,7 @@ class Network:
         self._handle: asyncio.TimerHandle | None = None
         self.domain_id: int | None = None
 
-    def offer(self, graph: Graph) -> None:
+    def set_graph(self, graph: Graph) -> None:
         """Set the graph that will join the network."""
         self._graph = graph
 
@@ -77,7 +77,7 @@ class Network:
             transport = join(graph)
             self.domain_id = None if transport is None else transport.domain_id
         elif self._session.has_processes:
-            self._session.log.warning_line(
+            self._session.log.write_warning(
                 "launch", f"nodes in this process and in others cannot discover each other: {unavailable_reason()}"
             )
 
@@ -108,7 +108,7 @@ class SharedNames:
         self.findings: list[Diagnostic] = []
         """The findings for the page: one finding while names are shared, otherwise none."""
 
-    def notice(self, names: frozenset[str]) -> None:
+    def set_names(self, names: frozenset[str]) -> None:
         """Set the full names of the nodes that exist twice.
 
         Any thread may call this method.
@@ -131,7 +131,7 @@ class SharedNames:
         new_names, self._reported = self._names - self._reported, self._names
         if new_names:
             (finding,) = translated([self._finding(new_names)])
-            self._log.warning_line("launch", f"{finding.message}; {finding.hint}")
+            self._log.write_warning("launch", f"{finding.message}; {finding.hint}")
         self.findings = [self._finding(self._names)] if self._names else []
         self._show()
 
@@ -154,4 +154,4 @@ def _list_names(names: list[str]) -> Phrase:
     names_text = joined(names[:_MAX_LISTED_NAMES])
     if len(names) <= _MAX_LISTED_NAMES:
         return names_text
-    return phrase("{names} and {more} more", names=names_text, more=len(names) - _MAX_LISTED_NAMES)
+    return phrase("{names} and {count} more", names=names_text, count=len(names) - _MAX_LISTED_NAMES)

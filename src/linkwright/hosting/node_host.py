@@ -13,7 +13,7 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
 from linkwright.hosting.launch_log import SCREEN, output_destinations
 from linkwright.hosting.network import Network, SharedNames
 from linkwright.hosting.plans import HostedPlan, Supervisor
-from linkwright.hosting.reload import FollowedFiles
+from linkwright.hosting.reload import WatchedFiles
 from linkwright.hosting.viewer_host import ViewerHost, load_viewer
 
 if TYPE_CHECKING:
@@ -73,8 +73,8 @@ class NodeHost:
             from linkwright.graph import Graph
 
             self._shared_names = SharedNames(self.network, self._session.log, self._show_findings)
-            self._graph = Graph(on_log=self._on_log, on_namesakes=self._shared_names.notice)
-            self.network.offer(self._graph)
+            self._graph = Graph(on_log=self._on_log, on_shared_names=self._shared_names.set_names)
+            self.network.set_graph(self._graph)
         return self._graph
 
     @property
@@ -189,7 +189,7 @@ class NodeHost:
         from linkwright.nodes.options import FinishingNode, LoadingNode
 
         session = self._session
-        session.log.info_line(plan.process_name, "started in the launcher's process")
+        session.log.write_info(plan.process_name, "started in the launcher's process")
         options = plan.node_options(session.descriptions.library)
         try:
             with self._attribute_records(plan.process_name), self._hide_fatal_records():
@@ -214,7 +214,7 @@ class NodeHost:
         self._process_of_logger[node.node.get_logger().name] = process_name
         self._bind_descriptions(process_name, node, parameters)
         if isinstance(node, NodeWithFiles):
-            node.follow_files(FollowedFiles(self._session.reload, self._session.spawn, lambda: self.launcher_node))
+            node.watch_files(WatchedFiles(self._session.reload, self._session.spawn, lambda: self.launcher_node))
         self._viewers.attach_panel(node)
 
     def _handle_start_failure(self, plan: HostedPlan, error: LinkwrightError) -> None:
@@ -224,22 +224,22 @@ class NodeHost:
         """
         session = self._session
         description = self._find_description(plan) if plan.waits_for_fix else None
-        if description is None or session.ending:
+        if description is None or session.is_ending:
             session.fail(plan)
-            session.log.diagnostics(error.diagnostics)
-            session.log.error_line(plan.process_name, "node has not started")
+            session.log.write_diagnostics(error.diagnostics)
+            session.log.write_error(plan.process_name, "node has not started")
             session.node_ended(plan, 1)
             return
         name, call = description
         session.fail(call)
 
-        def again(text: str) -> None:
-            session.reload.unbind(call, again)
+        def start_again(text: str) -> None:
+            session.reload.unbind(call, start_again)
             session.clear_failure(call)
             plan.parameters[name] = text
             self._start_node(plan)
 
-        session.reload.bind(call, again)
+        session.reload.bind(call, start_again)
         session.reload.report(call, error.diagnostics)
 
     def _bind_descriptions(self, process_name: str, node: RunningNode, parameters: Mapping[str, Any]) -> None:
@@ -323,7 +323,7 @@ class NodeHost:
                 await self._viewers.start(plan, self.graph, nodes, with_world=with_world)
         except LinkwrightError as error:
             session.fail(plan)
-            session.log.diagnostics(error.diagnostics)
+            session.log.write_diagnostics(error.diagnostics)
             if plan.owner is not None:
                 session.node_ended(plan, 1)
             session.shut_down("the viewer has not started")
@@ -342,9 +342,9 @@ class NodeHost:
 
     def _report_end(self, plan: HostedPlan, status: int = 0) -> None:
         if status == 0:
-            self._session.log.info_line(plan.process_name, "has finished cleanly")
+            self._session.log.write_info(plan.process_name, "has finished cleanly")
         else:
-            self._session.log.error_line(plan.process_name, f"has ended with exit code {status}")
+            self._session.log.write_error(plan.process_name, f"has ended with exit code {status}")
         if plan.owner is not None:
             self._session.node_ended(plan, status)
         window = self._windows.pop(plan.process_name, None)
@@ -356,7 +356,7 @@ class NodeHost:
         if self._delayed_records is not None and record.level.name == "FATAL":
             self._delayed_records.append((process, record))
             return
-        self._session.log.node_record(process, record, self._destinations.get(process, _SCREEN_DESTINATIONS))
+        self._session.log.write_node_record(process, record, self._destinations.get(process, _SCREEN_DESTINATIONS))
 
     @contextmanager
     def _hide_fatal_records(self) -> Iterator[None]:
@@ -376,7 +376,7 @@ class NodeHost:
             records, self._delayed_records = self._delayed_records, None
             for process, record in records:
                 destinations = self._destinations.get(process, _SCREEN_DESTINATIONS)
-                self._session.log.node_record(
+                self._session.log.write_node_record(
                     process, record, destinations - {SCREEN} if is_off_screen else destinations
                 )
 

@@ -177,7 +177,7 @@ class Supervisor(Protocol):
         """The live reload, which passes new texts of descriptions to nodes."""
 
     @property
-    def ending(self) -> bool:
+    def is_ending(self) -> bool:
         """Whether the run is ending."""
 
     @property

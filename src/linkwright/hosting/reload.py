@@ -21,7 +21,7 @@ from linkwright.hosting.xacro_calls import Descriptions, XacroCall
 if TYPE_CHECKING:
     from linkwright.descriptions.unsaved import Outcome
     from linkwright.graph import Node
-    from linkwright.nodes.followed_files import ReadWorld
+    from linkwright.nodes.watched_files import ReadWorld
 
 _RETRY_SECONDS = 0.06
 """The delay before a failure is reported, because an editor may still be writing the file."""
@@ -65,7 +65,7 @@ class LiveReload:
         self._saved_calls: set[XacroCall] = set()
         self._failed_calls: set[XacroCall] = set()
         self._is_started = False
-        self._closed = False
+        self._is_closed = False
 
     def bind(self, call: XacroCall, apply: Apply) -> None:
         """Register a function that is called with every new text of a description."""
@@ -91,7 +91,7 @@ class LiveReload:
         """
         findings = tuple(diagnostics)
         known_keys = {_finding_key(finding) for finding in self._findings.get(subject, ())}
-        self._log.diagnostics(
+        self._log.write_diagnostics(
             finding
             for finding in findings
             if finding.severity is Severity.ERROR or _finding_key(finding) not in known_keys
@@ -114,7 +114,7 @@ class LiveReload:
 
     def close(self) -> None:
         """Stop watching the files."""
-        self._closed = True
+        self._is_closed = True
         if self._watch is not None:
             self._watch.close()
         for task in self._running.values():
@@ -131,7 +131,7 @@ class LiveReload:
         return files
 
     def _watch_files(self) -> None:
-        if not self._is_started or self._closed or not self._callbacks:
+        if not self._is_started or self._is_closed or not self._callbacks:
             return
         if self._watch is None:
             self._watch = FileWatch(self._on_change, self._on_watch_failure)
@@ -139,11 +139,11 @@ class LiveReload:
             asyncio.get_running_loop().call_later(_CATCH_UP_SECONDS, self._reload_missed)
 
     def _on_watch_failure(self, reason: str) -> None:
-        self._log.warning_line("launch", f"model files are not watched for changes: {reason}")
+        self._log.write_warning("launch", f"model files are not watched for changes: {reason}")
 
     def _reload_missed(self) -> None:
         """Reload descriptions whose files changed after they were read, but before the watch began."""
-        for call in self._callbacks if not self._closed else ():
+        for call in self._callbacks if not self._is_closed else ():
             read_ns = self.descriptions.read_ns(call)
             modification_times = [_modified_ns(path) for path in self._files_of_interest(call)]
             if max(modification_times) > read_ns or (0 in modification_times and not self._is_broken(call)):
@@ -152,11 +152,11 @@ class LiveReload:
     # --- a change -------------------------------------------------------------------------------------------
 
     def _on_change(self, paths: set[Path]) -> None:
-        if self._closed:
+        if self._is_closed:
             return
         for call in self._callbacks:
             files = self._files_of_interest(call)
-            if not paths.isdisjoint(files | {real(file) for file in files}):
+            if not paths.isdisjoint(files | {resolved_path(file) for file in files}):
                 self._saved_calls.add(call)
             if self._is_broken(call):
                 # The missing file may be in the folder of this file, or in any package.
@@ -167,22 +167,22 @@ class LiveReload:
 
     async def _reload_unsaved(self, path: str) -> Outcome:
         """Reload the descriptions that contain a file whose unsaved text has changed."""
-        concerned = [call for call in self._callbacks if self._contains(call, path)]
-        for call in concerned if not self._closed else ():
+        affected_calls = [call for call in self._callbacks if self._uses_file(call, path)]
+        for call in affected_calls if not self._is_closed else ():
             self._start_reload(call)
-        while tasks := [self._running[call] for call in concerned if call in self._running]:
+        while tasks := [self._running[call] for call in affected_calls if call in self._running]:
             await asyncio.wait(tasks)
             await asyncio.sleep(0)  # a reload that waited begins now
-        if not concerned:
+        if not affected_calls:
             return "elsewhere"
-        return "errors" if any(call in self._failed_calls for call in concerned) else "shown"
+        return "errors" if any(call in self._failed_calls for call in affected_calls) else "shown"
 
-    def _contains(self, call: XacroCall, path: str) -> bool:
+    def _uses_file(self, call: XacroCall, path: str) -> bool:
         return any(os.path.realpath(file) == path for file in self._files_of_interest(call))
 
     def _is_unsaved(self, call: XacroCall) -> bool:
         """Return whether a description is read with unsaved texts, whose findings are shown and not printed."""
-        return any(self._contains(call, str(path)) for path in self.descriptions.unsaved_texts)
+        return any(self._uses_file(call, str(path)) for path in self.descriptions.unsaved_texts)
 
     def _is_broken(self, call: XacroCall) -> bool:
         return has_errors(self._findings.get(call, ()))
@@ -197,7 +197,7 @@ class LiveReload:
 
     def _after_reload(self, call: XacroCall) -> None:
         del self._running[call]
-        if call in self._pending_reloads and not self._closed:
+        if call in self._pending_reloads and not self._is_closed:
             self._pending_reloads.discard(call)
             self._start_reload(call)
 
@@ -248,7 +248,7 @@ class LiveReload:
             self._watch_files()
             return
         verb = "repaired" if was_broken and not has_errors(findings) else "reloaded"
-        self._log.info_line("launch", f"{verb} {display_path(call.path)}")
+        self._log.write_info("launch", f"{verb} {display_path(call.path)}")
         self.report(call, findings)
         self._watch_files()
 
@@ -293,7 +293,7 @@ class FileWatch:
         folders = frozenset(
             (str(folder), inode)
             for file in files
-            for folder, inode in {_nearest_folder(file), _nearest_folder(real(file))}
+            for folder, inode in {_nearest_folder(file), _nearest_folder(resolved_path(file))}
         )
         if folders == self._folders:
             return False
@@ -331,17 +331,17 @@ class FileWatch:
                 recursive=False,
             ):
                 if not stop_event.is_set():
-                    self._call(self._changed, {Path(path) for _, path in changes})
+                    self._call_on_loop(self._on_files_changed, {Path(path) for _, path in changes})
         except (OSError, RuntimeError) as error:
             if not stop_event.is_set():
-                self._call(self._on_failure, str(error))
+                self._call_on_loop(self._on_failure, str(error))
 
-    def _changed(self, paths: set[Path]) -> None:
+    def _on_files_changed(self, paths: set[Path]) -> None:
         if not paths.isdisjoint(Path(name) for name, _ in self._folders):
             self._folders = frozenset()  # A folder was deleted, and a new one may have the same number.
         self._on_change(paths)
 
-    def _call(self, function: Callable[..., None], argument: object) -> None:
+    def _call_on_loop(self, function: Callable[..., None], argument: object) -> None:
         try:
             self._loop.call_soon_threadsafe(function, argument)
         except RuntimeError:  # The loop was closed, because the launch has ended.
@@ -363,7 +363,7 @@ def _nearest_folder(file: Path) -> tuple[Path, int]:
     return file.absolute().parents[-1], 0
 
 
-def real(path: Path) -> Path:
+def resolved_path(path: Path) -> Path:
     """Return a path with its links resolved, or unchanged if the links form a cycle."""
     try:
         return path.resolve()
@@ -371,8 +371,8 @@ def real(path: Path) -> Path:
         return path
 
 
-class FollowedFiles:
-    """A `FileFollower` that watches the files of a node through the live reload of its run.
+class WatchedFiles:
+    """A `FileWatcher` that watches the files of a node through the live reload of its run.
 
     Args:
         reload: the live reload of the run to which the node belongs.
@@ -386,7 +386,7 @@ class FollowedFiles:
         self._reload = reload
         self._spawn = spawn
         self._launcher = launcher
-        self._followed: set[tuple[XacroCall, str]] = set()
+        self._watched: set[tuple[XacroCall, str]] = set()
 
     @property
     def launcher_node(self) -> Node:
@@ -397,7 +397,7 @@ class FollowedFiles:
         """Show the current findings about a subject in the viewers."""
         self._reload.show(subject, findings)
 
-    def follow_world(
+    def watch_world(
         self,
         world: ReadWorld,
         read: Callable[[str], ReadWorld],
@@ -412,7 +412,7 @@ class FollowedFiles:
             read: reads the file of a world.
             load: loads a world, and returns findings about it.
         """
-        call = self._reload.descriptions.begin_with(world, read)
+        call = self._reload.descriptions.register_world(world, read)
 
         async def load_saved(path: str) -> None:
             findings = await load(path)
@@ -421,12 +421,12 @@ class FollowedFiles:
 
         self._reload.bind(call, lambda path: self._spawn(load_saved(path)))
 
-    def follow_text(self, text: str, name: str, callback: Callable[[str], None]) -> None:
+    def watch_text(self, text: str, name: str, on_text: Callable[[str], None]) -> None:
         """Register a function for each new text of a description.
 
         This has no effect unless this process expanded the text from a file.
         """
         call = self._reload.descriptions.call_of(text)
-        if call is not None and (call, name) not in self._followed:
-            self._followed.add((call, name))
-            self._reload.bind(call, callback)
+        if call is not None and (call, name) not in self._watched:
+            self._watched.add((call, name))
+            self._reload.bind(call, on_text)

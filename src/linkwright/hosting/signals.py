@@ -210,7 +210,7 @@ def run_to_end(run: Callable[[SignalWatch], bool], finder: PackageFinder, log: L
         except KeyboardInterrupt:
             if signals.received is None:  # raised in another thread, or by the user's own code
                 raise
-            log.warning_line("launch", interruption_text(signals.received))
+            log.write_warning("launch", interruption_text(signals.received))
             succeeded = False
         if signals.exit_status is not None:
             return signals.exit_status

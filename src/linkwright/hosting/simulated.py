@@ -152,11 +152,11 @@ def run_simulated(
     log = LaunchLog()
 
     def run(signals: SignalWatch) -> bool:
-        async def show() -> bool:
+        async def run_on_loop() -> bool:
             signals.session = view = SimulatedView(world, finder, options, log)
             return await view.run(foxglove, writer)
 
-        return signals.run(show)
+        return signals.run(run_on_loop)
 
     return run_to_end(run, finder, log)
 
@@ -173,7 +173,7 @@ class SimulatedView(ModelView):
         self._world = world
         self._files = descriptions
 
-    def _publish(self) -> bool:
+    def _plan_description(self) -> bool:
         """Plan the publication of the robot, if any, and return whether the view can continue.
 
         When the files of the robot and the world are saved, they are reloaded.
@@ -181,7 +181,7 @@ class SimulatedView(ModelView):
         description, text = self._world.description, self._world.text
         if text:
             self._files.record_read_time(self._call)
-            self._files.take_text(self._call, text, (self._call.path,) if description is None else description.files)
+            self._files.store_text(self._call, text, (self._call.path,) if description is None else description.files)
         if description is not None:
             self._files.store(self._call, description)
             self._plan(

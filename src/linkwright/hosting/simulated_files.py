@@ -51,13 +51,13 @@ class SimulatedDescriptions(Descriptions):
         if is_world(call.path.name):
             from linkwright.sdf.writer import save
 
-            return self.take_text(call, save(description.sdf.models[0]), description.files), description.diagnostics
+            return self.store_text(call, save(description.sdf.models[0]), description.files), description.diagnostics
         if description.robot is None:
             return None, description.diagnostics
         self.store(call, description)
-        return self.take_text(call, self._complete(description), description.files), description.diagnostics
+        return self.store_text(call, self._complete(description), description.files), description.diagnostics
 
-    def take_text(self, call: XacroCall, text: str, files: tuple[Path, ...]) -> str:
+    def store_text(self, call: XacroCall, text: str, files: tuple[Path, ...]) -> str:
         """Store a simulated text with all files from which it was created, and return the text."""
         self._calls[text] = call
         self._files[call] = files

@@ -41,16 +41,16 @@ class TextEditorConnection:
 
     Args:
         viewer: the viewer whose pages are connected.
-        ended: called when the editor has closed the input.
+        on_ended: called when the editor has closed the input.
     """
 
-    def __init__(self, viewer: Viewer, ended: Callable[[], object]) -> None:
-        self._ended = ended
+    def __init__(self, viewer: Viewer, on_ended: Callable[[], object]) -> None:
+        self._on_ended = on_ended
         self._loop = asyncio.get_running_loop()
         self._unsaved = viewer.context.library.unsaved
         self._tasks: set[asyncio.Task[Outcome]] = set()
         self._feature = viewer.add_feature(TextEditorFeature)
-        self._feature.selected = self._open
+        self._feature.selected = self._open_in_editor
         threading.Thread(target=self._read, name="linkwright-text-editor", daemon=True).start()
 
     def edit(self, path: str, number: int, text: str) -> None:
@@ -61,7 +61,7 @@ class TextEditorConnection:
         with suppress(RuntimeError, ValueError):  # the event loop is closed, or the input is
             for line in sys.stdin:
                 self._loop.call_soon_threadsafe(self._receive, line)
-            self._loop.call_soon_threadsafe(self._ended)
+            self._loop.call_soon_threadsafe(self._on_ended)
 
     def _receive(self, line: str) -> None:
         try:
@@ -84,8 +84,8 @@ class TextEditorConnection:
         number, text = content.get("number"), str(content.get("text", ""))
         return await self._unsaved.put(UnsavedText(self, path, number if isinstance(number, int) else 0, text))
 
-    def _open(self, place: SourceRange) -> None:
-        _write({"open": {"file": place.file, "line": place.line, "column": place.column}})
+    def _open_in_editor(self, source_range: SourceRange) -> None:
+        _write({"open": {"file": source_range.file, "line": source_range.line, "column": source_range.column}})
 
 
 def _write(message: dict[str, Any]) -> None:

@@ -58,11 +58,11 @@ def run_view(
     log = LaunchLog()
 
     def run(signals: SignalWatch) -> bool:
-        async def show() -> bool:
+        async def run_on_loop() -> bool:
             signals.session = view = ModelView(call, finder, options, log)
             return await view.run(foxglove)
 
-        return signals.run(show)
+        return signals.run(run_on_loop)
 
     return run_to_end(run, finder, log)
 
@@ -80,7 +80,7 @@ class ModelView:
         descriptions: reads and stores the description; None for robot descriptions.
 
     Attributes:
-        ending: whether the view is ending.
+        is_ending: whether the view is ending.
         is_blocking: whether the description is being expanded, which blocks the event loop.
         has_processes: always False.
     """
@@ -100,7 +100,7 @@ class ModelView:
         self.log = log
         self.descriptions = descriptions or Descriptions(finder, reads_unsaved=True)
         self.loop: asyncio.AbstractEventLoop | None = None
-        self.ending = False
+        self.is_ending = False
         self.is_blocking = False
         self._call = call
         self._text: str | None = None
@@ -129,7 +129,7 @@ class ModelView:
         try:
             if writer is not None:
                 self._recorder = self._create_recorder(writer)
-            if self._publish():
+            if self._plan_description():
                 self._plan_others()
                 if foxglove is not None:
                     self._plan("foxglove_bridge", "foxglove_bridge", {"port": foxglove})
@@ -139,7 +139,7 @@ class ModelView:
                     self.reload.start()
             await self._end_event.wait()
             self._end_recording()  # The recording must end before the nodes are closed, which takes time.
-            self.ending = True
+            self.is_ending = True
             self.reload.close()
             self.host.close_nodes()
             while self._tasks:
@@ -158,24 +158,24 @@ class ModelView:
         """
         from linkwright.bag import Recorder, TopicSelection
 
-        def guarded(callback: Callable[..., object]) -> Callable[..., object]:
-            def call(*arguments: Any) -> None:
+        def guard(callback: Callable[..., object]) -> Callable[..., object]:
+            def guarded_callback(*arguments: Any) -> None:
                 if self._end_event.is_set() or writer in self._failures:
                     return
                 try:
                     callback(*arguments)
                 except LinkwrightError as error:
-                    self.log.diagnostics(error.diagnostics)
+                    self.log.write_diagnostics(error.diagnostics)
                     self.fail(writer)
                     asyncio.get_running_loop().call_soon(self._end_recording)
                     asyncio.get_running_loop().call_soon(node.destroy_node)
 
-            return call
+            return guarded_callback
 
         node = self.host.graph.create_node(
             "rosbag2_recorder", parameters={"use_sim_time": True}, start_parameter_services=False
         )
-        return Recorder(node, TopicSelection(everything=True, every_service=True), writer, wrap_callback=guarded)
+        return Recorder(node, TopicSelection(everything=True, every_service=True), writer, wrap_callback=guard)
 
     def _end_recording(self) -> None:
         recorder, self._recorder = self._recorder, None
@@ -183,12 +183,12 @@ class ModelView:
             try:
                 recorder.close()
             except LinkwrightError as error:
-                self.log.diagnostics(error.diagnostics)
+                self.log.write_diagnostics(error.diagnostics)
                 self.fail(recorder)
 
     # --- what is shown ----------------------------------------------------------------------------------------
 
-    def _publish(self) -> bool:
+    def _plan_description(self) -> bool:
         """Plan the publication of the description.
 
         If its file is invalid, the description is published when the file has been fixed.
@@ -201,12 +201,12 @@ class ModelView:
             self.reload.report(self._call, self.descriptions.warnings_of(self._call))
         except DescriptionError as error:
             self.fail(self._call)
-            if not error.missing:
-                self.reload.bind(self._call, self._publish_fixed)
+            if not error.is_missing:
+                self.reload.bind(self._call, self._plan_fixed_description)
                 self.reload.report(self._call, error.diagnostics)
                 self.spawn(self._request_arguments(self._call, error))
                 return True
-            self.log.diagnostics(error.diagnostics)
+            self.log.write_diagnostics(error.diagnostics)
             self.shut_down("there is no model")
             return False
         except KeyboardInterrupt:
@@ -231,17 +231,17 @@ class ModelView:
 
             TextEditorConnection(viewer, partial(self.shut_down, "the text editor has ended"))
 
-    def _publish_fixed(self, _: str) -> None:
-        self._publish_again(self._call)
+    def _plan_fixed_description(self, _: str) -> None:
+        self._replace_description(self._call)
 
-    def _publish_again(self, call: XacroCall) -> None:
+    def _replace_description(self, call: XacroCall) -> None:
         """Publish a description whose file has been fixed, or a description with other arguments."""
         previous_call, self._call, self._form = self._call, call, None
-        self.reload.unbind(previous_call, self._publish_fixed)
+        self.reload.unbind(previous_call, self._plan_fixed_description)
         self.reload.show(previous_call, ())
         self.clear_failure(previous_call)
         self._show_form()
-        self._publish()
+        self._plan_description()
         self._set_fixed_frame()
         self.spawn(self.host.start_planned())
 
@@ -261,7 +261,7 @@ class ModelView:
             feature.show_form(self._form or NOTHING_ASKED, self._set_arguments)
 
     def _set_arguments(self, values: dict[str, str]) -> None:
-        self._publish_again(XacroCall(self._call.path, tuple(values.items())))
+        self._replace_description(XacroCall(self._call.path, tuple(values.items())))
 
     def _set_fixed_frame(self) -> None:
         """Set the Fixed Frame to the root link, unless the current frame is a link of the robot."""
@@ -356,7 +356,7 @@ class ModelView:
 
     def interrupt(self, reason: str) -> None:
         """End the view because the user interrupted it."""
-        self.log.warning_line("launch", reason)
+        self.log.write_warning("launch", reason)
         self._end_event.set()
 
     def shut_down(self, reason: str) -> None:

@@ -114,7 +114,7 @@ class ViewerHost:
             from linkwright.hosting.rviz2_arguments import read_viewer_config
 
             config, findings = read_viewer_config(plan.arguments)
-        session.log.diagnostics([*findings, *find_unsaved(config)])
+        session.log.write_diagnostics([*findings, *find_unsaved(config)])
         if with_world:
             from linkwright.hosting.world_config import show_world
 
@@ -144,7 +144,7 @@ class ViewerHost:
         if session.options.open_browser and server.pages_wait:
             session.spawn(self._open_unless_reconnected(viewer))
         replaced_window = "RViz" if plan.owner is not None else "Gazebo's window"
-        session.log.info_line(
+        session.log.write_info(
             plan.process_name,
             f"started in the launcher's process: the viewer in the browser replaces {replaced_window}",
         )
@@ -155,7 +155,7 @@ class ViewerHost:
     async def _open_unless_reconnected(self, viewer: Viewer) -> None:
         """Open the page in a browser, unless a page of the previous run reconnects."""
         for _ in range(round(_RECONNECT_TIMEOUT_SECONDS / _POLL_SECONDS)):
-            if self._session.ending or len(viewer.audience) > 0:
+            if self._session.is_ending or len(viewer.audience) > 0:
                 return
             await asyncio.sleep(_POLL_SECONDS)
         _open_in_browser(viewer.url)
@@ -193,11 +193,11 @@ class ViewerHost:
 
         The edits are stored first, because the end may take too long.
         """
-        self._session.log.diagnostics(viewer.keep_unsaved())
+        self._session.log.write_diagnostics(viewer.keep_unsaved())
         try:
             await asyncio.wait_for(viewer.close(), _CLOSE_TIMEOUT_SECONDS)
         except asyncio.TimeoutError:
-            self._session.log.warning_line(plan.process_name, "a browser did not close its connection in time")
+            self._session.log.write_warning(plan.process_name, "a browser did not close its connection in time")
 
 
 def load_viewer() -> None:

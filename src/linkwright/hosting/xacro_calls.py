@@ -16,7 +16,7 @@ from linkwright.packages import PackageFinder
 
 if TYPE_CHECKING:
     from linkwright.descriptions import Description, DescriptionLibrary
-    from linkwright.nodes.followed_files import ReadWorld
+    from linkwright.nodes.watched_files import ReadWorld
     from linkwright.urdf import Collision, Robot, Visual
 
 
@@ -56,7 +56,7 @@ class DescriptionError(LinkwrightError):
         self.call = call
 
     @property
-    def missing(self) -> bool:
+    def is_missing(self) -> bool:
         """Whether the description file itself cannot be read.
 
         Editing the file cannot fix this.
@@ -107,7 +107,7 @@ class Descriptions:
         """
         return self.store(call, self.read(call))
 
-    def begin_with(self, world: ReadWorld, read: Callable[[str], ReadWorld]) -> WorldCall:
+    def register_world(self, world: ReadWorld, read: Callable[[str], ReadWorld]) -> WorldCall:
         """Store a world that has already been read, and return its call.
 
         The findings about this world are not reported again.

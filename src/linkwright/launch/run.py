@@ -111,7 +111,7 @@ def run_launch(
             if options.skip_missing:
                 add_no_skip_note(error)
             raise
-        log.diagnostics(check_arguments(description, argument_values))
+        log.write_diagnostics(check_arguments(description, argument_values))
         return description, {
             "current_launch_file_path": str(path),
             "current_launch_file_directory": str(path.parent),

@@ -24,7 +24,7 @@ def deferred(package: str, names: Mapping[str, Sequence[str]]) -> Callable[[str]
         A function that returns the object with a given name, and raises AttributeError for an unknown name.
     """
 
-    def find(name: str) -> Any:
+    def get_name(name: str) -> Any:
         from importlib import import_module  # imported here because many modules use only `lazy_pattern`
 
         for module, defined_names in names.items():
@@ -32,7 +32,7 @@ def deferred(package: str, names: Mapping[str, Sequence[str]]) -> Callable[[str]
                 return getattr(import_module(f"{package}.{module}"), name)
         raise AttributeError(f"module '{package}' has no attribute '{name}'")
 
-    return find
+    return get_name
 
 
 class _Pattern:

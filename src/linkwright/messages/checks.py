@@ -3,7 +3,7 @@
 The setters that `linkwright.messages.classes` compiles test for the usual case themselves and call these functions for
 all other cases. The functions return the value to store, or raise an AssertionError with the same message as in rclpy.
 Unlike in rclpy, numpy arrays and byte buffers may be assigned to sequences of numbers and bools, unless a program
-accepts only what ROS accepts (`keep_to_ros`).
+accepts only what ROS accepts (`restrict_to_ros_values`).
 
 numpy is imported only for fixed arrays of numbers, which are stored as numpy arrays, because the import takes longer
 than the rest of a command such as ``topic list``. A program that has not imported numpy has no values of numpy's types.
@@ -39,7 +39,7 @@ _keeps_to_ros = False
 _fixed_as_humble = True
 
 
-def keep_to_ros(*, as_humble: bool) -> None:
+def restrict_to_ros_values(*, as_humble: bool) -> None:
     """Make this process accept only values that the classes of ROS 2 accept.
 
     Args:

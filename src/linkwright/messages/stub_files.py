@@ -62,18 +62,18 @@ class StructureNames:
 def _types(kind: FieldType, names: StructureNames) -> tuple[str, str]:
     """Return the type of a field's value, and the type that can be assigned to it."""
     primitive = kind.primitive
-    one = names.of(kind.base) if primitive is None else primitive.python.__name__
+    element_type = names.of(kind.base) if primitive is None else primitive.python.__name__
     if kind.container is Container.ONE:
-        return one, one
+        return element_type, element_type
     if not kind.is_numeric_array:
-        return f"list[{one}]", f"Sequence[{one}]"
+        return f"list[{element_type}]", f"Sequence[{element_type}]"
     assert primitive is not None
-    taken = f"Sequence[{one}] | NDArray[Any]"
+    assignable_type = f"Sequence[{element_type}] | NDArray[Any]"
     if primitive.code == "B":
-        taken += " | bytes | bytearray | memoryview"
+        assignable_type += " | bytes | bytearray | memoryview"
     if kind.container is Container.ARRAY:
-        return f"NDArray[np.{primitive.dtype}]", taken
-    return f"array[{one}]", f"{taken} | array[{one}]"
+        return f"NDArray[np.{primitive.dtype}]", assignable_type
+    return f"array[{element_type}]", f"{assignable_type} | array[{element_type}]"
 
 
 def _message(structure: Structure, names: StructureNames) -> Iterable[str]:
@@ -84,14 +84,14 @@ def _message(structure: Structure, names: StructureNames) -> Iterable[str]:
     arguments = [f"{field.name}: {_types(field.type, names)[1]} = ..." for field in structure.fields]
     yield f"    def __init__({', '.join(['self', *arguments])}) -> None: ..."
     for field in structure.fields:
-        given, taken = _types(field.type, names)
-        if given == taken:
-            yield f"    {field.name}: {given}"
+        value_type, assignable_type = _types(field.type, names)
+        if value_type == assignable_type:
+            yield f"    {field.name}: {value_type}"
         else:
             yield "    @property"
-            yield f"    def {field.name}(self) -> {given}: ..."
+            yield f"    def {field.name}(self) -> {value_type}: ..."
             yield f"    @{field.name}.setter"
-            yield f"    def {field.name}(self, value: {taken}) -> None: ..."
+            yield f"    def {field.name}(self, value: {assignable_type}) -> None: ..."
     yield ""
 
 
@@ -130,16 +130,16 @@ def interface_lines(definition: Definition, names: StructureNames) -> list[str]:
 
 def import_lines(body: str) -> str:
     """Return the import lines that a stub needs."""
-    kept = []
+    lines = []
     for line in _PLAIN_IMPORTS.splitlines():
         head, sep, words = line.partition(" import ")
         if not sep:
-            kept.append(line if not line.startswith("import numpy") or "np." in body else "")
+            lines.append(line if not line.startswith("import numpy") or "np." in body else "")
             continue
         wanted = [word for word in words.split(", ") if f"{word}[" in body or f"({word})" in body or f" {word} " in body
                   or f"[{word}]" in body]  # fmt: skip
-        kept.append(f"{head} import {', '.join(wanted)}" if wanted else "")
-    text = "\n".join(kept)
+        lines.append(f"{head} import {', '.join(wanted)}" if wanted else "")
+    text = "\n".join(lines)
     while "\n\n\n" in text:
         text = text.replace("\n\n\n", "\n\n")
     return text.strip("\n") + "\n"

@@ -36,7 +36,9 @@ async def wait_for_future(node: Node, future: Any, seconds: float | None) -> boo
             node.destroy_timer(timer)
 
 
-async def wait_for_service(node: Node, client: Client[Any, Any], seconds: float | None, *, wanted: bool = True) -> bool:
+async def wait_for_service(
+    node: Node, client: Client[Any, Any], seconds: float | None, *, should_exist: bool = True
+) -> bool:
     """Wait until a service appears or disappears.
 
     Return False if the timeout expires first.
@@ -45,21 +47,21 @@ async def wait_for_service(node: Node, client: Client[Any, Any], seconds: float 
         node: the node that waits.
         client: the client of the service.
         seconds: the timeout in real time; None for no limit.
-        wanted: True to wait until the service appears, False to wait until it disappears.
+        should_exist: True to wait until the service appears, False to wait until it disappears.
     """
     loop = asyncio.get_running_loop()
     state_reached: asyncio.Future[None] = loop.create_future()
 
-    def look() -> None:
-        if not client.destroyed and not state_reached.done() and client.service_is_ready() is wanted:
+    def check_state() -> None:
+        if not client.destroyed and not state_reached.done() and client.service_is_ready() is should_exist:
             state_reached.set_result(None)
 
-    def changed() -> None:
-        loop.call_soon_threadsafe(look)
+    def on_graph_change() -> None:
+        loop.call_soon_threadsafe(check_state)
 
-    node.graph.watch(changed)
+    node.graph.watch(on_graph_change)
     try:
-        return client.service_is_ready() is wanted or await wait_for_future(node, state_reached, seconds)
+        return client.service_is_ready() is should_exist or await wait_for_future(node, state_reached, seconds)
     finally:
-        node.graph.unwatch(changed)
+        node.graph.unwatch(on_graph_change)
         state_reached.cancel()  # callbacks that are already scheduled then have no effect

@@ -73,7 +73,7 @@ class DemoCamera(SingleNode):
 
 
 def _stripes(width: int, height: int) -> NDArray[np.uint8]:
-    """Return a test image with bars of eight colours above a ramp from black to white.
+    """Return a test image with bars of eight colors above a ramp from black to white.
 
     The image has the channel order BGR and the shape (height, width, 3).
     """

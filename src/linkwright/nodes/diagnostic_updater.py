@@ -36,14 +36,14 @@ class DiagnosticUpdater:
     Args:
         node: the node, whose name is the prefix of the task's name.
         task: the name of the diagnostic task.
-        ask: returns the current diagnostic status.
+        get_health: returns the current diagnostic status.
         hardware_id: the ID of the hardware; ``none`` for no hardware, as in diagnostic_updater.
     """
 
-    def __init__(self, node: Node, task: str, ask: Callable[[], Health], hardware_id: str = "none") -> None:
+    def __init__(self, node: Node, task: str, get_health: Callable[[], Health], hardware_id: str = "none") -> None:
         self._node = node
         self._task = task
-        self._get_health = ask
+        self._get_health = get_health
         self._hardware_id = hardware_id
         self._array = get_message("diagnostic_msgs/msg/DiagnosticArray")
         self._status = get_message("diagnostic_msgs/msg/DiagnosticStatus")

@@ -145,8 +145,8 @@ class _Reader:
                     Diagnostic(
                         "NODE201",
                         phrase(
-                            "invalid dependent_joint name '{rest}': write JOINT.parent, JOINT.factor or JOINT.offset",
-                            rest=entry_name,
+                            "invalid dependent_joint name '{name}': write JOINT.parent, JOINT.factor or JOINT.offset",
+                            name=entry_name,
                         ),
                         hint=did_you_mean(field_name, _DEPENDENT_FIELDS),
                     )
@@ -171,10 +171,10 @@ class _Reader:
             Diagnostic(
                 "NODE201",
                 phrase(
-                    "parameter '{name}' must be {expected}, but {given}",
+                    "parameter '{name}' must be {expected}, but {value}",
                     name=name,
                     expected=expected,
-                    given=current_state,
+                    value=current_state,
                 ),
             )
         )
@@ -183,7 +183,7 @@ class _Reader:
 Array = NDArray[np.float64]
 
 _UNLIMITED_RANGE = {"revolute": 2.0 * pi, "continuous": 2.0 * pi, "prismatic": 2.0}
-"""The range of the slider of a joint with infinite limits, by type: a full turn in rad, or two metres."""
+"""The range of the slider of a joint with infinite limits, by type: a full turn in rad, or two meters."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -56,7 +56,7 @@ class _Quantity:
         self._values_and_zero = np.append(values, 0.0)
         self.values = self._values_and_zero[:-1]
 
-    def spread(self, layout: JointLayout, *, scaled: bool, shifted: bool) -> Array | None:
+    def expand(self, layout: JointLayout, *, scaled: bool, shifted: bool) -> Array | None:
         """Return a value for each published joint, for a message.
 
         The result is None if no joint has a value. Otherwise, a joint without a value has 0, as in the ROS node. The
@@ -69,13 +69,13 @@ class _Quantity:
         """
         if np.isnan(self.values).all():
             return None
-        expand: Array = self._values_and_zero[layout.masters]  # masters is -1 for joints that do not move
+        values: Array = self._values_and_zero[layout.masters]  # masters is -1 for joints that do not move
         if scaled:
-            expand *= layout.factor
+            values *= layout.factor
         if shifted:
-            expand += layout.offset
-        expand[np.isnan(expand)] = 0.0
-        return expand
+            values += layout.offset
+        values[np.isnan(values)] = 0.0
+        return values
 
 
 class JointPositions:
@@ -92,9 +92,9 @@ class JointPositions:
         self._rows: dict[str, int] = {}
         self._direction: NDArray[np.float64] = np.ones(0)
         self._position, self._velocity, self._effort = (_Quantity(np.zeros(0)) for _ in range(3))
-        self.take_over(self.layout, settings)
+        self.set_layout(self.layout, settings)
 
-    def take_over(self, layout: JointLayout, settings: JointSettings) -> None:
+    def set_layout(self, layout: JointLayout, settings: JointSettings) -> None:
         """Change to another layout.
 
         Joints that are free in both layouts keep their velocities and efforts. Those that have left their initial
@@ -118,7 +118,7 @@ class JointPositions:
         for joint in layout.free:
             row = old_rows.get(joint.name)
             if row is not None:
-                self._store(joint, old_states[:, row], old_zeros[joint.name])
+                self._restore_state(joint, old_states[:, row], old_zeros[joint.name])
 
     def apply_message(self, message: JointState) -> None:
         """Apply the values of a message to the free joints.
@@ -152,7 +152,7 @@ class JointPositions:
             self._direction = np.where(has_passed_limit & ~self._is_continuous, -direction, direction)
             self._reversal_limit = np.where(self._direction > 0.0, self._upper, self._lower)
 
-    def set(self, name: str, position: float) -> None:
+    def set_position(self, name: str, position: float) -> None:
         """Set the position of a free joint, clamped to its limits.
 
         Raises:
@@ -161,12 +161,12 @@ class JointPositions:
         row = self._rows[name]
         self._position.values[row] = min(max(position, self._lower[row]), self._upper[row])
 
-    def published(self) -> Array:
+    def published_positions(self) -> Array:
         """Return the positions of all published joints, in the order of messages.
 
         Unknown positions are 0.
         """
-        positions = self._position.spread(self.layout, scaled=True, shifted=True)
+        positions = self._position.expand(self.layout, scaled=True, shifted=True)
         return np.zeros(len(self.layout.ranges)) if positions is None else positions
 
     def fill(self, message: JointState) -> None:
@@ -175,9 +175,9 @@ class JointPositions:
         Quantities without any value remain empty.
         """
         message.name = list(self.layout.ranges)
-        velocities = self._velocity.spread(self.layout, scaled=True, shifted=False)
-        efforts = self._effort.spread(self.layout, scaled=False, shifted=False)
-        positions = self._position.spread(self.layout, scaled=True, shifted=True)
+        velocities = self._velocity.expand(self.layout, scaled=True, shifted=False)
+        efforts = self._effort.expand(self.layout, scaled=False, shifted=False)
+        positions = self._position.expand(self.layout, scaled=True, shifted=True)
         if positions is None and self.layout.dependent:
             positions = np.zeros(len(self.layout.ranges))
         if positions is not None:
@@ -190,11 +190,11 @@ class JointPositions:
     def _free_states(self) -> Array:
         return np.array([self._position.values, self._velocity.values, self._effort.values])
 
-    def _store(self, joint: JointRange, state: Array, zero_before: float) -> None:
+    def _restore_state(self, joint: JointRange, state: Array, old_zero: float) -> None:
         row = self._rows[joint.name]
         position, velocity, effort = state.tolist()
-        starts_without = np.isnan(self._position.values[row])
-        if not np.isnan(position) and (position != zero_before or starts_without):
+        has_no_position = np.isnan(self._position.values[row])
+        if not np.isnan(position) and (position != old_zero or has_no_position):
             self._position.values[row] = joint.clamp(position)
         if not np.isnan(velocity):
             self._velocity.values[row] = velocity
@@ -212,7 +212,7 @@ class Watcher(Protocol):
     def rebuild(self) -> None:
         """Handle a change of the robot or of the settings."""
 
-    def notice_positions(self) -> None:
+    def update_positions(self) -> None:
         """Handle positions that were set by a source topic or by the periodic motion."""
 
 
@@ -272,11 +272,11 @@ class JointStatePublisher(SingleNode):
         if not arguments:
             return None
         if len(arguments) > 1:
-            unknown = " ".join(arguments[1:])
+            unknown_arguments = " ".join(arguments[1:])
             raise LinkwrightError(
                 Diagnostic(
                     "NODE204",
-                    phrase("unrecognized arguments: {unknown}", unknown=unknown),
+                    phrase("unrecognized arguments: {unknown}", unknown=unknown_arguments),
                     hint=phrase("pass only a URDF file"),
                 )
             )
@@ -312,8 +312,8 @@ class JointStatePublisher(SingleNode):
         robot = self._library.read(message.data).robot
         if robot is None:
             other = _other_format(message.data)
-            why = f": it is {other}, and this node reads URDF" if other else ""
-            self._node.get_logger().warning(f"Invalid robot_description given, ignoring{why}")
+            reason = f": it is {other}, and this node reads URDF" if other else ""
+            self._node.get_logger().warning(f"Invalid robot_description given, ignoring{reason}")
             return
         try:
             self._configure(robot)
@@ -322,7 +322,7 @@ class JointStatePublisher(SingleNode):
 
     def _configure(self, robot: Robot) -> None:
         layout = make_layout(robot, self._settings)
-        self._joints.take_over(layout, self._settings)
+        self._joints.set_layout(layout, self._settings)
         self._robot = robot
         for problem in layout.problems:
             self._node.get_logger().warning(problem)
@@ -345,11 +345,11 @@ class JointStatePublisher(SingleNode):
         return SetParametersResult(successful=True)
 
     def _apply_parameters(self, parameters: list[Parameter]) -> None:
-        before, self._settings = self._settings, self._read_settings()
-        if self._settings.rate != before.rate:
+        old_settings, self._settings = self._settings, self._read_settings()
+        if self._settings.rate != old_settings.rate:
             self._timer.timer_period_ns = round(1e9 / self._settings.rate)
             self._timer.reset()
-        if self._settings.source_list != before.source_list:
+        if self._settings.source_list != old_settings.source_list:
             self._subscribe_to_sources()
         if self._robot is not None:
             self._configure(self._robot)
@@ -374,7 +374,7 @@ class JointStatePublisher(SingleNode):
 
     def _notify_moved(self) -> None:
         for watcher in self._watchers:
-            watcher.notice_positions()
+            watcher.update_positions()
 
     def _publish_now(self) -> None:
         # Delay the next periodic message by a full period. If it were sent right after this message,

@@ -75,7 +75,9 @@ class JointPanel:
 
     def positions(self) -> dict[str, float]:
         """Return the position of each joint with a slider by name, in rad or m."""
-        published_positions = dict(zip(self._joints.layout.ranges, self._joints.published().tolist(), strict=True))
+        published_positions = dict(
+            zip(self._joints.layout.ranges, self._joints.published_positions().tolist(), strict=True)
+        )
         return {slider.name: published_positions[slider.name] for slider in self._sliders}
 
     def set_position(self, name: str, value: float) -> bool:
@@ -94,7 +96,7 @@ class JointPanel:
         )
         if slider is None or not isfinite(value):
             return False
-        self._joints.set(name, value)
+        self._joints.set_position(name, value)
         self._publish_move()
         return True
 
@@ -102,14 +104,14 @@ class JointPanel:
         """Set every free joint to a random position within its limits."""
         self._logger.info("Randomizing")
         for slider in self._free_sliders():
-            self._joints.set(slider.name, self._random.uniform(slider.lower, slider.upper))
+            self._joints.set_position(slider.name, self._random.uniform(slider.lower, slider.upper))
         self._publish_move()
 
     def center(self) -> None:
         """Set every free joint to its zero position, which need not be the middle of its range."""
         self._logger.info("Centering")
         for slider in self._free_sliders():
-            self._joints.set(slider.name, slider.zero)
+            self._joints.set_position(slider.name, slider.zero)
         self._publish_move()
 
     def subscribe(self, callback: PanelCallback) -> Callable[[], None]:
@@ -161,9 +163,9 @@ class JointPanel:
             if master in movable_names
         ]
         self._sliders_changed.trigger()
-        self.notice_positions()
+        self.update_positions()
 
-    def notice_positions(self) -> None:
+    def update_positions(self) -> None:
         """Notify the subscribers that joints have moved."""
         self._positions_changed.trigger()
 
@@ -172,7 +174,7 @@ class JointPanel:
 
     def _publish_move(self) -> None:
         self._publish_soon()
-        self.notice_positions()
+        self.update_positions()
 
     def _notify(self, change: PanelChange) -> None:
         for callback in tuple(self._subscribers):

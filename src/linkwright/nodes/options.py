@@ -26,7 +26,7 @@ from linkwright.loading.extensions import extensions
 if TYPE_CHECKING:
     from linkwright.descriptions import DescriptionLibrary
     from linkwright.loading.extensions import EntryPoint
-    from linkwright.nodes.followed_files import FileFollower
+    from linkwright.nodes.watched_files import FileWatcher
 
 
 N = TypeVar("N", bound=Node)
@@ -118,7 +118,7 @@ class NodeWithDescription(RunningNode, Protocol):
 class NodeWithFiles(RunningNode, Protocol):
     """A node that reloads its files when they are saved."""
 
-    def follow_files(self, host: FileFollower) -> None:
+    def watch_files(self, host: FileWatcher) -> None:
         """Make the host watch the node's files.
 
         This method is called once on the event loop, after the node has started.

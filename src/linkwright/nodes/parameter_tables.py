@@ -16,7 +16,7 @@ are declared without a value. Some parameters exist only in Humble or only in Ja
 ``ROS_DISTRO`` names that distribution, or if a value is given, so that files for either distribution can be used
 unchanged. Source: generate_parameter_library, which the controllers of ros2_controllers use.
 
-`declared` reads a table once; a `ParameterTable` follows later changes.
+`declare_table` reads a table once; a `ParameterTable` follows later changes.
 """
 
 from __future__ import annotations
@@ -142,7 +142,7 @@ def entries(table: Any, prefix: str = "", keys: tuple[str, ...] = ()) -> Iterato
         prefix: the text before the names, such as ``gains.*.``.
         keys: the parameters that contain the names for ``*`` in the prefix.
     """
-    kinds, described = _kinds(table), _attributes(table)
+    kinds, descriptions = _kinds(table), _attributes(table)
     for entry in fields(table):
         name = f"{prefix}{entry.metadata.get(_PREFIX) or entry.name}"
         if _NAMES in entry.metadata:
@@ -150,19 +150,19 @@ def entries(table: Any, prefix: str = "", keys: tuple[str, ...] = ()) -> Iterato
         elif is_dataclass(kinds[entry.name]):
             yield from entries(kinds[entry.name], f"{name}.", keys)
         else:
-            about: _Properties = entry.metadata.get(_PROPERTIES, _Properties())
+            properties: _Properties = entry.metadata.get(_PROPERTIES, _Properties())
             default = None if entry.default is MISSING else entry.default
-            if about.later is not _UNCHANGED and not is_before_iron():
-                default = about.later
-            choices = about.check.words if isinstance(about.check, _OneOf) else ()
-            description = about.description or described.get(entry.name, "")
-            yield TableEntry(name, _TYPES[kinds[entry.name]], default, description, choices, about.only, keys)
+            if properties.later is not _UNCHANGED and not is_before_iron():
+                default = properties.later
+            choices = properties.check.words if isinstance(properties.check, _OneOf) else ()
+            description = properties.description or descriptions.get(entry.name, "")
+            yield TableEntry(name, _TYPES[kinds[entry.name]], default, description, choices, properties.only, keys)
 
 
 def _attributes(table: Any) -> dict[str, str]:
     """Return the descriptions of fields in a docstring."""
     _, _, text = cleandoc(table.__doc__ or "").partition("\nAttributes:\n")
-    return {found[1]: " ".join(found[2].split()) for found in _ATTRIBUTE.finditer(text)}
+    return {match[1]: " ".join(match[2].split()) for match in _ATTRIBUTE.finditer(text)}
 
 
 @dataclass(frozen=True, slots=True)
@@ -170,10 +170,10 @@ class _Declaration:
     name: str
     kind: ParameterType
     default: Any
-    about: _Properties
+    properties: _Properties
 
 
-def declared(node: Node, table: type[P], prefix: str = "", usual: P | None = None) -> P:
+def declare_table(node: Node, table: type[P], prefix: str = "", usual: P | None = None) -> P:
     """Declare the parameters of a table that are not yet declared, and return their values.
 
     Args:
@@ -208,14 +208,14 @@ class ParameterTable(Generic[P]):
         self._table = table
         self._reader = _Reader(node)
         self.values: P = self._read()
-        node.add_on_set_parameters_callback(self._objection)
+        node.add_on_set_parameters_callback(self._check_parameters)
         node.add_post_set_parameters_callback(lambda _: self.refresh())
 
     def refresh(self) -> None:
         """Read the parameters again, and declare the groups for names that were added."""
         self.values = self._read()
 
-    def unknown(self) -> Iterator[tuple[str, Phrase | None]]:
+    def unknown_parameters(self) -> Iterator[tuple[str, Phrase | None]]:
         """Yield the name of each given parameter that does not exist.
 
         Each name is yielded with a suggestion of the intended name, or None.
@@ -228,14 +228,14 @@ class ParameterTable(Generic[P]):
         values: P = self._reader.read(self._table)
         return values
 
-    def _objection(self, parameters: list[Parameter]) -> SetParametersResult:
+    def _check_parameters(self, parameters: list[Parameter]) -> SetParametersResult:
         for parameter in parameters:
-            known = self._reader.declared.get(parameter.name)
-            if known is None or known.about.check is None or parameter.value is None:
+            declaration = self._reader.declared.get(parameter.name)
+            if declaration is None or declaration.properties.check is None or parameter.value is None:
                 continue
-            wrong = known.about.check(parameter.name, parameter.value)
-            if wrong is not None:
-                return SetParametersResult(successful=False, reason=wrong)
+            problem = declaration.properties.check(parameter.name, parameter.value)
+            if problem is not None:
+                return SetParametersResult(successful=False, reason=problem)
         return SetParametersResult(successful=True)
 
 
@@ -256,38 +256,38 @@ class _Reader:
         for entry in fields(table):
             kind, name = kinds[entry.name], f"{prefix}{entry.name}"
             if _NAMES in entry.metadata:
-                keys = dict.fromkeys(key for names in entry.metadata[_NAMES] for key in _listed(values[names]))
-                inside = entry.metadata[_TABLE]
+                keys = dict.fromkeys(key for names in entry.metadata[_NAMES] for key in _names_in(values[names]))
+                name_table = entry.metadata[_TABLE]
                 name = f"{prefix}{entry.metadata[_PREFIX] or entry.name}"
-                values[entry.name] = {key: self.read(inside, f"{name}.{key}.") for key in keys}
+                values[entry.name] = {key: self.read(name_table, f"{name}.{key}.") for key in keys}
             elif is_dataclass(kind):
                 values[entry.name] = self.read(kind, f"{name}.")
             else:
                 default = entry.default if entry.default is not MISSING else None
-                about = entry.metadata.get(_PROPERTIES, _Properties())
+                properties = entry.metadata.get(_PROPERTIES, _Properties())
                 if usual is not None:
                     default = getattr(usual, entry.name)
-                elif about.later is not _UNCHANGED and not is_before_iron():
-                    default = about.later
-                values[entry.name] = self._value(_Declaration(name, _TYPES[kind], default, about))
+                elif properties.later is not _UNCHANGED and not is_before_iron():
+                    default = properties.later
+                values[entry.name] = self._declare_and_get(_Declaration(name, _TYPES[kind], default, properties))
         return table(**values)
 
-    def _value(self, wanted: _Declaration) -> Any:
-        name, about = wanted.name, wanted.about
+    def _declare_and_get(self, declaration: _Declaration) -> Any:
+        name, properties = declaration.name, declaration.properties
         if name not in self.declared:
-            if about.only not in ("", _distribution()) and name not in self._node.undeclared_overrides():
-                return wanted.default
+            if properties.only not in ("", _distribution()) and name not in self._node.undeclared_overrides():
+                return declaration.default
             descriptor = ParameterDescriptor(
-                type=wanted.kind.value, description=about.description, read_only=about.read_only
+                type=declaration.kind.value, description=properties.description, read_only=properties.read_only
             )
-            default = list(wanted.default) if isinstance(wanted.default, tuple) else wanted.default
+            default = list(declaration.default) if isinstance(declaration.default, tuple) else declaration.default
             if not self._node.has_parameter(name):
-                self._node.declare_parameter(name, wanted.kind if default is None else default, descriptor)
-            self.declared[name] = wanted
+                self._node.declare_parameter(name, declaration.kind if default is None else default, descriptor)
+            self.declared[name] = declaration
             value = self._get(name)
-            wrong = about.check(name, value) if about.check is not None and value is not None else None
-            if wrong is not None:
-                raise LinkwrightError(Diagnostic("CTL101", wrong))
+            problem = properties.check(name, value) if properties.check is not None and value is not None else None
+            if problem is not None:
+                raise LinkwrightError(Diagnostic("CTL101", problem))
             return value
         return self._get(name)
 
@@ -300,7 +300,7 @@ def _distribution() -> str:
     return HUMBLE if is_before_iron() else JAZZY
 
 
-def _listed(names: Any) -> Iterable[str]:
+def _names_in(names: Any) -> Iterable[str]:
     """Return the names in a parameter value.
 
     The value is one string or a sequence of strings.

@@ -51,7 +51,7 @@ class JointMotion:
 
     Args:
         joints: the joints. Revolute, continuous and prismatic joints move; all others stay at their origin. Axes need
-            not be of unit length (KDL normalises them). A joint with a zero axis does not move.
+            not be of unit length (KDL normalizes them). A joint with a zero axis does not move.
     """
 
     def __init__(self, joints: Sequence[Joint]) -> None:
@@ -60,9 +60,9 @@ class JointMotion:
             self._add(row, joint)
 
     def poses(self, positions: Array) -> Array:
-        """Return the poses for joint positions of shape (n,), in radians or metres.
+        """Return the poses for joint positions of shape (n,), in radians or meters.
 
-        The result has shape (n, 7): x y z in metres, and the quaternion qx qy qz qw.
+        The result has shape (n, 7): x y z in meters, and the quaternion qx qy qz qw.
         """
         half_angles = (0.5 * positions)[:, np.newaxis]
         poses: Array = self._cosine * np.cos(half_angles)
@@ -139,12 +139,12 @@ class RobotTransforms:
         self._fixed_joints = tuple(joint for joint in robot.joints.values() if joint.type in FIXED_TYPES)
         self._conversions: dict[tuple[str, ...], Conversion] = {}
 
-    def fixed(self, stamp_ns: int) -> TransformBatch:
+    def fixed_transforms(self, stamp_ns: int) -> TransformBatch:
         """Return the transforms of the joints that do not move."""
         poses = JointMotion(self._fixed_joints).poses(np.zeros(len(self._fixed_joints)))
         return TransformBatch(*self._frames(self._fixed_joints), stamp_ns, poses)
 
-    def recipe(self, names: Sequence[str]) -> Conversion:
+    def conversion_for(self, names: Sequence[str]) -> Conversion:
         """Return the conversion to transforms for messages with these joint names.
 
         Names of joints that do not move or do not exist are ignored. A mimic joint follows the joint that it mimics,
@@ -251,7 +251,7 @@ class Throttle:
         stamps = self._stamp_ns[group.rows]
         return bool(stamps.all() and (stamps <= stamp_ns).all())
 
-    def published(self, group: JointGroup, positions: FloatSequence, stamp_ns: int, time_ns: int) -> None:
+    def record_publication(self, group: JointGroup, positions: FloatSequence, stamp_ns: int, time_ns: int) -> None:
         """Record that a message with the stamp `stamp_ns` was published at `time_ns`."""
         if self.is_move(group, positions):
             self._moved_ns[group.rows] = time_ns
@@ -409,7 +409,7 @@ class RobotStatePublisher(SingleNode):
                 self._kdl_logger.warning(f"Converting unknown joint type of joint '{joint.name}' into a fixed joint")
 
     def _publish_fixed(self) -> None:
-        self._static_publisher.publish(TFMessage(batch=self._transforms.fixed(self._clock.now_ns())))
+        self._static_publisher.publish(TFMessage(batch=self._transforms.fixed_transforms(self._clock.now_ns())))
 
     def _on_joint_state(self, message: JointState) -> None:
         if not self._is_well_formed(message) or not message.name:
@@ -426,7 +426,7 @@ class RobotStatePublisher(SingleNode):
         if self._ignore_timestamp or stamp_ns >= earliest_ns:
             self._drop_delayed(group)
             self._publish_moving(message, stamp_ns)
-            self._throttle.published(group, message.position, stamp_ns, stamp_ns)
+            self._throttle.record_publication(group, message.position, stamp_ns, stamp_ns)
         elif self._throttle.is_in_order(group, stamp_ns):
             if is_move or group in self._delayed:
                 self._delay(message, group, earliest_ns)
@@ -453,7 +453,7 @@ class RobotStatePublisher(SingleNode):
         return False
 
     def _publish_moving(self, message: JointState, stamp_ns: int) -> None:
-        batch = self._transforms.recipe(message.name).batch(message.position, stamp_ns)
+        batch = self._transforms.conversion_for(message.name).batch(message.position, stamp_ns)
         if len(batch):
             self._tf_publisher.publish(TFMessage(batch=batch))
 
@@ -475,7 +475,7 @@ class RobotStatePublisher(SingleNode):
             self._publish_moving(message, stamp_ns)
             # Count the message as published now, not at its stamp. With its stamp, a source that is slightly too fast
             # would exceed the limit, because each message would be delayed only briefly.
-            self._throttle.published(group, message.position, stamp_ns, delayed.release_ns)
+            self._throttle.record_publication(group, message.position, stamp_ns, delayed.release_ns)
 
     def _drop_delayed(self, group: JointGroup) -> None:
         delayed = self._delayed.pop(group, None)

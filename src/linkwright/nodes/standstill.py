@@ -31,8 +31,8 @@ def send_stop(node: Node, publisher: Publisher[Any], lost_publisher: EndpointInf
     publisher.publish(message)
     node.get_logger().warning(
         phrase(
-            "{who}: a stop command is sent to '{topic}'",
-            who=describe_lost_publisher(lost_publisher),
+            "{node}: a stop command is sent to '{topic}'",
+            node=describe_lost_publisher(lost_publisher),
             topic=publisher.name,
         )
     )

@@ -72,7 +72,7 @@ def parse_arguments(arguments: Sequence[str]) -> StaticTransform:
         raise _usage_error(phrase("Cannot specify both quaternion and Euler rotations"))
     for name, label in zip(_FRAMES, ("Frame id", "Child frame id"), strict=True):
         if not options.get(name):
-            raise _usage_error(phrase("{what} must not be empty", what=label))
+            raise _usage_error(phrase("{argument} must not be empty", argument=label))
     x, y, z = (_number(options, name, 0.0) for name in _TRANSLATION)
     return StaticTransform(
         (x, y, z), _rotation(options), options["--frame-id"], options["--child-frame-id"], old_style=old_style
@@ -123,10 +123,10 @@ def _random_suffix() -> str:
 
 def _split(arguments: Sequence[str]) -> tuple[dict[str, str], list[str]]:
     named, positional = {}, []
-    known = {*_TRANSLATION, *_QUATERNION, *_ANGLES, *_FRAMES}
+    known_names = {*_TRANSLATION, *_QUATERNION, *_ANGLES, *_FRAMES}
     waiting = iter(arguments)
     for argument in waiting:
-        if argument in known:
+        if argument in known_names:
             value = next(waiting, None)
             if value is None:
                 raise _usage_error(phrase("Not enough arguments for {argument}", argument=argument))
@@ -136,19 +136,19 @@ def _split(arguments: Sequence[str]) -> tuple[dict[str, str], list[str]]:
     return named, positional
 
 
-def _rotation(given: dict[str, str]) -> tuple[float, float, float, float]:
-    if any(name in given for name in _ANGLES):
-        x, y, z, w = quaternion_from_rpy([_number(given, name, 0.0) for name in _ANGLES]).tolist()
+def _rotation(options: dict[str, str]) -> tuple[float, float, float, float]:
+    if any(name in options for name in _ANGLES):
+        x, y, z, w = quaternion_from_rpy([_number(options, name, 0.0) for name in _ANGLES]).tolist()
         return x, y, z, w
-    x, y, z = (_number(given, name, 0.0) for name in _QUATERNION[:3])
-    w = _number(given, "--qw", 1.0)
+    x, y, z = (_number(options, name, 0.0) for name in _QUATERNION[:3])
+    w = _number(options, "--qw", 1.0)
     if x == y == z == w == 0.0:
         raise _usage_error(phrase("The quaternion must not be zero"))
     return normalized(x, y, z, w)
 
 
-def _number(given: dict[str, str], name: str, default: float) -> float:
-    text = given.get(name)
+def _number(options: dict[str, str], name: str, default: float) -> float:
+    text = options.get(name)
     if text is None:
         return default
     try:

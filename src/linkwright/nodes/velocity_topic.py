@@ -52,14 +52,14 @@ class VelocityTopic:
         self._publisher: Publisher[Any] | None = None
         self.name = node.resolve_topic_name(topic)
         self.foreign_type: str | None = None
-        self.review()
+        self.update_type()
 
     @property
     def type_name(self) -> str:
         """The message type that is published, or an empty string if there is no publisher."""
         return self._publisher.type_name if self._publisher is not None else ""
 
-    def review(self, *, may_change: bool = True) -> int:
+    def update_type(self, *, may_change: bool = True) -> int:
         """Change the published type to the type that the subscribers expect.
 
         Args:

@@ -269,7 +269,7 @@ class Admission:
         if connection is not None:
             connection.cancel_deadline()
 
-    def opened(self, connection: LimitedConnection) -> bool:
+    def try_open(self, connection: LimitedConnection) -> bool:
         """Count a new connection, or return False to refuse it.
 
         At the limit, the oldest connection that is not admitted is closed to make room.
@@ -283,7 +283,7 @@ class Admission:
         self._unadmitted_connections[connection.served] = connection
         return True
 
-    def closed(self, connection: LimitedConnection) -> None:
+    def release(self, connection: LimitedConnection) -> None:
         """Release the slot of a connection."""
         self._count -= 1
         self._unadmitted_connections.pop(connection.served, None)
@@ -318,7 +318,7 @@ class LimitedConnection(asyncio.Protocol):
         self.cancel_deadline()
         if self._is_counted:
             self._is_counted = False
-            self._admission.closed(self)
+            self._admission.release(self)
         if isinstance(self._transport, asyncio.Transport):
             self._transport.abort()
 
@@ -327,7 +327,7 @@ class LimitedConnection(asyncio.Protocol):
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
         """Serve the connection, or abort it if it must be refused."""
         self._transport = transport
-        self._is_counted = self._admission.opened(self)
+        self._is_counted = self._admission.try_open(self)
         self.served.connection_made(transport)
         if self._is_counted:
             self._deadline = asyncio.get_running_loop().call_later(PATIENCE, self.end)
@@ -339,5 +339,5 @@ class LimitedConnection(asyncio.Protocol):
         self.cancel_deadline()
         if self._is_counted:
             self._is_counted = False
-            self._admission.closed(self)
+            self._admission.release(self)
         self.served.connection_lost(exc)

@@ -152,9 +152,9 @@ class Page:
         except ConnectionError:
             pass  # the reader also notices this, and cleans up
 
-    def received(self, count: int) -> None:
+    def record_acknowledged(self, count: int) -> None:
         """Record that the page has acknowledged its first `count` messages."""
-        self.line.received(count)
+        self.line.record_acknowledged(count)
         self._on_connection_change()
 
     def close(self) -> None:
@@ -389,7 +389,7 @@ class Audience(PageGroup):
                     return
             else:
                 if isinstance(decoded, Received):
-                    page.received(decoded.count)
+                    page.record_acknowledged(decoded.count)
                 else:
                     self._handle_message(page, decoded)
 

@@ -284,7 +284,7 @@ class ConnectionMeter:
         elif 2 * size >= self.room:  # a buffer of unknown size has accepted it
             self._update_rate(float("inf"))
 
-    def received(self, count: int) -> None:
+    def record_acknowledged(self, count: int) -> None:
         """Record that the page has acknowledged its first `count` messages."""
         now = self._clock()
         if not self._has_acknowledged:

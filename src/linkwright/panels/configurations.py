@@ -78,16 +78,16 @@ class ConfigurationFeature(PageFeature):
         self._recent = recent or RecentFiles()
         self._sent_states: dict[VisualizationManager, Configuration] = {}
 
-    def configured(self, manager: VisualizationManager) -> list[ServerMessage]:
+    def configuration_messages(self, manager: VisualizationManager) -> list[ServerMessage]:
         """Return the state of the configuration: its file, and the edits to undo and redo."""
         self._sent_states[manager] = self._state(manager)
         return [self._sent_states[manager]]
 
-    def manager_closed(self, manager: VisualizationManager) -> None:
+    def remove_manager(self, manager: VisualizationManager) -> None:
         """Discard the state that was sent to the pages of the manager."""
         self._sent_states.pop(manager, None)
 
-    def edited(self, manager: VisualizationManager) -> None:
+    def on_edit(self, manager: VisualizationManager) -> None:
         """Send the state of the configuration to its pages if the state has changed."""
         state = self._state(manager)
         if self._sent_states.get(manager) != state:
@@ -111,9 +111,9 @@ class ConfigurationFeature(PageFeature):
         return Configuration(
             path=None if config.path is None else str(config.path),
             opened=manager.opened,
-            unsaved=history.unsaved,
-            undo=history.undoable,
-            redo=history.redoable,
+            unsaved=history.has_unsaved_edits,
+            undo=history.undo_name,
+            redo=history.redo_name,
             own=manager is not self.managers.shared,
             recent=self._recent.paths,
         )
@@ -156,7 +156,7 @@ class ConfigurationFeature(PageFeature):
 
     def _group(self, request: Request[GroupDisplays]) -> None:
         if displays := _displays_of(request.manager, request.message.displays):
-            request.manager.tree.gather(displays, _name(request.message.name))
+            request.manager.tree.group(displays, _name(request.message.name))
 
     def _undo(self, request: Request[Undo]) -> None:
         request.manager.history.undo()
@@ -220,25 +220,25 @@ class ConfigurationFeature(PageFeature):
         config.save(path)
         remove_recovery_files(previous_path, config, self._recent)
         request.page.send(ConfigurationSaved(str(path)))
-        request.manager.history.saved()
+        request.manager.history.mark_saved()
         self._add_to_recent(request.manager, path)
 
     def _may_discard(self, page: Page, manager: VisualizationManager, path: str | None) -> bool:
-        if manager.history.unsaved:
+        if manager.history.has_unsaved_edits:
             self._send_question(page, "unsaved", "there are unsaved changes", path)
-        return not manager.history.unsaved
+        return not manager.history.has_unsaved_edits
 
     def _send_question(self, page: Page, question: Question, text: str, path: str | None) -> None:
         page.send(ConfigurationRefused(text, question, path))
 
     def _open_config(self, manager: VisualizationManager, config: RvizConfig) -> None:
         manager.open(config)
-        for message in self.viewer.configured(manager):
+        for message in self.viewer.configuration_messages(manager):
             manager.publish(message)
 
     def _add_to_recent(self, manager: VisualizationManager, path: Path) -> None:
         self._recent.add(path)
-        self.edited(manager)
+        self.on_edit(manager)
 
 
 _HANDLERS: dict[type, Callable[..., None]] = {
@@ -303,7 +303,7 @@ class PanelsFeature(PageFeature):
 
     RECEIVES: ClassVar[tuple[type, ...]] = (ShowPanels,)
 
-    def configured(self, manager: VisualizationManager) -> list[ServerMessage]:
+    def configuration_messages(self, manager: VisualizationManager) -> list[ServerMessage]:
         """Return the panels that the file opens."""
         config = manager.config
         return [Panels(manager.opened, config.document.source.name, config.panels.shown)]
@@ -313,4 +313,4 @@ class PanelsFeature(PageFeature):
         manager = self.managers.of(page)
         config = manager.config
         if config.panels.show(message.shown) and config.path is not None:
-            manager.edited()
+            manager.record_permanent_edit()

@@ -54,7 +54,7 @@ class ArgumentsFeature(PageFeature):
         self._form = NOTHING_ASKED
         self._on_values: OnValues | None = None
 
-    def opening(self) -> list[ServerMessage]:
+    def opening_messages(self) -> list[ServerMessage]:
         """Return the form, which is empty if no arguments are requested."""
         return [self._form]
 
@@ -176,7 +176,7 @@ class DescriptionFeature(PageFeature):
         self._answer_tasks: dict[tuple[Page, str], asyncio.Task[None]] = {}
         self._answer_lock = asyncio.Lock()
 
-    def robot_changed(self) -> None:
+    def on_robot_changed(self) -> None:
         """Send the names of the links and joints that have changed to pages."""
         shown: set[str] = set()
         for manager in self.managers.all():
@@ -189,7 +189,7 @@ class DescriptionFeature(PageFeature):
         for removed_id in self._descriptions.keys() - shown:
             del self._descriptions[removed_id]
 
-    def diagnostics_changed(self, diagnostics: Sequence[Diagnostic]) -> None:
+    def on_diagnostics_changed(self, diagnostics: Sequence[Diagnostic]) -> None:
         """Store the texts that the findings refer to, because the files may change later."""
         self._texts_with_findings = {
             diagnostic.source.name: diagnostic.source.text
@@ -205,7 +205,7 @@ class DescriptionFeature(PageFeature):
             *self._texts_with_findings,
         ]
 
-    def configured(self, manager: VisualizationManager) -> list[ServerMessage]:
+    def configuration_messages(self, manager: VisualizationManager) -> list[ServerMessage]:
         """Return the revision of each description that pages can request."""
         known = [self._current_description(display) for display in manager.robot_models()]
         return [
@@ -226,7 +226,7 @@ class DescriptionFeature(PageFeature):
             lambda finished_task: self._answer_tasks.pop(key) if self._answer_tasks.get(key) is finished_task else None
         )
 
-    def page_closed(self, page: Page) -> None:
+    def remove_page(self, page: Page) -> None:
         """Cancel the page's requests."""
         for (requesting_page, _), task in list(self._answer_tasks.items()):
             if requesting_page is page:
@@ -307,11 +307,11 @@ class DiagnosticsFeature(PageFeature):
         self._diagnostics: Sequence[Diagnostic] = ()
         self._shown_diagnostics = Diagnostics([])
 
-    def opening(self) -> list[ServerMessage]:
+    def opening_messages(self) -> list[ServerMessage]:
         """Return the current findings."""
         return [self._shown_diagnostics]
 
-    def diagnostics_changed(self, diagnostics: Sequence[Diagnostic]) -> None:
+    def on_diagnostics_changed(self, diagnostics: Sequence[Diagnostic]) -> None:
         """Replace the current findings with new findings.
 
         The list may be empty.
@@ -320,7 +320,7 @@ class DiagnosticsFeature(PageFeature):
         self._shown_diagnostics = self._all_diagnostics()
         self.context.pages.publish(self._shown_diagnostics)
 
-    def robot_changed(self) -> None:
+    def on_robot_changed(self) -> None:
         """Show an additional finding (VIEW207) while no visual of a robot can be drawn."""
         shown = self._all_diagnostics()
         if shown != self._shown_diagnostics:

@@ -40,7 +40,7 @@ class DisplaysFeature(PageFeature):
             else:
                 display.receive(message)
 
-    def page_closed(self, page: Page) -> None:
+    def remove_page(self, page: Page) -> None:
         """Remove the panel sizes of a page.
 
         Images are then sized for the other pages.

@@ -59,10 +59,10 @@ class JointsFeature(PageFeature):
             self._send_timer = None
         self._panel = panel
         self._unsubscribe = None if panel is None else panel.subscribe(self._on_panel_change)
-        for message in self.opening():
+        for message in self.opening_messages():
             self.context.pages.publish(message)
 
-    def opening(self) -> list[ServerMessage]:
+    def opening_messages(self) -> list[ServerMessage]:
         """Return the sliders and their values."""
         if self._panel is None:
             return [Joints(None)]

@@ -35,7 +35,7 @@ class LiveHistory:
 
     Args:
         context: the context of the viewer.
-        most_bytes: the maximum number of stored bytes.
+        max_bytes: the maximum number of stored bytes.
         on_error: called with an error of the playback.
 
     Attributes:
@@ -44,7 +44,7 @@ class LiveHistory:
         changed: called when `live` has changed.
     """
 
-    def __init__(self, context: ViewerContext, most_bytes: int, on_error: Callable[[LinkwrightError], object]) -> None:
+    def __init__(self, context: ViewerContext, max_bytes: int, on_error: Callable[[LinkwrightError], object]) -> None:
         self._context = context
         self._handle = context.node.handle
         self._storing_subscriptions: dict[str, Subscription[Any]] = {}
@@ -53,7 +53,7 @@ class LiveHistory:
         self.live = True
         self.on_reset: Callable[[], object] = lambda: None
         self.changed: Callable[[], object] = lambda: None
-        self.most_bytes = most_bytes
+        self.max_bytes = max_bytes
         self._failed = on_error
         self._now_ns = self._handle.timebase.now_ns
         self._lock = threading.RLock()
@@ -109,7 +109,7 @@ class LiveHistory:
         self._context.held_time.show(self._context.node.get_clock(), now_ns)
         self._has_gone_back = False
         self._known_subscriptions = set(self._subscriptions())
-        self.playback.take_over(now_ns)
+        self.playback.continue_from(now_ns)
         self._context.graph_changes.watch(self._update_new_subscriptions)
         self.changed()
 
@@ -163,13 +163,13 @@ class LiveHistory:
             messages = [*latched_messages, *(message for message in messages if message[1] >= reset_ns)]
         return to_simulated_time(messages)
 
-    def before(self, topics: Collection[str], length_ns: int, most_bytes: int) -> list[Recorded]:
+    def messages_before(self, topics: Collection[str], length_ns: int, max_bytes: int) -> list[Recorded]:
         """Return the messages of topics for a duration in ns before the displayed time.
 
-        The list is empty if the messages exceed `most_bytes`.
+        The list is empty if the messages exceed `max_bytes`.
         """
         if not self.live:
-            return self.playback.before(topics, length_ns, most_bytes)
+            return self.playback.messages_before(topics, length_ns, max_bytes)
         history = self.history
         end_ns = history.end_ns
         messages, total_bytes = [], 0
@@ -177,7 +177,7 @@ class LiveHistory:
             total_bytes += len(message[2])
             if message[1] > end_ns:
                 break
-            if total_bytes > most_bytes:
+            if total_bytes > max_bytes:
                 return []
             messages.append(message)
         return messages
@@ -244,7 +244,7 @@ class LiveHistory:
         if self._stored_history is None:
             from linkwright.bag.history import History
 
-            self._stored_history = History(self.most_bytes, self._now_ns)
+            self._stored_history = History(self.max_bytes, self._now_ns)
         history, new_messages = self._stored_history, self._new_messages
         self._new_messages = []
         for topic, time_ns, message in new_messages:
@@ -285,7 +285,7 @@ class LiveHistory:
             return
         self._known_subscriptions = set(self._subscriptions())
         position = self.playback.position_ns
-        self.playback.take_over(position)
+        self.playback.continue_from(position)
         for message in self.history.state_at(
             {subscription.name for subscription in new_subscriptions} - {CLOCK_TOPIC}, position
         ):

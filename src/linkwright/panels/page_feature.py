@@ -55,7 +55,7 @@ class FeatureHost(Protocol):
             receives: the addresses of messages that the feature handles in addition to its `RECEIVES`.
         """
 
-    def configured(self, manager: VisualizationManager) -> list[ServerMessage]:
+    def configuration_messages(self, manager: VisualizationManager) -> list[ServerMessage]:
         """Return the messages of all features about a configuration."""
 
     def opening_messages(self, manager: VisualizationManager) -> tuple[list[ServerMessage], list[Payload]]:
@@ -69,7 +69,7 @@ class PageFeature:
     """The base class of features, each of which handles some of the messages of pages.
 
     A feature must use no resources while no page uses it. It subscribes when a page needs it, and unsubscribes in
-    `page_closed`.
+    `remove_page`.
 
     Args:
         viewer: the viewer of the feature.
@@ -79,7 +79,7 @@ class PageFeature:
     """The messages that `receive` handles. For a feature created on demand, its `OnDemand` declares them."""
 
     BEFORE_DISPLAYS: ClassVar[bool] = False
-    """Whether a page receives the messages of `opening` before the displays, which may depend on them."""
+    """Whether a page receives the messages of `opening_messages` before the displays, which may depend on them."""
 
     def __init__(self, viewer: FeatureHost) -> None:
         self.viewer = viewer
@@ -94,33 +94,33 @@ class PageFeature:
     def start(self) -> None:
         """Start the feature when the viewer starts."""
 
-    def opening(self) -> list[ServerMessage]:
+    def opening_messages(self) -> list[ServerMessage]:
         """Return the messages for a newly opened page that do not concern a configuration."""
         return []
 
-    def configured(self, manager: VisualizationManager) -> list[ServerMessage]:
+    def configuration_messages(self, manager: VisualizationManager) -> list[ServerMessage]:
         """Return the messages about a configuration.
 
         They are sent to a page that opens, and to all its pages after a file was opened.
         """
         return []
 
-    def edited(self, manager: VisualizationManager) -> None:
+    def on_edit(self, manager: VisualizationManager) -> None:
         """Handle a change to a configuration's undo history or its unsaved state."""
 
-    def manager_closed(self, manager: VisualizationManager) -> None:
+    def remove_manager(self, manager: VisualizationManager) -> None:
         """Discard the data of a manager that was closed."""
 
-    def robot_changed(self) -> None:
+    def on_robot_changed(self) -> None:
         """Handle a new robot of any display."""
 
-    def diagnostics_changed(self, diagnostics: Sequence[Diagnostic]) -> None:
+    def on_diagnostics_changed(self, diagnostics: Sequence[Diagnostic]) -> None:
         """Handle new findings about the description.
 
         They replace the previous findings. The list may be empty.
         """
 
-    def recording_shown(self) -> None:
+    def on_recording_shown(self) -> None:
         """Handle the display of a recording.
 
         Refuse requests to robots and simulations from now on.
@@ -129,7 +129,7 @@ class PageFeature:
     def receive(self, page: Page, message: Any) -> None:
         """Handle a message of a page, whose class is one of `receives`."""
 
-    def page_closed(self, page: Page) -> None:
+    def remove_page(self, page: Page) -> None:
         """Discard the data of a page that was closed."""
 
     def keep_unsaved(self) -> list[Diagnostic]:
@@ -230,7 +230,7 @@ class OnDemandFeatures(PageFeature):
         """The messages of all features that are created on demand."""
         return tuple(self._declaration_by_message)
 
-    def opening(self) -> list[ServerMessage]:
+    def opening_messages(self) -> list[ServerMessage]:
         """Return the `until` messages of features that do not exist yet, and watch their topics."""
         if not self._is_watching and self._declaration_by_topic:
             self._is_watching = True
@@ -243,13 +243,13 @@ class OnDemandFeatures(PageFeature):
         """Create the feature that handles the message, and pass the message on."""
         self._create(self._declaration_by_message[address_of(type(message))]).receive(page, message)
 
-    def recording_shown(self) -> None:
+    def on_recording_shown(self) -> None:
         """Create and notify the features that refuse requests while a recording is shown."""
         for feature in self._declared:
             if feature.refuses_recordings:
                 self._create(feature)
 
-    def page_closed(self, page: Page) -> None:
+    def remove_page(self, page: Page) -> None:
         """Stop watching topics when the last page has closed."""
         if self._is_watching and len(self.context.pages) == 0:
             self._stop_watching()
@@ -276,7 +276,7 @@ class OnDemandFeatures(PageFeature):
             self._declaration_by_topic = {
                 topic: other for topic, other in self._declaration_by_topic.items() if other is not declaration
             }
-            for message in feature.opening():
+            for message in feature.opening_messages():
                 self.context.pages.publish(message)
             if not self._declaration_by_topic:
                 self._stop_watching()

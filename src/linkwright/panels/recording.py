@@ -68,12 +68,12 @@ class RecordingFeature(PageFeature):
         self._files: list[RecordedFile] = []
         self._loop = asyncio.get_running_loop()
 
-    def recording_shown(self) -> None:
+    def on_recording_shown(self) -> None:
         """Disable recording permanently, because a recording is shown."""
         self._is_possible = False
         self._publish()
 
-    def opening(self) -> list[ServerMessage]:
+    def opening_messages(self) -> list[ServerMessage]:
         """Return the state of the recording."""
         return [self._state()]
 

@@ -19,7 +19,7 @@ class TextEditorFeature(PageFeature):
     """The feature that selects the element at a text editor's cursor in all pages.
 
     Attributes:
-        selected: called with the source range of each element that a user selects in a page.
+        selected: call_elements with the source range of each element that a user selects in a page.
     """
 
     RECEIVES: ClassVar[tuple[type, ...]] = (ElementSelected,)
@@ -29,7 +29,7 @@ class TextEditorFeature(PageFeature):
         self.selected: Callable[[SourceRange], object] = lambda _: None
         self._task: asyncio.Task[None] | None = None
 
-    def opening(self) -> list[ServerMessage]:
+    def opening_messages(self) -> list[ServerMessage]:
         """Return the notice that an editor is attached."""
         return [EditorAttached()]
 
@@ -59,9 +59,9 @@ class TextEditorFeature(PageFeature):
         for manager in self.managers.all():
             for display in manager.robot_models():
                 description = await self.viewer.add_feature(DescriptionFeature).details(display)
-                found = None if description is None else element_at(description, file, line)
-                if found is not None:
-                    manager.pages.publish(ShowElement(display.id, *found))
+                shown_element = None if description is None else element_at(description, file, line)
+                if shown_element is not None:
+                    manager.pages.publish(ShowElement(display.id, *shown_element))
                     break
 
     async def _report(self, message: ElementSelected) -> None:
@@ -70,9 +70,9 @@ class TextEditorFeature(PageFeature):
                 if display.id == message.display:
                     description = await self.viewer.add_feature(DescriptionFeature).details(display)
                     for kind, element in () if description is None else _elements(description):
-                        place = element.written.origin
-                        if (kind, element.name) == (message.kind, message.name) and place is not None:
-                            self.selected(place)
+                        origin = element.written.origin
+                        if (kind, element.name) == (message.kind, message.name) and origin is not None:
+                            self.selected(origin)
                     return
 
 
@@ -86,18 +86,18 @@ def element_at(description: Description, file: Path, line: int) -> tuple[Element
         file: the source file.
         line: the line, from 1.
     """
-    real = file.resolve()
-    found: list[tuple[int, ElementKind, str]] = []
-    called: list[tuple[ElementKind, str]] = []
+    source_path = file.resolve()
+    matches: list[tuple[int, ElementKind, str]] = []
+    call_elements: list[tuple[ElementKind, str]] = []
     for kind, element in _elements(description):
-        place = element.written.origin
-        if place is not None and place.line <= line <= place.end_line and Path(place.file).resolve() == real:
-            found.append((place.end_line - place.line, kind, element.name))
-        elif any(call.line == line and Path(call.file).resolve() == real for call in element.written.calls):
-            called.append((kind, element.name))
-    if found:
-        return min(found, key=lambda each: each[0])[1:]
-    return called[0] if called else None
+        origin = element.written.origin
+        if origin is not None and origin.line <= line <= origin.end_line and Path(origin.file).resolve() == source_path:
+            matches.append((origin.end_line - origin.line, kind, element.name))
+        elif any(call.line == line and Path(call.file).resolve() == source_path for call in element.written.calls):
+            call_elements.append((kind, element.name))
+    if matches:
+        return min(matches, key=lambda match: match[0])[1:]
+    return call_elements[0] if call_elements else None
 
 
 def _elements(description: Description) -> Iterator[tuple[ElementKind, LinkDetails | JointDetails]]:

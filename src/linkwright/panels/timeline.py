@@ -79,12 +79,12 @@ class TimeFeature(PageFeature):
         threshold = JumpThreshold(min_forward=None, min_backward=Duration(nanoseconds=-1), on_clock_change=True)
         self._jump_handle = self.context.node.get_clock().create_jump_callback(threshold, post_callback=self._on_jump)
 
-    def configured(self, manager: VisualizationManager) -> list[ServerMessage]:
+    def configuration_messages(self, manager: VisualizationManager) -> list[ServerMessage]:
         """Return the state of the Time panel."""
         self._begin(manager)
         return [_state(manager)]
 
-    def manager_closed(self, manager: VisualizationManager) -> None:
+    def remove_manager(self, manager: VisualizationManager) -> None:
         """Discard the start of the manager's elapsed times."""
         self._elapsed_starts.pop(manager, None)
 
@@ -101,9 +101,9 @@ class TimeFeature(PageFeature):
                 self._sent_clocks.setdefault(page, None)
                 self._tick()
             else:
-                self.page_closed(page)
+                self.remove_page(page)
 
-    def page_closed(self, page: Page) -> None:
+    def remove_page(self, page: Page) -> None:
         """Stop sending clocks to the page."""
         self._sent_clocks.pop(page, None)
 
@@ -251,28 +251,28 @@ class TimelineFeature(PageFeature):
         self._playback = playback
         playback.on_reset = self._reset
         playback.changed.append(self._on_change)
-        self.context.graph_changes.watch(playback.review)
+        self.context.graph_changes.watch(playback.update_subscribed_topics)
         self.context.pages.publish(self._timeline)
         self._on_change()
 
-    def start_history(self, most_bytes: int) -> LiveHistory:
+    def start_history(self, max_bytes: int) -> LiveHistory:
         """Start storing the messages of the last minutes, and return their history.
 
         Args:
-            most_bytes: the maximum size of the stored messages.
+            max_bytes: the maximum size of the stored messages.
         """
-        self._live = LiveHistory(self.context, most_bytes, self.failed)
+        self._live = LiveHistory(self.context, max_bytes, self.show_error)
         self._live.on_reset = self._reset
         self._live.changed = self._on_change
         return self._live
 
-    def failed(self, error: LinkwrightError) -> None:
+    def show_error(self, error: LinkwrightError) -> None:
         """Show the error that makes the rest of the recording unreadable."""
         self._problem = join_messages(error.diagnostics)
         for diagnostic in error.diagnostics:
             self.context.report(diagnostic)
 
-    def opening(self) -> list[ServerMessage]:
+    def opening_messages(self) -> list[ServerMessage]:
         """Return the extent of the recording or the history, and the current position."""
         playback = self._playback
         if self._live is not None:
@@ -283,7 +283,7 @@ class TimelineFeature(PageFeature):
             return []
         if not self._is_started:
             self._is_started = True
-            playback.review()
+            playback.update_subscribed_topics()
             playback.play()
         return [self._timeline, self._playhead(playback)]
 
@@ -315,19 +315,19 @@ class TimelineFeature(PageFeature):
                 playback.set_speed(speed)
                 playback.set_loop(loop)
 
-    def before(self, topics: Collection[str], seconds: float, most_bytes: int) -> list[Recorded]:
+    def messages_before(self, topics: Collection[str], seconds: float, max_bytes: int) -> list[Recorded]:
         """Return the stored messages of topics for a duration before the displayed time.
 
         Args:
             topics: the topics; the history of the last minutes has only topics that the viewer is subscribed to.
             seconds: the duration, in seconds.
-            most_bytes: the maximum total size in bytes; if the messages exceed it, the list is empty.
+            max_bytes: the maximum total size in bytes; if the messages exceed it, the list is empty.
         """
         if self._live is None and self._playback is None:
             return []
         source = self._playback if self._live is None else self._live
         assert source is not None
-        return source.before(topics, round(seconds * NANOSECONDS_PER_SECOND), most_bytes)
+        return source.messages_before(topics, round(seconds * NANOSECONDS_PER_SECOND), max_bytes)
 
     def close(self) -> None:
         """Stop playing."""
@@ -338,7 +338,7 @@ class TimelineFeature(PageFeature):
         if self._live is not None:
             self._live.close()
         elif self._playback is not None:
-            self.context.graph_changes.unwatch(self._playback.review)
+            self.context.graph_changes.unwatch(self._playback.update_subscribed_topics)
             self._playback.close()
 
     def _reset(self) -> None:
@@ -388,7 +388,7 @@ class TimelineFeature(PageFeature):
     def _extent(self, live: LiveHistory) -> HistoryExtent:
         start_ns, end_ns = live.span_ns
         return HistoryExtent(
-            start_ns / NANOSECONDS_PER_SECOND, end_ns / NANOSECONDS_PER_SECOND, live.size, live.most_bytes
+            start_ns / NANOSECONDS_PER_SECOND, end_ns / NANOSECONDS_PER_SECOND, live.size, live.max_bytes
         )
 
     def _publish_extent_later(self) -> None:

@@ -54,11 +54,11 @@ class ViewsFeature(PageFeature):
         super().__init__(viewer)
         self._classes = ViewClasses(view_classes())
 
-    def opening(self) -> list[ServerMessage]:
+    def opening_messages(self) -> list[ServerMessage]:
         """Return the view classes and their properties."""
         return [self._classes]
 
-    def configured(self, manager: VisualizationManager) -> list[ServerMessage]:
+    def configuration_messages(self, manager: VisualizationManager) -> list[ServerMessage]:
         """Return the view of the file and the saved views."""
         return [ViewState(manager.view, manager.opened, manager.shows_whole_robot), self._saved_views_message(manager)]
 
@@ -74,7 +74,7 @@ class ViewsFeature(PageFeature):
                 views.current = message.view
                 return
             if isinstance(message, RobotMeasured):
-                manager.measured(message.diagonal, message.ground)
+                manager.fit_to_robot(message.diagonal, message.ground)
                 return
             if isinstance(message, SaveView):
                 views.save(message.view)
@@ -87,7 +87,7 @@ class ViewsFeature(PageFeature):
         except ValueError as error:
             self.context.node.get_logger().warning(f"A page sent an invalid view: {error}")
             return
-        manager.edited()
+        manager.record_permanent_edit()
         manager.publish(self._saved_views_message(manager))
 
     @staticmethod
@@ -129,11 +129,11 @@ class ToolsFeature(PageFeature):
         for manager in self.managers.all():
             self._tool_set(manager)
 
-    def configured(self, manager: VisualizationManager) -> list[ServerMessage]:
+    def configuration_messages(self, manager: VisualizationManager) -> list[ServerMessage]:
         """Return the tools of the configuration."""
         return [_tools_message(self._tool_set(manager))]
 
-    def manager_closed(self, manager: VisualizationManager) -> None:
+    def remove_manager(self, manager: VisualizationManager) -> None:
         """Destroy the publishers of the manager's tools."""
         tool_set = self._tool_sets.pop(manager, None)
         if tool_set is not None:
@@ -163,7 +163,7 @@ class ToolsFeature(PageFeature):
     def close(self) -> None:
         """Destroy all publishers."""
         for manager in list(self._tool_sets):
-            self.manager_closed(manager)
+            self.remove_manager(manager)
 
     def _tool_set(self, manager: VisualizationManager) -> _ToolSet:
         """Return the tools of a manager.
@@ -192,7 +192,7 @@ class ToolsFeature(PageFeature):
     # --- settings ----------------------------------------------------------------------------------------------
 
     def _publish_tools(self, manager: VisualizationManager) -> None:
-        manager.edited()
+        manager.record_permanent_edit()
         manager.publish(_tools_message(self._tool_sets[manager]))
 
     def _add(self, manager: VisualizationManager, message: AddTool) -> None:
@@ -223,7 +223,7 @@ class ToolsFeature(PageFeature):
             entry.properties.set(path, previous_value)
             page.send(ToolPropertyChanged(message.id, previous_value))
             return
-        manager.edited()
+        manager.record_permanent_edit()
         manager.publish(ToolPropertyChanged(message.id, value))
 
     # --- publishers and messages ---------------------------------------------------------------------------------

@@ -68,13 +68,13 @@ def on_lost_interrupt(deliver: Callable[[], None]) -> Callable[[Any], Any]:
     """
     previous_hook = sys.unraisablehook
 
-    def later() -> None:
+    def deliver_later() -> None:
         time.sleep(_DELAY_SECONDS)
         deliver()
 
     def hook(unraisable: Any) -> None:
         if issubclass(unraisable.exc_type, KeyboardInterrupt):
-            _thread.start_new_thread(later, ())
+            _thread.start_new_thread(deliver_later, ())
         else:
             previous_hook(unraisable)
 

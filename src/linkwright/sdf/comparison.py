@@ -12,7 +12,7 @@ from linkwright.sdf.shapes import Heightmap, Mesh
 from linkwright.xmltree import Element
 
 
-def alike(first: Any, second: Any) -> bool:
+def have_equal_content(first: Any, second: Any) -> bool:
     """Return whether two parsed elements of files, or tuples of elements, have equal content.
 
     Comments, whitespace and positions in the text are ignored. The parameters of plugins are compared as XML elements.
@@ -23,19 +23,21 @@ def alike(first: Any, second: Any) -> bool:
     if type(first) is not type(second):
         return False
     if isinstance(first, tuple):
-        return len(first) == len(second) and all(map(alike, first, second))
+        return len(first) == len(second) and all(map(have_equal_content, first, second))
     if not is_dataclass(first):
         return bool(first == second or (first != first and second != second))
-    if isinstance(first, Plugin) and not _same_elements(first.element, second.element):
+    if isinstance(first, Plugin) and not _have_same_content(first.element, second.element):
         return False
     if isinstance(first, Visual | Collision) and _folder(first) != _folder(second):
         return False
     return all(
-        alike(getattr(first, field.name), getattr(second, field.name)) for field in fields(first) if field.compare
+        have_equal_content(getattr(first, field.name), getattr(second, field.name))
+        for field in fields(first)
+        if field.compare
     )
 
 
-def _same_elements(first: Element | None, second: Element | None) -> bool:
+def _have_same_content(first: Element | None, second: Element | None) -> bool:
     if first is None or second is None:
         return first is second
     return _content(first) == _content(second)

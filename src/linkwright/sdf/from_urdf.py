@@ -36,7 +36,7 @@ _LUMP_SEPARATOR = "_fixed_joint_lump__"
 _TINY_INERTIAL = Inertial(1e-6, inertia=Inertia(1e-9, 1e-9, 1e-9))
 """The mass properties of a massless link that is fixed to links with mass. Without them, SDF assumes 1 kg."""
 _BRIGHTNESS_FACTOR = 1.25
-"""The factor that brightens URDF colours, because gz renders them darker than RViz does."""
+"""The factor that brightens URDF colors, because gz renders them darker than RViz does."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -151,13 +151,13 @@ class _Converter:
         merged_poses = [part.pose for part in body.parts[1:]]
         sensors = [
             _in_body_frame(sensor, pose)
-            for other, pose in zip(merged_extensions, merged_poses, strict=True)
-            for sensor in other.sensors
+            for merged_extension, pose in zip(merged_extensions, merged_poses, strict=True)
+            for sensor in merged_extension.sensors
         ]
         lights = [
             _in_body_frame(light, pose)
-            for other, pose in zip(merged_extensions, merged_poses, strict=True)
-            for light in other.lights
+            for merged_extension, pose in zip(merged_extensions, merged_poses, strict=True)
+            for light in merged_extension.lights
         ]
         return replace(
             extension,
@@ -167,7 +167,7 @@ class _Converter:
             collisions=(*_collisions(body, extensions), *extension.collisions),
             sensors=(*extension.sensors, *sensors),
             lights=(*extension.lights, *lights),
-            gravity=extension.gravity and all(other.gravity for other in merged_extensions),
+            gravity=extension.gravity and all(merged_extension.gravity for merged_extension in merged_extensions),
             self_collide=next(
                 (link.self_collide for link in (extension, *merged_extensions) if link.self_collide is not None), None
             ),
@@ -331,7 +331,7 @@ def _shape(geometry: urdf.Geometry) -> shapes.Shape:
 def _material(urdf_material: urdf.Material | None, extension: Material | None) -> Material | None:
     """Return the material of a visual, or None if there is none.
 
-    The colours and scripts of ``<gazebo>`` take precedence over the URDF material.
+    The colors and scripts of ``<gazebo>`` take precedence over the URDF material.
     """
     if (
         extension is not None

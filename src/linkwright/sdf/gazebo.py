@@ -206,7 +206,7 @@ def _merge_shape_settings(shape: Element, settings: Element) -> None:
     """
     for element in settings.elements():
         if element.tag in ("surface", "material"):
-            shape.children = [other for other in shape.elements() if other.tag != element.tag]
+            shape.children = [child for child in shape.elements() if child.tag != element.tag]
         shape.children.append(_copied_element(element))
 
 

@@ -21,7 +21,7 @@ from linkwright.xmltree.reader import read_bytes
 
 _MAX_DEPTH = 64
 """The maximum depth of nested includes."""
-_MOST = 100_000
+_MAX_MODELS = 100_000
 """The maximum number of included models.
 
 A few lines can create billions of models if each model includes another one twice.
@@ -156,9 +156,11 @@ class _Resolver:
             self._report("SDF161", phrase("'{name}' includes itself", name=include.uri), include, None)
             return None
         self._count += 1
-        if self._count > _MOST:
-            if self._count == _MOST + 1:
-                self._report("SDF161", phrase("more than {count} models are included", count=_MOST), include, None)
+        if self._count > _MAX_MODELS:
+            if self._count == _MAX_MODELS + 1:
+                self._report(
+                    "SDF161", phrase("more than {count} models are included", count=_MAX_MODELS), include, None
+                )
             return None
         reading = self._read(model_path, include)
         if reading is None or reading.sdf is None:

@@ -64,7 +64,7 @@ def _check_owner(owner: World | Model, frames: Frames) -> Iterator[Diagnostic]:
 
 def _check_model(model: Model, frames: Frames) -> Iterator[Diagnostic]:
     if not (model.links or model.models or model.includes or model.static):
-        message = phrase("{whose} has no links", whose=_description(model.element))
+        message = phrase("{element} has no links", element=_description(model.element))
         yield _error("SDF132", message, model.element, hint=phrase("add a <link>, or make the model static"))
     for attribute in ("canonical_link", "placement_frame"):
         name = getattr(model, attribute)

@@ -60,7 +60,9 @@ class SdfReport(Findings):
         similar_names = nearest(attribute.name, unknown_names, limit=1)
         hint = phrase('add {name}="..."', name=attribute.name)
         if similar_names:
-            hint = phrase("did you mean '{name}' instead of '{like}'?", name=attribute.name, like=similar_names[0])
+            hint = phrase(
+                "did you mean '{name}' instead of '{similar}'?", name=attribute.name, similar=similar_names[0]
+            )
         if owner is element or owner.attributes.get("name") is None:
             message = phrase("<{tag}> has no '{name}'", **values)
         else:
@@ -108,11 +110,11 @@ class SdfReport(Findings):
         misspelt = next((candidate for candidate in candidates if candidate.tag in similar_tags), None)
         hint = phrase("add <{tag}>...</{tag}>", tag=child.tag)
         if misspelt is not None:
-            hint = phrase("did you mean '{name}' instead of '{like}'?", name=child.tag, like=misspelt.tag)
+            hint = phrase("did you mean '{name}' instead of '{similar}'?", name=child.tag, similar=misspelt.tag)
             self._misspelt.append(misspelt)
         self.error(
             "SDF130",
-            phrase("{whose} has no <{tag}>", whose=described(element), tag=child.tag),
+            phrase("{element} has no <{tag}>", element=described(element), tag=child.tag),
             misspelt or element,
             hint=hint,
         )
@@ -149,7 +151,7 @@ class SdfReport(Findings):
                 parent_tags = [
                     f"<{parent_tag}>" for parent_tag in allowed_parents(element.tag) if parent_tag != rule.tag
                 ]
-                hint = phrase("put it directly in {listed}", listed=" or ".join(parent_tags)) if parent_tags else None
+                hint = phrase("put it directly in {tags}", tags=" or ".join(parent_tags)) if parent_tags else None
             if hint is not None:
                 self._unread([element], rule, hint)
             else:
@@ -243,20 +245,20 @@ def _explain_numbers(values: dict[str, Any], text: str, count: int, element: Ele
     is_quaternion = element.attributes.get("rotation_format") == "quat_xyzw"
     count += is_quaternion
     try:
-        found = len(numbers(text))
+        found_count = len(numbers(text))
     except ValueError:
         return phrase("{place} is not {count} numbers: '{value}'", **values, count=count), vector_hint(text, count)
-    if found == count and not all(map(isfinite, numbers(text))):
+    if found_count == count and not all(map(isfinite, numbers(text))):
         return phrase("{place} is not {count} numbers: '{value}'", **values, count=count), None
-    if found == count:
+    if found_count == count:
         return phrase("the quaternion in {place} has length zero: '{value}'", **values), phrase(
             "write 0 0 0 1 for no rotation"
         )
     message = counted(
-        "{place} has 1 number, but {wanted} are expected: '{value}'",
-        "{place} has {count} numbers, but {wanted} are expected: '{value}'",
-        found,
+        "{place} has 1 number, but {expected_count} are expected: '{value}'",
+        "{place} has {count} numbers, but {expected_count} are expected: '{value}'",
+        found_count,
         **values,
-        wanted=count,
+        expected_count=count,
     )
-    return message, phrase('add rotation_format="quat_xyzw"') if found == 7 else None
+    return message, phrase('add rotation_format="quat_xyzw"') if found_count == 7 else None

@@ -108,15 +108,15 @@ class ResourceFinder:
             beside: the folder of the file that contains the URI; plain paths are relative to it.
         """
         address = address.strip()
-        scheme, colon, rest = address.partition("://")
+        scheme, colon, path_after_scheme = address.partition("://")
         if not colon:
             return self._find_plain_path(address, beside)
         if scheme == "model":
-            return self._find_model_uri(address, unquote(rest).lstrip("/"), beside)
+            return self._find_model_uri(address, unquote(path_after_scheme).lstrip("/"), beside)
         if scheme in ("http", "https"):
             return self._find_in_cache(address)
-        if scheme == "file" and absolute_path(f"//{rest}") is None:
-            return self._find_file_uri(address, unquote(rest), beside)
+        if scheme == "file" and absolute_path(f"//{path_after_scheme}") is None:
+            return self._find_file_uri(address, unquote(path_after_scheme), beside)
         try:
             path = self._packages.resolve(address, beside)
         except LinkwrightError as error:
@@ -211,7 +211,7 @@ class ResourceFinder:
         parent_folders = (folder.parent for folder in self._folders)
         folders = (*self._folders, *parent_folders, *(beside.absolute() / "x").parents)
         candidates = [folder / subfolder / path for folder in folders for subfolder in _MEDIA_SUBFOLDERS]
-        existing_path = next((place for place in candidates if place.exists()), None)
+        existing_path = next((candidate for candidate in candidates if candidate.exists()), None)
         if existing_path is not None:
             return existing_path
         other_case_path = next(filter(None, map(_find_in_other_case, candidates)), None)
@@ -238,16 +238,19 @@ class ResourceFinder:
             candidate = folder / path
             if candidate.exists() and (folder not in nearby_folders[2:] or "/" in path or _is_model(candidate)):
                 return candidate
-        name, _, rest = path.partition("/")
+        name, _, path_in_model = path.partition("/")
         for folder in self._folders:
             if (folder / name).is_dir() and (_is_ours(beside) or not _is_ours(folder)):
                 return _no_file(folder / path)
         reason = phrase("there is no model '{name}' on the search path", name=name)
-        renamed_folder = next((path for path in nearby_folders[:2] if rest and (path / rest).exists()), None)
+        renamed_folder = next(
+            (path for path in nearby_folders[:2] if path_in_model and (path / path_in_model).exists()), None
+        )
         if renamed_folder is not None:
             folder_name = renamed_folder.absolute().name
             return Missing(
-                reason, phrase("the folder that contains '{path}' is named '{name}'", path=rest, name=folder_name)
+                reason,
+                phrase("the folder that contains '{path}' is named '{name}'", path=path_in_model, name=folder_name),
             )
         suggested_name = find_misspelt(name, self.models()) if len(name) >= _MIN_NAME_LENGTH else None
         if suggested_name is not None:
@@ -267,14 +270,14 @@ class ResourceFinder:
             parts = parts[1:]
         if len(parts) < 3 or parts[1] not in ("models", "worlds"):
             return Missing(phrase("'{uri}' is not the address of a model", uri=address), None)
-        owner, kind, name, *rest = parts
+        owner, kind, name, *version_and_file = parts
         for cache in self._caches():
             model_folder = cache / host / owner.lower() / kind / name.lower()
-            cached_path = _version_in(model_folder, rest)
+            cached_path = _version_in(model_folder, version_and_file)
             if cached_path is not None and cached_path.exists():
                 return cached_path
         own_model = _SUN_AND_GROUND.get(name.lower())
-        if own_model is not None and not rest[1:]:
+        if own_model is not None and not version_and_file[1:]:
             return _OWN_MODELS_FOLDER / own_model
         hint = phrase(
             "models are not downloaded automatically: run `gz fuel download -u '{uri}'` to add this model to the cache",
@@ -365,20 +368,20 @@ def hooked_folders(share: Path) -> Iterator[Path]:
                     yield Path(os.path.normpath(share.parent / (path_match["path"] or "")))
 
 
-def _version_in(place: Path, version_and_file: list[str]) -> Path | None:
+def _version_in(model_folder: Path, version_and_file: list[str]) -> Path | None:
     """Return the folder or file in a cached model that the rest of a Fuel address names.
 
     Without a version, or with ``tip``, the newest version is used. Return None if no version is cached.
     """
     try:
-        versions = sorted((int(path.name), path) for path in place.iterdir() if path.name.isdigit())
+        versions = sorted((int(path.name), path) for path in model_folder.iterdir() if path.name.isdigit())
     except OSError:
         return None
     if not versions:
         return None
     version_path = versions[-1][1]
     if version_and_file and version_and_file[0].isdigit():
-        version_path = place / version_and_file[0]
+        version_path = model_folder / version_and_file[0]
     file_parts = version_and_file[2:] if len(version_and_file) > 1 and version_and_file[1] == "files" else []
     return version_path.joinpath(*file_parts)
 

@@ -33,7 +33,7 @@ def with_saved_state(world: World) -> World:
     return replace(
         world,
         models=tuple(_with_state(model, model_states.get(model.name), _world_pose(frames, model)) for model in models),
-        lights=tuple(replace(each, pose=light_poses.get(each.name, each.pose)) for each in lights),
+        lights=tuple(replace(light, pose=light_poses.get(light.name, light.pose)) for light in lights),
     )
 
 
@@ -44,36 +44,36 @@ def _world_pose(frames: Frames, model: Model) -> Transform:
         return transform_of(model.pose.pose)  # `check` reports the missing frame.
 
 
-def _with_state(model: Model, state: ModelState | None, place: Transform) -> Model:
+def _with_state(model: Model, state: ModelState | None, model_pose: Transform) -> Model:
     """Return a model with its saved state applied.
 
-    `place` is the pose of the model in the world, for a state without a pose.
+    `model_pose` is the pose of the model in the world, for a state without a pose.
     """
     if state is None:
         return model
     if state.pose is not None:
-        place = transform_of(state.pose.pose)
+        model_pose = transform_of(state.pose.pose)
         model = replace(model, pose=state.pose, placement_frame="")
-    to_model = invert(place)
+    to_model = invert(model_pose)
     link_poses = {link_state.name: link_state.pose for link_state in state.links if link_state.pose is not None}
     model_states = {model_state.name: model_state for model_state in state.models}
 
-    def inside(pose: RawPose) -> RawPose:
+    def to_model_frame(pose: RawPose) -> RawPose:
         return RawPose(pose_of(compose(to_model, transform_of(pose.pose))))
 
-    def inner(nested_model: Model) -> Model:
+    def with_nested_state(nested_model: Model) -> Model:
         nested_state = model_states.get(nested_model.name)
         if nested_state is None or nested_state.pose is None:
             return nested_model
-        restored = _with_state(nested_model, nested_state, place)
-        return replace(restored, pose=inside(nested_state.pose))
+        restored = _with_state(nested_model, nested_state, model_pose)
+        return replace(restored, pose=to_model_frame(nested_state.pose))
 
     return replace(
         model,
         scale=state.scale if state.scale != (1.0, 1.0, 1.0) else model.scale,
         links=tuple(
-            replace(link, pose=inside(link_poses[link.name])) if link.name in link_poses else link
+            replace(link, pose=to_model_frame(link_poses[link.name])) if link.name in link_poses else link
             for link in model.links
         ),
-        models=tuple(map(inner, model.models)),
+        models=tuple(map(with_nested_state, model.models)),
     )

@@ -1,7 +1,7 @@
 """Reading of material scripts: Gazebo's built-in materials, and models' ``.material`` files.
 
-The renderer of Gazebo classic, Ogre, defines materials in a script language. Only the colours and the first image of a
-material are read here. Colours in the SDF file take precedence over the colours of the script.
+The renderer of Gazebo classic, Ogre, defines materials in a script language. Only the colors and the first image of a
+material are read here. Colors in the SDF file take precedence over the colors of the script.
 
 Source: ``gazebo.material`` of Gazebo classic, and Ogre's manual, "Material scripts".
 """
@@ -24,9 +24,9 @@ from linkwright.sdf.worlds import Sdf
 
 
 class Look(NamedTuple):
-    """The colours and the texture that a script defines for a material.
+    """The colors and the texture that a script defines for a material.
 
-    A colour is None if the script does not set it; without a texture, `image` is empty.
+    A color is None if the script does not set it; without a texture, `image` is empty.
     """
 
     ambient: Color | None = None
@@ -88,7 +88,7 @@ _BUILT_IN_LOOKS = {
     "YellowTransparent": _uniform_look(1, 1, 0, 0.5),
     "ZincYellow": _uniform_look(0.9725, 0.9529, 0.2078),
 }
-"""Gazebo's built-in materials by name without prefix. Textured materials have the approximate colour of their image."""
+"""Gazebo's built-in materials by name without prefix. Textured materials have the approximate color of their image."""
 _PREFIX = "Gazebo/"
 _MAX_SCRIPT_BYTES = 1_000_000
 """The maximum size of a script in bytes. The script with Gazebo's materials has 19 000."""
@@ -102,7 +102,7 @@ def gazebo_look(name: str) -> Look | None:
 
 
 def with_look(material: Material, look: Look) -> Material:
-    """Return a material with missing colours and a missing texture taken from a script's look."""
+    """Return a material with missing colors and a missing texture taken from a script's look."""
     pbr = material.pbr
     if look.image and pbr is None:
         pbr = Pbr(metal=Workflow(albedo_map=look.image))
@@ -153,7 +153,7 @@ class _ScriptLibrary:
         folder = Path() if source is None else Path(source.name).parent
         paths = {uri: self._finder.file(uri.strip(), folder) for uri in script.uris if uri and uri.strip()}
         existing_paths = {uri: path for uri, path in paths.items() if not isinstance(path, Missing)}
-        for file in (file for place in existing_paths.values() for file in _script_files(place)):
+        for file in (file for existing_path in existing_paths.values() for file in _script_files(existing_path)):
             look = self._read(file).get(script.name)
             if look is not None:
                 return look._replace(image=_image(look.image, file, existing_paths))
@@ -184,11 +184,11 @@ def _image(name: str, script: Path, paths: Mapping[str, Path]) -> str:
     return ""
 
 
-def _script_files(place: Path) -> list[Path]:
-    if not place.is_dir():
-        return [place]
+def _script_files(path: Path) -> list[Path]:
+    if not path.is_dir():
+        return [path]
     with suppress(OSError):
-        return sorted(place.glob("*.material"))
+        return sorted(path.glob("*.material"))
     return []
 
 
@@ -219,11 +219,11 @@ def _with_property(look: Look, keyword: str, values: list[str]) -> Look:
     if keyword in _COLORS and getattr(look, keyword) is None:
         with suppress(ValueError):
             numbers = [float(value) for value in values[:4]]
-            # In a specular colour, the last of four or five numbers is the shininess.
+            # In a specular color, the last of four or five numbers is the shininess.
             alpha = numbers[3] if len(numbers) == 4 and (keyword != "specular" or len(values) == 5) else 1.0
             if len(numbers) >= 3:
-                colours: dict[str, Any] = {keyword: (numbers[0], numbers[1], numbers[2], alpha)}
-                return look._replace(**colours)
+                colors: dict[str, Any] = {keyword: (numbers[0], numbers[1], numbers[2], alpha)}
+                return look._replace(**colors)
     return look
 
 

@@ -48,11 +48,11 @@ def parse_as_gazebo(text: str | bytes, name: str) -> tuple[Document, tuple[Diagn
     try:
         document, parser_warnings = parse_as_tinyxml(text, name, _TOLERATED_BY_SIMULATORS, read_as=corrected_text)
     except LinkwrightError as error:
-        found = error.diagnostics[0]
-        if found.code != _EMPTY_CODE:
+        diagnostic = error.diagnostics[0]
+        if diagnostic.code != _EMPTY_CODE:
             raise
         hint = phrase('a world begins with <sdf version="...">; was the file saved?')
-        raise LinkwrightError(found.with_changes(hint=hint)) from None
+        raise LinkwrightError(diagnostic.with_changes(hint=hint)) from None
     findings = (*warnings, *parser_warnings)
     return document, tuple(
         diagnostic.with_changes(severity=Severity.INFO) if diagnostic.code == _NOT_XML_CODE else diagnostic

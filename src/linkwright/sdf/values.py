@@ -90,10 +90,10 @@ def _truth(text: str) -> bool:
 
 
 def _finite(text: str) -> tuple[float, ...]:
-    found = numbers(text)
-    if not all(map(isfinite, found)):
+    values = numbers(text)
+    if not all(map(isfinite, values)):
         raise ValueError(text)
-    return found
+    return values
 
 
 def _vector3(text: str) -> Vector3:
@@ -224,8 +224,8 @@ def pose_of(pose_numbers: tuple[float, ...], degrees: bool, rotation_format: str
         ValueError: the number of values does not match the format, or a quaternion is zero.
     """
     if rotation_format == "quat_xyzw":
-        x, y, z, *rest = pose_numbers
-        qx, qy, qz, qw = rest
+        x, y, z, *quaternion_values = pose_numbers
+        qx, qy, qz, qw = quaternion_values
         length = (qx * qx + qy * qy + qz * qz + qw * qw) ** 0.5
         if length == 0.0:
             raise ValueError(pose_numbers)

@@ -60,7 +60,7 @@ class Walk:
 
 
 @dataclass(frozen=True, slots=True)
-class _Key:
+class _Keyframe:
     """A waypoint for interpolation.
 
     `point` and `turn` are its position and rotation. `tangent` is the tangent of the position spline, and `rotation`
@@ -96,7 +96,7 @@ class _Section:
         return (*_interpolated_point(keyframe, next_keyframe, fraction), *_squad(keyframe, next_keyframe, fraction))
 
 
-def _keyframe_at(poses: list[Transform], index: int, tangent_scale: float) -> _Key:
+def _keyframe_at(poses: list[Transform], index: int, tangent_scale: float) -> _Keyframe:
     x, y, z, *_ = poses[index]
     previous_pose, next_pose = poses[max(index - 1, 0)], poses[min(index + 1, len(poses) - 1)]
     tangent = (
@@ -107,7 +107,7 @@ def _keyframe_at(poses: list[Transform], index: int, tangent_scale: float) -> _K
     orientation = poses[index][3:]
     inverse = quaternion_inverse(orientation)
     log_to_next, log_to_previous = (
-        _log(quaternion_multiply(inverse, neighbour[3:])) for neighbour in (next_pose, previous_pose)
+        _log(quaternion_multiply(inverse, neighbor[3:])) for neighbor in (next_pose, previous_pose)
     )
     offset = _exp(
         (
@@ -116,10 +116,10 @@ def _keyframe_at(poses: list[Transform], index: int, tangent_scale: float) -> _K
             -0.25 * (log_to_next[2] + log_to_previous[2]),
         )
     )
-    return _Key((x, y, z), orientation, tangent, quaternion_multiply(orientation, offset))
+    return _Keyframe((x, y, z), orientation, tangent, quaternion_multiply(orientation, offset))
 
 
-def _interpolated_point(start: _Key, end: _Key, fraction: float) -> Vector3:
+def _interpolated_point(start: _Keyframe, end: _Keyframe, fraction: float) -> Vector3:
     """Return the position between two waypoints on a cubic Hermite curve.
 
     `fraction` is from 0 to 1.
@@ -134,7 +134,7 @@ def _interpolated_point(start: _Key, end: _Key, fraction: float) -> Vector3:
     return x, y, z
 
 
-def _squad(start: _Key, end: _Key, fraction: float) -> Quaternion:
+def _squad(start: _Keyframe, end: _Keyframe, fraction: float) -> Quaternion:
     outer = _slerp(start.turn, end.turn, fraction)
     inner = _slerp(start.rotation, end.rotation, fraction)
     return _slerp(outer, inner, 2.0 * fraction * (1.0 - fraction))

@@ -47,7 +47,7 @@ class CopyingAmentCmakeTask(TaskExtensionPoint):  # type: ignore[misc]  # its ba
     async def build(self) -> int:
         """Install the files of the package, and return the exit status.
 
-        Other programs recognise the package by the files that every installed package has: its marker in the resource
+        Other programs recognize the package by the files that every installed package has: its marker in the resource
         index, and the scripts that add its prefix to the environment.
         """
         args, package = self.context.args, self.context.pkg

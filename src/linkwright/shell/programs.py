@@ -49,7 +49,7 @@ def write_programs(folder: Path, python: str = sys.executable) -> None:
             program.chmod(0o755)
 
 
-def offer_programs(environment: MutableMapping[str, str]) -> None:
+def append_programs_to_path(environment: MutableMapping[str, str]) -> None:
     """Append the folder of Linkwright's programs to the search path, for launch files.
 
     The programs are written to the cache folder. If that is not possible, the search path does not change.
@@ -65,7 +65,7 @@ def offer_programs(environment: MutableMapping[str, str]) -> None:
             environment["PATH"] = os.pathsep.join([*folders, str(folder)])
 
 
-def offer_ros_variables(environment: MutableMapping[str, str]) -> None:
+def set_ros_variables(environment: MutableMapping[str, str]) -> None:
     """Set the environment variables of ROS 2 that launch files expect, unless ROS 2 is sourced.
 
     The values are those of ROS 2 Humble.

@@ -160,13 +160,13 @@ def _run(words: Sequence[str], variables: Mapping[str, str]) -> int:
     early_signals: list[int] = []  # signals that were received before the command was running
     is_detached = os.name == "posix" and not _has_terminal()
 
-    def pass_on(signal_number: int, _frame: object) -> None:
+    def forward_signal(signal_number: int, _frame: object) -> None:
         if child is None:
             early_signals.append(signal_number)
         elif is_detached or signal_number != signal.SIGINT:
             child.send_signal(signal_number)
 
-    previous = {number: signal.signal(number, pass_on) for number in _forwarded_signals()}
+    previous = {number: signal.signal(number, forward_signal) for number in _forwarded_signals()}
     try:
         setup = _create_setup() if is_detached else None
         # The command is the user's own (S603). There is only one thread, and `setup` imports nothing (PLW1509).
@@ -205,12 +205,12 @@ def _create_setup() -> Callable[[], None]:
 
     prctl = ctypes.CDLL(None).prctl if sys.platform == "linux" else None
 
-    def stand_alone() -> None:
+    def detach_from_parent() -> None:
         os.setpgid(0, 0)
         if prctl is not None:
             prctl(_PR_SET_PDEATHSIG, signal.SIGTERM)
 
-    return stand_alone
+    return detach_from_parent
 
 
 def _forwarded_signals() -> list[int]:

@@ -21,11 +21,11 @@ class ActuatedSimulation(Protocol):
 
     @property
     def model(self) -> Any:
-        """The current MuJoCo model, which `renew` replaces."""
+        """The current MuJoCo model, which `recompile_if_changed` replaces."""
 
     @property
     def data(self) -> Any:
-        """The current MuJoCo data, which `renew` replaces."""
+        """The current MuJoCo data, which `recompile_if_changed` replaces."""
 
     @property
     def revision(self) -> int:
@@ -34,11 +34,11 @@ class ActuatedSimulation(Protocol):
         A cached index is valid for one revision.
         """
 
-    def renew(self) -> None:
+    def recompile_if_changed(self) -> None:
         """Recompile the MuJoCo model if the scene has changed."""
 
     def refresh(self) -> None:
-        """Call `renew`, and update the MuJoCo data that is derived from positions."""
+        """Call `recompile_if_changed`, and update the MuJoCo data that is derived from positions."""
 
     def joint_state(self, name: str) -> tuple[float, float]:
         """Return the position and velocity of a joint with one axis.
@@ -89,7 +89,7 @@ class Motor:
     def _actuator_index(self) -> int:
         """Return the index of the actuator in MuJoCo's current model."""
         simulation = self._simulation
-        simulation.renew()
+        simulation.recompile_if_changed()
         if self._revision != simulation.revision:
             self._number = int(simulation.model.actuator(self._name).id)
             self._revision = simulation.revision
@@ -99,7 +99,7 @@ class Motor:
 class Servo:
     """A servo that holds a joint with one axis at a position, and moves it to new positions.
 
-    `Simulation.renew` runs on first use, so adding many servos compiles the model only once.
+    `Simulation.recompile_if_changed` runs on first use, so adding many servos compiles the model only once.
 
     Args:
         simulation: the simulation that contains the joint.
@@ -125,7 +125,7 @@ class Servo:
     @property
     def position(self) -> float:
         """The position at which the joint is held, in rad (or m)."""
-        self._simulation.renew()
+        self._simulation.recompile_if_changed()
         return self._position
 
     def restart(self) -> None:
@@ -144,7 +144,7 @@ class Servo:
 
         The target is a position in rad (or m), which is clipped to the joint's limits.
         """
-        self._simulation.renew()
+        self._simulation.recompile_if_changed()
         model = self._simulation.model
         joint = model.joint(self._joint)
         if model.jnt_limited[joint.id]:

@@ -11,12 +11,12 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
 from linkwright.packages import PackageFinder
 from linkwright.sdf.resources import ResourceFinder
 from linkwright.sdf.worlds import Sdf, World
-from linkwright.simulation.rendering.ray_renderer import mean_colour
+from linkwright.simulation.rendering.ray_renderer import mean_color
 from linkwright.simulation.scene.meshes import MeshLibrary
 from linkwright.simulation.scene.scene import Scene
 
 _DEFAULT_RGBA = [0.5, 0.5, 0.5, 1.0]
-"""The colour that means "use the material's colour" in MuJoCo."""
+"""The color that means "use the material's color" in MuJoCo."""
 
 
 def write_mjcf(sdf: Sdf, finder: PackageFinder) -> tuple[str, Sequence[Diagnostic]]:
@@ -41,21 +41,21 @@ def write_mjcf(sdf: Sdf, finder: PackageFinder) -> tuple[str, Sequence[Diagnosti
 
 
 def _replace_textures(spec: Any, model: Any) -> None:
-    """Remove all textures, and multiply the materials' colours by the textures' mean colours.
+    """Remove all textures, and multiply the materials' colors by the textures' mean colors.
 
     MJCF stores only the file names of textures.
     """
-    mean_colours: dict[str, Any] = {}
+    mean_colors: dict[str, Any] = {}
     for material in spec.materials:
         (texture_index,) = {
             int(number) for number in np.atleast_1d(model.mat_texid[model.material(material.name).id])
         } - {-1} or {-1}
         if texture_index >= 0:
-            mean_colours[material.name] = np.array([*mean_colour(model, texture_index), 1.0])
-            material.rgba = material.rgba * mean_colours[material.name]
+            mean_colors[material.name] = np.array([*mean_color(model, texture_index), 1.0])
+            material.rgba = material.rgba * mean_colors[material.name]
             material.textures = [""] * len(material.textures)
     for geom in spec.geoms:
-        if geom.material in mean_colours and list(geom.rgba) != _DEFAULT_RGBA:
-            geom.rgba = geom.rgba * mean_colours[geom.material]
+        if geom.material in mean_colors and list(geom.rgba) != _DEFAULT_RGBA:
+            geom.rgba = geom.rgba * mean_colors[geom.material]
     for texture_index in list(spec.textures):
         spec.delete(texture_index)

@@ -12,7 +12,7 @@ from linkwright.simulation.library import load_mujoco
 GROUPS = 6
 """The number of geom groups in MuJoCo."""
 _FIRST_RELIABLE_VERSION = 4
-"""The first major version in which `mj_multiRay` hits bodies whose centre of mass is not their origin."""
+"""The first major version in which `mj_multiRay` hits bodies whose center of mass is not their origin."""
 
 
 def cast(

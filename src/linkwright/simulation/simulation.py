@@ -110,7 +110,7 @@ class Simulation:
             FrameError: a link cannot be placed.
         """
         self.scene.add(model, name, pose)
-        self.set_altered()
+        self.mark_changed()
 
     def delete(self, name: str) -> None:
         """Remove a model from the world.
@@ -122,7 +122,7 @@ class Simulation:
             self._pushes.pop(link.link.name, None)
         self.scene.remove(name)
         self._new_servos = [servo for servo in self._new_servos if servo.model != name]
-        self.set_altered()
+        self.mark_changed()
 
     def set_world(self, world: World, finder: ResourceFinder) -> None:
         """Adopt everything except the models from another world.
@@ -138,13 +138,13 @@ class Simulation:
         self.scene.set_physics(self.world, self._given_step or self.scene.step_of(self.world))
         self.step = round(self.scene.step * NANOSECONDS_PER_SECOND)
         if _compiled_properties(old_world) != _compiled_properties(self.world):
-            self.set_altered()
+            self.mark_changed()
 
-    def separate_simulation(self, world: World, finder: ResourceFinder) -> Simulation:
+    def create_separate_simulation(self, world: World, finder: ResourceFinder) -> Simulation:
         """Return a separate simulation of another world, with the settings of this one."""
         return Simulation(world, finder, step=self._given_step)
 
-    def place(self, poses: Mapping[str, Transform]) -> None:
+    def set_initial_poses(self, poses: Mapping[str, Transform]) -> None:
         """Set the initial poses of models, and move free models there.
 
         The velocities of free models become 0. Joint positions are kept.
@@ -157,8 +157,8 @@ class Simulation:
             FrameError: a link cannot be placed.
         """
         for name, pose in poses.items():
-            self.scene.place(name, pose)
-            self.set_altered()
+            self.scene.set_initial_pose(name, pose)
+            self.mark_changed()
         self.refresh()
         for name in poses:
             for link in self.free_links(name):
@@ -168,23 +168,23 @@ class Simulation:
                     position_index : position_index + 7
                 ]
                 self.data.qvel[velocity_index : velocity_index + 6] = 0.0
-                self._on_jump(self.model.jnt_bodyid[joint.id])
+                self._handle_jump(self.model.jnt_bodyid[joint.id])
         self._is_current = False
 
-    def set_moved(self) -> None:
+    def mark_moved(self) -> None:
         """Record that positions or velocities in `data` were set.
 
         Dependent values are then updated before their next use.
         """
         self._is_current = False
 
-    def _on_jump(self, body: Any) -> None:
+    def _handle_jump(self, body: Any) -> None:
         """Wake the tree of a body that was moved, and limit the speed at which overlaps separate."""
         self._stepper.expect_overlaps()
         self._sleep.wake_tree(int(self.model.body_treeid[body]))
         self._is_current = False
 
-    def set_altered(self) -> None:
+    def mark_changed(self) -> None:
         """Record that the specification of `scene` was changed, so that it is compiled again."""
         self._is_changed = self._is_reshaped = True
 
@@ -211,17 +211,17 @@ class Simulation:
         self._is_changed = True
         return Motor(self, name)
 
-    def let_roll(self, joint: str) -> None:
+    def enable_rolling(self, joint: str) -> None:
         """Let a wheel roll without slipping, as driven wheels do."""
-        self.scene.let_roll(joint)
+        self.scene.enable_rolling(joint)
         self._is_changed = True
 
-    def let_slide(self, joint: str) -> None:
+    def enable_sliding(self, joint: str) -> None:
         """Let a wheel slide in all directions, as if it had rollers.
 
         The motor of the wheel then has no grip.
         """
-        self.scene.let_slide(joint)
+        self.scene.enable_sliding(joint)
         self._is_changed = True
 
     def add_servo(self, joint: str, speed: float = inf) -> Servo:
@@ -253,7 +253,7 @@ class Simulation:
         if tree >= 0:
             self._sleep.keep_awake(tree)
 
-    def renew(self) -> None:
+    def recompile_if_changed(self) -> None:
         """Recompile the MuJoCo model if the scene has changed."""
         if self._is_changed:
             self._set_model(*compile_scene(self.scene, (self.model, self.data)))
@@ -265,8 +265,8 @@ class Simulation:
                 servo.restart()
 
     def refresh(self) -> None:
-        """Call `renew`, and update the MuJoCo data that is derived from positions."""
-        self.renew()
+        """Call `recompile_if_changed`, and update the MuJoCo data that is derived from positions."""
+        self.recompile_if_changed()
         if not self._is_current:
             mujoco, model, data = self._mujoco, self.model, self.data
             move_actors(self.scene.figures, model, data, self.seconds)
@@ -322,14 +322,16 @@ class Simulation:
     def _make_steps(self, count: int) -> None:
         """Simulate a number of steps, with as little Python code per step as possible."""
         if self._is_changed:
-            self.renew()
+            self.recompile_if_changed()
         mujoco, (positions, velocities) = self._mujoco, self._state
         old_state = positions.tobytes(), velocities.tobytes()  # takes half the time of copying arrays
         try:
             self._stepper.make_steps(count)
         except mujoco.FatalError as error:
             reason = str(error).splitlines()[0]
-            raise LinkwrightError(Diagnostic("SIM121", phrase("MuJoCo failed: {said}", said=foreign(reason)))) from None
+            raise LinkwrightError(
+                Diagnostic("SIM121", phrase("MuJoCo failed: {reason}", reason=foreign(reason)))
+            ) from None
         self._is_current = False
         dot = mujoco.mju_dot  # takes half the time of a comparison; numpy's dot warns of overflows
         if (
@@ -404,7 +406,7 @@ class Simulation:
             KeyError: there is no such model.
         """
         self.refresh()
-        return float(self.model.body_subtreemass[self.model.body(self._root(name)[0]).id])
+        return float(self.model.body_subtreemass[self.model.body(self._first_link(name)[0]).id])
 
     def wheel_radius(self, link: str) -> float | None:
         """Return the largest radius in m of a wheel's round collisions, or None if there is none.
@@ -430,7 +432,7 @@ class Simulation:
 
         The frame moves with the model's first link.
         """
-        root, offset = self._root(name)
+        root, offset = self._first_link(name)
         return compose(self.link_pose(root), invert(offset))
 
     def moves_freely(self, name: str) -> bool:
@@ -440,7 +442,7 @@ class Simulation:
             KeyError: there is no such model.
         """
         self.refresh()
-        return self._is_free(self._root(name)[0])
+        return self._is_free(self._first_link(name)[0])
 
     def set_model_pose(self, name: str, pose: Transform) -> None:
         """Set the pose of a model, and set its velocity to zero.
@@ -461,17 +463,17 @@ class Simulation:
         if not self.moves_freely(name):
             message = phrase("'{name}' is fixed to the world", name=name)
             hint = phrase("delete it, and spawn it again at the intended pose")
-            if scene_model.hangs_on:
-                other = min(scene_model.hangs_on)
+            if scene_model.attached_to:
+                other = min(scene_model.attached_to)
                 message = phrase("'{name}' is connected with '{other}' by a joint of the world", name=name, other=other)
                 hint = phrase("move '{other}', to which it is connected", other=other)
             raise LinkwrightError(Diagnostic("SIM103", message, hint=hint))
-        root, offset = self._root(name)
+        root, offset = self._first_link(name)
         joint = self.data.joint(f"{root}#free")
         x, y, z, qx, qy, qz, qw = compose(pose, offset)
         joint.qpos[:] = (x, y, z, qw, qx, qy, qz)
         joint.qvel[:] = 0.0
-        self._on_jump(self.body(root))
+        self._handle_jump(self.body(root))
 
     def set_model_velocity(self, name: str, linear: Vector3, angular: Vector3) -> None:
         """Set the velocity of the first link of a free model.
@@ -482,13 +484,13 @@ class Simulation:
             KeyError: there is no such model, or it does not move freely.
         """
         self.refresh()
-        root, _ = self._root(name)
+        root, _ = self._first_link(name)
         rotation = self.link_pose(root)[3:]
         self.data.joint(f"{root}#free").qvel[:] = (*linear, *rotate(quaternion_inverse(rotation), angular))
         self._sleep.wake_tree(int(self.model.body_treeid[self.body(root)]))
         self._is_current = False
 
-    def _root(self, name: str) -> tuple[str, Transform]:
+    def _first_link(self, name: str) -> tuple[str, Transform]:
         """Return the name of a model's first link, and the link's pose in the frame of the model."""
         model = self.scene.models[name]
         first_link = model.structure.links[0].link
@@ -501,7 +503,7 @@ class Simulation:
             KeyError: there is no such joint, or it does not move.
         """
         if self._is_reshaped:  # Motors do not affect joints, so adding them does not recompile.
-            self.renew()
+            self.recompile_if_changed()
         indices = self._joints.get(name)
         if indices is None:
             joint = self.model.joint(name)
@@ -514,7 +516,7 @@ class Simulation:
         self.refresh()
         joint = self.data.joint(name)
         joint.qpos[0], joint.qvel[0] = position, 0.0
-        self._on_jump(self.model.jnt_bodyid[joint.id])
+        self._handle_jump(self.model.jnt_bodyid[joint.id])
 
     def push_joint(self, name: str, force: float) -> None:
         """Set the torque in N m (force in N) on a joint with one axis, until it is set again.
@@ -555,7 +557,7 @@ class Simulation:
         *,
         by: str = "",
     ) -> None:
-        """Set the force in N and the torque in N m on the centre of mass of a link, in world axes.
+        """Set the force in N and the torque in N m on the center of mass of a link, in world axes.
 
         Force and torque act until they are set again. The forces of several callers add up; `by` identifies the caller.
         """

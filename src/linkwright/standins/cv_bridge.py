@@ -152,12 +152,12 @@ class CvBridge:
 
         try:
             with Image.open(io.BytesIO(bytes(cmprs_img_msg.data))) as pillow_image:
-                is_grey = pillow_image.mode in ("1", "L", "LA", "I", "I;16", "F")
-                pixels = np.asarray(pillow_image.convert("L" if is_grey else "RGB"))
+                is_gray = pillow_image.mode in ("1", "L", "LA", "I", "I;16", "F")
+                pixels = np.asarray(pillow_image.convert("L" if is_gray else "RGB"))
         except (UnidentifiedImageError, OSError, SyntaxError) as error:
             raise CvBridgeError(f"the data of the compressed image cannot be read: {error}") from error
-        image = pixels.copy() if is_grey else np.ascontiguousarray(pixels[..., ::-1])
-        return self._convert(image, "mono8" if is_grey else "bgr8", desired_encoding)
+        image = pixels.copy() if is_gray else np.ascontiguousarray(pixels[..., ::-1])
+        return self._convert(image, "mono8" if is_gray else "bgr8", desired_encoding)
 
     def cv2_to_compressed_imgmsg(self, cvim: Any, dst_format: str = "jpg") -> Any:
         """Encode an array as a sensor_msgs/msg/CompressedImage.

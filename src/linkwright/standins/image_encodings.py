@@ -17,12 +17,12 @@ NUMPY_NAMES = ("uint8", "int8", "uint16", "int16", "int32", "float32", "float64"
 _CHANNEL_SHIFT = 3
 
 _TYPE_NAME = re.compile(r"(8U|8S|16U|16S|32S|32F|64F)C(\d*)")
-_COLOUR_NAME = re.compile(r"(mono|rgb|bgr|rgba|bgra)(8|16)|bayer_(rggb|bggr|gbrg|grbg)(8|16)")
+_COLOR_NAME = re.compile(r"(mono|rgb|bgr|rgba|bgra)(8|16)|bayer_(rggb|bggr|gbrg|grbg)(8|16)")
 _PACKED_YUV = {"yuv422": "uyvy", "uyvy": "uyvy", "yuv422_yuy2": "yuyv", "yuyv": "yuyv"}
 _CHANNEL_COUNTS = {"mono": 1, "rgb": 3, "bgr": 3, "rgba": 4, "bgra": 4}
 
-# The weights of red, green and blue in a grey value, as in OpenCV: ITU-R BT.601 in units of 1/32768.
-_GREY_SHIFT = 15
+# The weights of red, green and blue in a gray value, as in OpenCV: ITU-R BT.601 in units of 1/32768.
+_GRAY_SHIFT = 15
 _RED_WEIGHT, _GREEN_WEIGHT, _BLUE_WEIGHT = 9798, 19235, 3735
 
 
@@ -42,7 +42,7 @@ class Encoding:
         depth: OpenCV's name of the depth.
         channels: the number of channels.
         order: the order of the channels, such as ``mono``, ``bgra``, ``bayer_rggb`` or ``yuyv``; empty for numbers that
-            are not colours, as in ``32FC1``.
+            are not colors, as in ``32FC1``.
     """
 
     name: str
@@ -66,12 +66,12 @@ def encoding(name: str) -> Encoding:
         return Encoding(name, type_match[1], int(type_match[2] or 1), "")
     if name in _PACKED_YUV:
         return Encoding(name, "8U", 2, _PACKED_YUV[name])
-    colour_match = _COLOUR_NAME.fullmatch(name)
-    if colour_match is None:
+    color_match = _COLOR_NAME.fullmatch(name)
+    if color_match is None:
         raise ConversionError(f"Unrecognized image encoding [{name}]")
-    if colour_match[3]:
-        return Encoding(name, f"{colour_match[4]}U", 1, f"bayer_{colour_match[3]}")
-    return Encoding(name, f"{colour_match[2]}U", _CHANNEL_COUNTS[colour_match[1]], colour_match[1])
+    if color_match[3]:
+        return Encoding(name, f"{color_match[4]}U", 1, f"bayer_{color_match[3]}")
+    return Encoding(name, f"{color_match[2]}U", _CHANNEL_COUNTS[color_match[1]], color_match[1])
 
 
 def depth_and_channels(cv_type: int) -> tuple[str, int]:
@@ -118,8 +118,8 @@ def _reorder_channels(image: NDArray[Any], source_encoding: Encoding, order: str
         channels = [image[..., index] for index in ((2, 1, 0) if is_reversed else (0, 1, 2))]
     if order == "mono":
         red, green, blue = (channel.astype(np.int64) for channel in channels)
-        weighted_sum = red * _RED_WEIGHT + green * _GREEN_WEIGHT + blue * _BLUE_WEIGHT + (1 << (_GREY_SHIFT - 1))
-        return (weighted_sum >> _GREY_SHIFT).astype(image.dtype)
+        weighted_sum = red * _RED_WEIGHT + green * _GREEN_WEIGHT + blue * _BLUE_WEIGHT + (1 << (_GRAY_SHIFT - 1))
+        return (weighted_sum >> _GRAY_SHIFT).astype(image.dtype)
     if order.startswith("bgr"):
         channels.reverse()
     if len(order) > 3:

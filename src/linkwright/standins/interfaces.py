@@ -167,23 +167,23 @@ class _InterfaceLoader(Loader):
         except LinkwrightError as error:  # the interface file has an error; report it as an error of the import
             raise ImportError(str(error), name=module.__name__) from None
         name = interface.__name__
-        found = {name: interface}
+        attributes = {name: interface}
         if issubclass(interface, ServiceType):
-            found |= _parts_of_service(name, interface)
+            attributes |= _parts_of_service(name, interface)
         elif issubclass(interface, ActionType):
-            found |= {
+            attributes |= {
                 f"{name}_Goal": interface.Goal,
                 f"{name}_Result": interface.Result,
                 f"{name}_Feedback": interface.Feedback,
             }
-            found[f"{name}_FeedbackMessage"] = interface.Impl.FeedbackMessage
+            attributes[f"{name}_FeedbackMessage"] = interface.Impl.FeedbackMessage
             for part, service in (
                 ("SendGoal", interface.Impl.SendGoalService),
                 ("GetResult", interface.Impl.GetResultService),
             ):
-                found[f"{name}_{part}"] = service
-                found |= _parts_of_service(f"{name}_{part}", service)
-        module.__dict__.update(found)
+                attributes[f"{name}_{part}"] = service
+                attributes |= _parts_of_service(f"{name}_{part}", service)
+        module.__dict__.update(attributes)
 
 
 def _parts_of_service(name: str, service: type[ServiceType]) -> dict[str, Any]:

@@ -89,7 +89,7 @@ class _Loader:
     """A loader that creates a module whose names are imported on first use."""
 
     def __init__(self, entries: table.Module) -> None:
-        self._described = entries
+        self._entries = entries
 
     def homes(self, name: str) -> list[str]:
         """Return the modules that provide a name, for the message of a failed import of the name."""
@@ -101,11 +101,11 @@ class _Loader:
 
     def exec_module(self, module: ModuleType) -> None:
         """Fill the module with functions that import its names on first use."""
-        entries = self._described
+        entries = self._entries
         module.__doc__ = f"A stand-in for ``{entries.name}``."
         names = {**dict.fromkeys(entries.names), **dict.fromkeys(entries.submodules)}
 
-        def look_up(name: str) -> Any:
+        def import_name(name: str) -> Any:
             if name in entries.names:
                 value = value_of(entries, name)
             elif name in entries.submodules:
@@ -118,7 +118,7 @@ class _Loader:
             setattr(module, name, value)
             return value
 
-        own_names = {"__getattr__": look_up, "__dir__": lambda: sorted({*names, *vars(module)})}  # PEP 562
+        own_names = {"__getattr__": import_name, "__dir__": lambda: sorted({*names, *vars(module)})}  # PEP 562
         vars(module).update(own_names, __all__=entries.public)
         for name in entries.submodules:
             if name in entries.names and entries.names[name].origin != table.IMPORT:

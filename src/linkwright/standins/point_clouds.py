@@ -191,7 +191,7 @@ def _as_structured(points: Iterable[Any] | NDArray[Any], dtype: np.dtype[Any]) -
 def _without_gaps(points: list[Any] | NDArray[Any], dtype: np.dtype[Any]) -> NDArray[Any]:
     """Convert points to a structured array with zeros in the gaps between fields.
 
-    numpy does not initialise these gaps itself.
+    numpy does not initialize these gaps itself.
     """
     rows = np.zeros(np.shape(points)[:1] if isinstance(points, list) else points.shape, dtype)
     rows[...] = points

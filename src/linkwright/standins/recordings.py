@@ -97,7 +97,7 @@ class SequentialReader:
 
     def close(self) -> None:
         """Close the files of the recording."""
-        self._opened().close()
+        self._open_bag().close()
 
     def has_next(self) -> bool:
         """Return whether there is another message."""
@@ -123,11 +123,11 @@ class SequentialReader:
 
     def get_all_message_definitions(self) -> list[MessageDefinition]:
         """Return the type definitions that the recording contains for its topics."""
-        return [MessageDefinition(*definition) for definition in self._opened().definitions]
+        return [MessageDefinition(*definition) for definition in self._open_bag().definitions]
 
     def get_metadata(self) -> BagMetadata:
         """Return the metadata of the recording."""
-        bag = self._opened()
+        bag = self._open_bag()
         hashes = {name: digest for name, _, _, digest in bag.definitions}
         topics = [
             TopicInformation(
@@ -191,32 +191,34 @@ class SequentialReader:
         self._start_ns, self._last = timestamp, None
         self._continue()
 
-    def _opened(self) -> BagReader:
+    def _open_bag(self) -> BagReader:
         if self._bag is None:
             raise RuntimeError("Bag is not open. Call open() before reading.")
         return self._bag
 
     def _continue(self) -> None:
         """Open the stream of messages after the last message that was read."""
-        bag = self._opened()
+        bag = self._open_bag()
         topics = [topic.name for topic in bag.topics if self._filter.admits(topic.name)]
         if not topics:
             self._stream = iter(())
         elif self._last is None:
-            self._stream = self._from(topics, self._start_ns)
+            self._stream = self._messages_from(topics, self._start_ns)
         else:
             stamp_ns = self._last[1]
-            at_once = list(bag.messages((), stamp_ns, stamp_ns + 1))
+            simultaneous = list(bag.messages((), stamp_ns, stamp_ns + 1))
             if self._reverse:
-                at_once.reverse()
-            rest = [message for message in at_once[at_once.index(self._last) + 1 :] if message[0] in topics]
-            self._stream = chain(rest, self._from(topics, stamp_ns + (-1 if self._reverse else 1)))
+                simultaneous.reverse()
+            remaining = [
+                message for message in simultaneous[simultaneous.index(self._last) + 1 :] if message[0] in topics
+            ]
+            self._stream = chain(remaining, self._messages_from(topics, stamp_ns + (-1 if self._reverse else 1)))
         self._advance()
 
-    def _from(self, topics: Collection[str], stamp_ns: int | None) -> Iterator[_Message]:
+    def _messages_from(self, topics: Collection[str], stamp_ns: int | None) -> Iterator[_Message]:
         if self._reverse:
-            return _backwards(self._opened(), topics, stamp_ns)
-        return self._opened().messages(topics, stamp_ns)
+            return _backwards(self._open_bag(), topics, stamp_ns)
+        return self._open_bag().messages(topics, stamp_ns)
 
     def _advance(self) -> None:
         try:
@@ -233,10 +235,10 @@ def _backwards(bag: BagReader, topics: Collection[str], last_ns: int | None) -> 
     """
     stop_ns, step_ns = (bag.end_ns if last_ns is None else min(last_ns, bag.end_ns)) + 1, _BLOCK_NS
     while stop_ns > bag.start_ns:
-        found = list(bag.messages(topics, stop_ns - step_ns, stop_ns))
-        yield from reversed(found)
+        messages = list(bag.messages(topics, stop_ns - step_ns, stop_ns))
+        yield from reversed(messages)
         stop_ns -= step_ns
-        step_ns = _BLOCK_NS if found else 2 * step_ns
+        step_ns = _BLOCK_NS if messages else 2 * step_ns
 
 
 def _files(bag: BagReader) -> list[FileInformation]:
@@ -245,8 +247,8 @@ def _files(bag: BagReader) -> list[FileInformation]:
     Without a ``metadata.yaml``, the list is empty.
     """
     metadata = MetadataIo()
-    where = str(bag.path)
-    return metadata.read_metadata(where).files if metadata.metadata_file_exists(where) else []
+    path = str(bag.path)
+    return metadata.read_metadata(path).files if metadata.metadata_file_exists(path) else []
 
 
 def _time(stamp_ns: int) -> Time:
@@ -276,7 +278,7 @@ class SequentialWriter:
 
     def close(self) -> None:
         """Finish the recording."""
-        self._opened().close()
+        self._open_bag().close()
 
     def create_topic(self, topic_with_type: TopicMetadata) -> None:
         """Add a topic, so that messages of the topic can be written.
@@ -286,7 +288,7 @@ class SequentialWriter:
         """
         profiles = topic_with_type.offered_qos_profiles
         try:
-            self._opened().add_topic(
+            self._open_bag().add_topic(
                 topic_with_type.name, topic_with_type.type, () if isinstance(profiles, str) else profiles
             )
         except LinkwrightError as error:
@@ -304,7 +306,7 @@ class SequentialWriter:
         Raises:
             RuntimeError: there is no such topic.
         """
-        bag = self._opened()
+        bag = self._open_bag()
         if topic_name not in bag.topics:
             raise RuntimeError(f"Topic '{topic_name}' has not been created yet! Call 'create_topic' first.")
         bag.write(topic_name, timestamp, message)
@@ -319,7 +321,7 @@ class SequentialWriter:
             RuntimeError: the file cannot be written.
         """
         try:
-            return self._opened().take_snapshot()
+            return self._open_bag().take_snapshot()
         except LinkwrightError as error:
             raise RuntimeError(str(error)) from error
 
@@ -330,14 +332,14 @@ class SequentialWriter:
             RuntimeError: the file cannot be written.
         """
         try:
-            self._opened().split()
+            self._open_bag().split()
         except LinkwrightError as error:
             raise RuntimeError(str(error)) from error
 
     def _compression(self, storage_options: StorageOptions) -> str:
         return "none"
 
-    def _opened(self) -> BagWriter:
+    def _open_bag(self) -> BagWriter:
         if self._bag is None:
             raise RuntimeError("Bag is not open. Call open() before writing.")
         return self._bag

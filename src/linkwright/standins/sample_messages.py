@@ -45,7 +45,7 @@ def _value(type_name: str, kind: int) -> Any:
     if array := _ARRAY.fullmatch(type_name):
         return [_value(array["item"], (kind + index) % _SAMPLE_COUNT) for index in range(int(array["length"]))]
     if sequence := _SEQUENCE.fullmatch(type_name):
-        return [_value(sequence["item"], place % _SAMPLE_COUNT) for place in range(_SEQUENCE_LENGTHS[kind])]
+        return [_value(sequence["item"], index % _SAMPLE_COUNT) for index in range(_SEQUENCE_LENGTHS[kind])]
     if integer := _INTEGER.fullmatch(type_name):
         bits = int(integer["bits"])
         return (0, 23, 2**bits - 1 if integer["sign"] else -(2 ** (bits - 1)))[kind]

@@ -1,4 +1,4 @@
-"""Terminal colours for markup such as ``@{redf}`` (API of ``osrf_pycommon.terminal_color``)."""
+"""Terminal colors for markup such as ``@{redf}`` (API of ``osrf_pycommon.terminal_color``)."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ _STYLE_CODES = {
     "uloff": 24,
     "invoff": 27,
 }
-_COLOUR_NAMES = ("black", "red", "green", "yellow", "blue", "purple", "cyan", "white")
+_COLOR_NAMES = ("black", "red", "green", "yellow", "blue", "purple", "cyan", "white")
 _SHORT_FORMS = {"@!": "@{boldon}", "@/": "@{italicson}", "@_": "@{ulon}", "@|": "@{reset}"}
 
 
 def _ansi_codes() -> dict[str, str]:
     numbers = {"reset": 0, **_STYLE_CODES}
-    for index, colour in enumerate(_COLOUR_NAMES):
-        numbers[f"{colour}f"], numbers[f"{colour}b"] = 30 + index, 40 + index
+    for index, color in enumerate(_COLOR_NAMES):
+        numbers[f"{color}f"], numbers[f"{color}b"] = 30 + index, 40 + index
     sequences = {name: f"\033[{number}m" for name, number in numbers.items()}
     escapes = {"escape": "\033", "atexclamation": "@!", "atfwdslash": "@/", "atunderscore": "@_", "atbar": "@|"}
     return {**sequences, **escapes}
@@ -33,7 +33,7 @@ def _ansi_codes() -> dict[str, str]:
 _SEQUENCES_BY_NAME = _ansi_codes()
 
 
-class _ColourSetting:
+class _ColorSetting:
     """Whether markup is replaced with escape sequences, or removed."""
 
     is_on = True
@@ -46,7 +46,7 @@ class _MarkupTemplate(Template):
 def ansi(key: str) -> str:
     """Return the escape sequence of a style such as ``redf`` or ``reset``.
 
-    The result is empty while colours are disabled.
+    The result is empty while colors are disabled.
 
     Raises:
         KeyError: there is no such style.
@@ -57,19 +57,19 @@ def ansi(key: str) -> str:
 def get_ansi_dict() -> dict[str, str]:
     """Return the escape sequences of all styles by name.
 
-    They are empty while colours are disabled.
+    They are empty while colors are disabled.
     """
-    return dict(_SEQUENCES_BY_NAME) if _ColourSetting.is_on else dict.fromkeys(_SEQUENCES_BY_NAME, "")
+    return dict(_SEQUENCES_BY_NAME) if _ColorSetting.is_on else dict.fromkeys(_SEQUENCES_BY_NAME, "")
 
 
 def enable_ansi_color_substitution_globally() -> None:
-    """Enable colours, so that markup is replaced with escape sequences."""
-    _ColourSetting.is_on = True
+    """Enable colors, so that markup is replaced with escape sequences."""
+    _ColorSetting.is_on = True
 
 
 def disable_ansi_color_substitution_globally() -> None:
-    """Disable colours, so that markup is removed."""
-    _ColourSetting.is_on = False
+    """Disable colors, so that markup is removed."""
+    _ColorSetting.is_on = False
 
 
 def format_color(msg: str) -> str:
@@ -78,7 +78,7 @@ def format_color(msg: str) -> str:
     Short forms such as ``@!`` are also replaced.
 
     Raises:
-        KeyError: there is no such colour or style.
+        KeyError: there is no such color or style.
         ValueError: an ``@`` does not start any markup; `sanitize` escapes it.
     """
     for short_form, long_form in _SHORT_FORMS.items():

@@ -109,7 +109,7 @@ def _varied_parameters(table: Table) -> list[str]:
 def _scatter_card(table: Table, parameter: str, result: str) -> str:
     indices = _finite_rows(table, result)
     parameter_values = [table.columns[parameter][index] for index in indices]
-    rows = [table.columns["row"][place] for place in indices]
+    rows = [table.columns["row"][index] for index in indices]
     return _card(
         f"{result} – {parameter}", scatter(parameter_values, _finite_values(table, result), rows, parameter, result)
     )
@@ -153,10 +153,10 @@ def _rows_table(table: Table) -> str:
     names = list(table.columns)
     row_count = min(len(table), _MAX_ROWS)
     lines = [[_format_cell(table.columns[name][index]) for name in names] for index in range(row_count)]
-    more = ""
+    remaining_note = ""
     if row_count < len(table):
-        more = f"<p>{_escape(phrase('{count} more are in the table', count=len(table) - row_count))}</p>"
-    return _html_table(names, lines, text=(len(names) - 1,), has_targets=True) + more
+        remaining_note = f"<p>{_escape(phrase('{count} more are in the table', count=len(table) - row_count))}</p>"
+    return _html_table(names, lines, text=(len(names) - 1,), has_targets=True) + remaining_note
 
 
 def _format_cell(value: Result) -> str:

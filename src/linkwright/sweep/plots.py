@@ -133,7 +133,7 @@ def _mean_line(positions: Sequence[float], values: Sequence[float], x_axis: Axis
     if len(groups) < 2 or len(groups) > len(values) / 2:
         return ""
     line = " ".join(
-        f"{x_axis(place):.1f},{y_axis(sum(group) / len(group)):.1f}" for place, group in sorted(groups.items())
+        f"{x_axis(position):.1f},{y_axis(sum(group) / len(group)):.1f}" for position, group in sorted(groups.items())
     )
     return f'<polyline class="mean" points="{line}"/>'
 

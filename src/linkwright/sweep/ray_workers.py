@@ -14,13 +14,13 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
 from linkwright.diagnostics.extras import missing_extra
 from linkwright.sweep.plan import Run
 from linkwright.sweep.running import Outcome, load_into_process, run_once
-from linkwright.sweep.scenario import Scenario, described
+from linkwright.sweep.scenario import Scenario, describe_error
 from linkwright.sweep.workers import MAX_ATTEMPTS, Report
 
 _RUNS_PER_PROCESSOR = 2
 """The number of runs that are submitted ahead for each processor of the cluster."""
 
-_PATIENCE = 10.0
+_TIMEOUT_SECONDS = 10.0
 """The timeout of a connection to the cluster, in seconds."""
 
 _scenario: Scenario | None = None
@@ -101,7 +101,7 @@ def _check_address(address: str) -> None:
     """
     host, _, port = address.removeprefix("ray://").rpartition(":")
     if host and port.isdigit():
-        socket.create_connection((host, int(port)), _PATIENCE).close()
+        socket.create_connection((host, int(port)), _TIMEOUT_SECONDS).close()
 
 
 def _run_in_cluster(name: str, run: Run) -> Outcome:
@@ -115,5 +115,5 @@ def _run_in_cluster(name: str, run: Run) -> Outcome:
         try:
             _scenario = load_into_process(path)
         except LinkwrightError as error:
-            return Outcome(run.row, error=described(error))
+            return Outcome(run.row, error=describe_error(error))
     return run_once(_scenario, run)

@@ -12,7 +12,7 @@ import numpy as np
 
 from linkwright.standins import activate
 from linkwright.sweep.plan import Run
-from linkwright.sweep.scenario import COLUMNS, SEED, Scenario, described, line_in_traceback, load_scenario
+from linkwright.sweep.scenario import COLUMNS, SEED, Scenario, describe_error, line_in_traceback, load_scenario
 
 Result = bool | int | float | str | None
 """The types of the values that a scenario may return."""
@@ -64,7 +64,7 @@ def run_once(scenario: Scenario, run: Run) -> Outcome:
     except (Exception, SystemExit) as error:  # noqa: BLE001 - a scenario may raise any exception
         line = line_in_traceback(scenario.path, error)
         location = f" ({scenario.path.name}:{line})" if line else ""
-        return Outcome(run.row, error=f"{described(error)}{location}")
+        return Outcome(run.row, error=f"{describe_error(error)}{location}")
 
 
 def run_scenario(scenario: Scenario, run: Run) -> dict[str, Result]:

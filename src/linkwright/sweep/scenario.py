@@ -262,7 +262,7 @@ def _load_module(path: Path) -> ModuleType:
 
 def _load_error(path: Path, error: BaseException) -> LinkwrightError:
     line = line_in_traceback(path, error)
-    message = phrase("the scenario cannot be loaded: {reason}", reason=foreign(described(error)))
+    message = phrase("the scenario cannot be loaded: {reason}", reason=foreign(describe_error(error)))
     return LinkwrightError(Diagnostic("SWEEP102", message, _span(path, line) if line else None))
 
 
@@ -276,7 +276,7 @@ def line_in_traceback(path: Path, error: BaseException) -> int | None:
     return lines[-1] if lines else None
 
 
-def described(error: BaseException) -> str:
+def describe_error(error: BaseException) -> str:
     """Return an error as one line of text."""
     if isinstance(error, LinkwrightError):
         diagnostic = error.diagnostics[0]

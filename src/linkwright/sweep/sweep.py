@@ -59,14 +59,14 @@ class Sweep:
         with Journal(self.table, fingerprint(self.scenario, runs), resume=resume) as journal:
             failed = sum(bool(outcome.error) for outcome in journal.outcomes.values())
 
-            def done(outcome: Outcome) -> None:
+            def on_outcome(outcome: Outcome) -> None:
                 nonlocal failed
                 journal.add(outcome)
                 failed += bool(outcome.error)
                 progress(len(journal.outcomes), len(runs), failed)
 
             with suppress(KeyboardInterrupt):
-                runner([run for run in runs if run.row not in journal.outcomes], done)
+                runner([run for run in runs if run.row not in journal.outcomes], on_outcome)
         table = Table.of(runs, journal.outcomes)
         page = summary(table, self.scenario.path.name, shlex.join(self.words), len(runs))
         for path, content in ((self.table, table_bytes(table, self.table)), (self.page, page)):

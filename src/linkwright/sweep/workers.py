@@ -16,12 +16,12 @@ from pathlib import Path
 from linkwright.diagnostics import LinkwrightError
 from linkwright.sweep.plan import Run
 from linkwright.sweep.running import Outcome, load_into_process, run_once
-from linkwright.sweep.scenario import described
+from linkwright.sweep.scenario import describe_error
 
 MAX_ATTEMPTS = 2
 """The maximum number of attempts for a run whose process dies."""
 
-_PATIENCE = 10.0
+_TIMEOUT_SECONDS = 10.0
 """The seconds that a process has to exit before it is killed."""
 
 Report = Callable[[Outcome], None]
@@ -50,12 +50,12 @@ def run_locally(path: Path, runs: Iterable[Run], workers: int, report: Report) -
                 busy_workers[worker.connection] = worker
             for connection in wait(list(busy_workers)):
                 worker = busy_workers.pop(connection)  # type: ignore[call-overload]  # only connections are waited for
-                outcome = worker.outcome()
+                outcome = worker.receive_outcome()
                 if outcome is not None:
                     idle_workers.append(worker)
                     report(outcome)
                     continue
-                run, exit_description = worker.run, worker.end()
+                run, exit_description = worker.run, worker.wait_for_end()
                 attempts[run.row] = attempts.get(run.row, 0) + 1
                 if attempts[run.row] < MAX_ATTEMPTS:
                     pending.appendleft(run)
@@ -65,7 +65,7 @@ def run_locally(path: Path, runs: Iterable[Run], workers: int, report: Report) -
         for worker in (*busy_workers.values(), *idle_workers):
             worker.stop()
         for worker in (*busy_workers.values(), *idle_workers):
-            worker.end()
+            worker.wait_for_end()
 
 
 class _Worker:
@@ -86,22 +86,22 @@ class _Worker:
         with suppress(OSError):  # the process has died; the caller notices this when waiting for the outcome
             self.connection.send(run)
 
-    def outcome(self) -> Outcome | None:
+    def receive_outcome(self) -> Outcome | None:
         """Return the outcome of the run, or None if the process has died."""
         try:
-            receive_outcome: Outcome = self.connection.recv()
+            received_outcome: Outcome = self.connection.recv()
         except (EOFError, OSError):
             return None
-        return receive_outcome
+        return received_outcome
 
     def stop(self) -> None:
         """Terminate the process, even during a run."""
         self._process.terminate()
 
-    def end(self) -> str:
+    def wait_for_end(self) -> str:
         """Wait until the process has ended, and describe its end as a clause without a subject."""
         self.connection.close()
-        self._process.join(_PATIENCE)
+        self._process.join(_TIMEOUT_SECONDS)
         if self._process.is_alive():
             self._process.kill()
             self._process.join()
@@ -121,7 +121,7 @@ def _run_worker(path: Path, connection: Connection) -> None:
         except LinkwrightError as error:
             while True:
                 run: Run = connection.recv()
-                connection.send(Outcome(run.row, error=described(error)))
+                connection.send(Outcome(run.row, error=describe_error(error)))
         while True:
             connection.send(run_once(scenario, connection.recv()))
 

@@ -118,10 +118,10 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
         self._clock_topic = node.create_publisher(get_message(_CLOCK), "/clock", CLOCK_QOS)
         self._server = SimulationServer(simulation, node, self._options)
         self._server.on_failure.append(self.errors.append)
-        self._progress = _Progress(simulation)
+        self._run_control = _RunControl(simulation)
         if self._has_services:
             server_node = SteppedNode(node, self._server.exchange, owned=False)
-            Services(self._server, self._progress, server_node, self._loaded_world, DescriptionLibrary())
+            Services(self._server, self._run_control, server_node, self._loaded_world, DescriptionLibrary())
         self._server.start()
         if self._model is not None:
             self._server.spawn(self._model, self._model.name, self._pose)
@@ -211,7 +211,7 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
         while self._remaining_ns > 0:
             server.exchange.run_commands()
             step_ns = min(self._period_ns, self._remaining_ns)
-            if not self._progress.paused:
+            if not self._run_control.is_paused:
                 time_before_ns = simulation.time
                 simulation.advance(step_ns)
                 step_ns = simulation.time - time_before_ns
@@ -385,18 +385,18 @@ def _with_world_friction(world: World, friction: float) -> World:
     return replace(world, models=models)
 
 
-class _Progress:
+class _RunControl:
     """The handler of the simulator services that pause the simulation or run single steps."""
 
     def __init__(self, simulation: Simulation) -> None:
-        self.paused = False
+        self.is_paused = False
         self._simulation = simulation
 
     def pause(self) -> None:
-        self.paused = True
+        self.is_paused = True
 
     def resume(self) -> None:
-        self.paused = False
+        self.is_paused = False
 
     def step(self, count: int) -> None:
         self._simulation.advance(count * self._simulation.step)

@@ -75,7 +75,7 @@ class AsyncSteppedGraph:
     async def __aenter__(self) -> Self:
         self._graph = Graph(clock=self.clock, on_log=self.log.append)
         assert self._graph.dispatcher is not None, "a coroutine runs on a loop"
-        self._graph.dispatcher.on_error = self._failed
+        self._graph.dispatcher.on_error = self._record_error
         return self
 
     async def __aexit__(
@@ -224,7 +224,7 @@ class AsyncSteppedGraph:
             client = self._clients[name] = self.node.create_client(types[name][0], name)
         return client
 
-    def _failed(self, entity: Entity, error: BaseException) -> None:
+    def _record_error(self, entity: Entity, error: BaseException) -> None:
         entity.report(error)
         self.errors.append(error)
 

@@ -110,7 +110,7 @@ class SteppedGraph:
         return self._steps.now
 
     def init_rclpy(self, args: list[str] | None = None) -> Context:
-        """Initialise rclpy with the test's graph until the end of the test.
+        """Initialize rclpy with the test's graph until the end of the test.
 
         Args:
             args: the command line, with ROS arguments; None for an empty command line.

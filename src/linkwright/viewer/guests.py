@@ -97,7 +97,7 @@ class GuestRecordings:
                 beside=self._host,
             )
             await viewer.start()
-            viewer.attach_recording(Playback(node.handle, bag, output, viewer.playback_failed), bag)
+            viewer.attach_recording(Playback(node.handle, bag, output, viewer.on_playback_error), bag)
         except BaseException:
             bag.close()
             raise

@@ -69,9 +69,9 @@ async def _snapshot(
     transforms = RobotTransforms(robot, "")
     layout = make_layout(robot, JointSettings())
     zero_positions = {joint.name: joint.zero for joint in layout.free}
-    moving_batch = transforms.recipe(list(zero_positions)).batch(list(zero_positions.values()), now_ns)
+    moving_batch = transforms.conversion_for(list(zero_positions)).batch(list(zero_positions.values()), now_ns)
     node.create_publisher(TFMessage, "/tf_static", STATIC_TF_PUBLISHER_QOS).publish(
-        TFMessage(batch=transforms.fixed(now_ns))
+        TFMessage(batch=transforms.fixed_transforms(now_ns))
     )
     node.create_publisher(TFMessage, "/tf", TF_QOS).publish(TFMessage(batch=moving_batch))
     if old is not None:

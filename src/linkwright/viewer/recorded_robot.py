@@ -108,7 +108,7 @@ class RecordingWithTransforms:
             self._positions = dict(self._zero_positions)
         self._last_time_ns = stamp_ns
         if topic == self._description:
-            self._fixed.publish(TFMessage(batch=self._transforms.fixed(stamp_ns)))
+            self._fixed.publish(TFMessage(batch=self._transforms.fixed_transforms(stamp_ns)))
             if self._joint_states_topic is None:
                 self._publish_transforms(stamp_ns)
         elif topic == self._joint_states_topic:
@@ -117,7 +117,7 @@ class RecordingWithTransforms:
             self._publish_transforms(joint_states.header.stamp.nanoseconds or stamp_ns)
 
     def _publish_transforms(self, stamp_ns: int) -> None:
-        batch = self._transforms.recipe(tuple(self._positions)).batch(list(self._positions.values()), stamp_ns)
+        batch = self._transforms.conversion_for(tuple(self._positions)).batch(list(self._positions.values()), stamp_ns)
         if len(batch):
             self._tf_publisher.publish(TFMessage(batch=batch))
 

@@ -178,7 +178,7 @@ class Viewer:
 
     def keep_unsaved(self) -> list[Diagnostic]:
         """Store unsaved edits of pages before the program ends, and return the findings about them."""
-        findings = store_unsaved(manager.config for manager in self.managers.all() if manager.history.unsaved)
+        findings = store_unsaved(manager.config for manager in self.managers.all() if manager.history.has_unsaved_edits)
         return [*findings, *(notice for feature in self._features for notice in feature.keep_unsaved())]
 
     @property
@@ -220,11 +220,11 @@ class Viewer:
         self.live = None
         self._timeline.attach(playback, bag)
         for feature in self._features:
-            feature.recording_shown()
+            feature.on_recording_shown()
 
-    def playback_failed(self, error: LinkwrightError) -> None:
+    def on_playback_error(self, error: LinkwrightError) -> None:
         """Show pages the error that makes the rest of the recording unreadable."""
-        self._timeline.failed(error)
+        self._timeline.show_error(error)
 
     def attach_comparison(self, pair: Pair, node: Node) -> Callable[[str], None]:
         """Show the differences between two descriptions in pages, see `ComparisonFeature.attach`."""
@@ -263,7 +263,7 @@ class Viewer:
         The new list may be empty.
         """
         for feature in self._features:
-            feature.diagnostics_changed(diagnostics)
+            feature.on_diagnostics_changed(diagnostics)
 
     # --- pages -------------------------------------------------------------------------------------------------
 
@@ -279,46 +279,46 @@ class Viewer:
         The frame table is the last message.
         """
         messages: list[ServerMessage] = [Hello(PROTOCOL_VERSION, __version__, self._title, self._run)]
-        tree_messages, table, frames = manager.opening()
+        tree_messages, table, frames = manager.opening_state()
         messages += self._feature_openings(before_displays=True)
         messages += tree_messages
         messages += self._feature_openings(before_displays=False)
-        return [*messages, *self.configured(manager), table], frames
+        return [*messages, *self.configuration_messages(manager), table], frames
 
     def _feature_openings(self, *, before_displays: bool) -> list[ServerMessage]:
         messages: list[ServerMessage] = []
-        for feature in self._features:  # `opening` may append features, which this loop also reaches
+        for feature in self._features:  # `opening_messages` may append features, which this loop also reaches
             if feature.BEFORE_DISPLAYS is before_displays:
-                messages += feature.opening()
+                messages += feature.opening_messages()
         return messages
 
-    def configured(self, manager: VisualizationManager) -> list[ServerMessage]:
+    def configuration_messages(self, manager: VisualizationManager) -> list[ServerMessage]:
         """Return the messages of all features about a configuration."""
-        return [message for feature in self._features for message in feature.configured(manager)]
+        return [message for feature in self._features for message in feature.configuration_messages(manager)]
 
     def _page_closed(self, page: Page) -> None:
         for feature in self._features:
-            feature.page_closed(page)
+            feature.remove_page(page)
         self.managers.on_page_closed(page)
 
     # --- events of managers ------------------------------------------------------------------------------------
 
-    def edited(self, manager: VisualizationManager) -> None:
+    def on_edit(self, manager: VisualizationManager) -> None:
         """Notify features that undo, redo or the unsaved state has changed."""
         for feature in self._features:
-            feature.edited(manager)
+            feature.on_edit(manager)
 
-    def robot_changed(self) -> None:
+    def on_robot_changed(self) -> None:
         """Notify features that a display has another robot."""
         for feature in self._features:
-            feature.robot_changed()
+            feature.on_robot_changed()
 
-    def manager_closed(self, manager: VisualizationManager) -> None:
+    def remove_manager(self, manager: VisualizationManager) -> None:
         """Notify features that a manager was closed."""
         for feature in self._features:
-            feature.manager_closed(manager)
+            feature.remove_manager(manager)
 
-    def fixed_frame_changed(self, manager: VisualizationManager) -> None:
+    def on_fixed_frame_changed(self, manager: VisualizationManager) -> None:
         """Set the parameter of the node to the Fixed Frame of the shared configuration."""
         frame = manager.fixed_frame
         if manager is self.manager and self._node.get_parameter(_FIXED_FRAME_PARAMETER).value != frame:

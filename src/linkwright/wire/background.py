@@ -21,7 +21,7 @@ from linkwright.graph.endpoints.base import EndpointInfo
 from linkwright.graph.log.logger import Logger, run_logged
 from linkwright.graph.names.rules import NodeIdentity
 from linkwright.wire.engine import Engine, Work
-from linkwright.wire.outside import Outside
+from linkwright.wire.remote_entities import RemoteEntities
 from linkwright.wire.switch import is_switched_off
 
 if TYPE_CHECKING:
@@ -56,7 +56,7 @@ class BackgroundTransport(ABC):
 
     Args:
         domain_id: the ROS domain.
-        outside: the tables of remote nodes and endpoints.
+        remote_entities: the tables of remote nodes and endpoints.
         departures: decides whether remote publishers that disappeared were lost.
         logger: logs problems.
         discovers_only: whether the transport only discovers remote nodes and endpoints. The nodes and endpoints of this
@@ -68,7 +68,7 @@ class BackgroundTransport(ABC):
     def __init__(
         self,
         domain_id: int,
-        outside: Outside,
+        remote_entities: RemoteEntities,
         departures: DepartureMonitor,
         logger: Logger,
         *,
@@ -76,8 +76,8 @@ class BackgroundTransport(ABC):
         must_join: bool = False,
     ) -> None:
         self.domain_id = domain_id
-        self._outside = outside
-        self._departed = departures
+        self._remote_entities = remote_entities
+        self._departure_monitor = departures
         self._discovers_only = discovers_only
         self._must_join = must_join
         self._logger = logger
@@ -112,7 +112,7 @@ class BackgroundTransport(ABC):
         """
 
     @property
-    def waits(self) -> bool:
+    def waits_for_others(self) -> bool:
         """Whether joining waits for other processes, because the settings require them."""
         return False
 
@@ -158,7 +158,7 @@ class BackgroundTransport(ABC):
             return False
         self.look_around()
         while time.monotonic() < deadline and not self._closed:
-            if self._has_settled(time.monotonic() - max(self._outside.changed_at, self._joined_at)):
+            if self._has_settled(time.monotonic() - max(self._remote_entities.changed_at, self._joined_at)):
                 return True
             time.sleep(_POLL_INTERVAL_S)
         return False
@@ -176,7 +176,7 @@ class BackgroundTransport(ABC):
     def open_publisher(self, publisher: Publisher[Any]) -> None:
         """Mirror a publisher."""
         if self._engine is not None and not self._discovers_only:
-            publisher.hold_for_outside(self.wait_until_ready)
+            publisher.hold_for_remote(self.wait_until_ready)
         self._mirror(lambda engine: engine.open_publisher(publisher))
 
     def close_publisher(self, publisher: Publisher[Any]) -> None:
@@ -223,18 +223,20 @@ class BackgroundTransport(ABC):
 
     def remote_nodes(self) -> Sequence[NodeIdentity]:
         """Return the nodes of other processes that have been discovered so far."""
-        return self._outside.nodes()
+        return self._remote_entities.nodes()
 
     def remote_endpoints(self) -> Sequence[EndpointInfo]:
         """Return the endpoints of other processes that have been discovered so far."""
-        return self._outside.endpoints()
+        return self._remote_entities.endpoints()
 
     def watch(self, callback: Callable[[], None]) -> None:
         """Register a callback for changes to remote nodes and endpoints.
 
         The callback may be called from any thread.
         """
-        self._outside.watch(partial(run_logged, self._logger, "a callback for changes to remote nodes", callback))
+        self._remote_entities.watch(
+            partial(run_logged, self._logger, "a callback for changes to remote nodes", callback)
+        )
 
     def watch_lost(self, callback: Callable[[EndpointInfo], None]) -> None:
         """Register a callback for lost remote publishers.
@@ -245,7 +247,7 @@ class BackgroundTransport(ABC):
         def notify(publisher: EndpointInfo) -> None:
             run_logged(self._logger, "a callback for lost publishers", partial(callback, publisher))
 
-        self._departed.watch(notify)
+        self._departure_monitor.watch(notify)
         self._do(lambda _: None)  # wakes the engine, which monitors processes from now on
 
     def close(self) -> None:
@@ -273,7 +275,7 @@ class BackgroundTransport(ABC):
         deadline = time.monotonic() + _JOINED_WITHIN
         while self._join_thread.is_alive() and time.monotonic() < deadline:
             self._join_thread.join(_CLOSE_CHECK_INTERVAL)
-            if self.waits:  # The thread may be in a call that waits for other processes and cannot be interrupted.
+            if self.waits_for_others:  # The thread may be in a call that cannot be interrupted.
                 break
 
     def abandon(self) -> None:

@@ -7,7 +7,7 @@ import pytest
 from linkwright.control.controllers.registry import controller_class
 from linkwright.graph.log.logger import LogLevel
 from linkwright.messages import get_message
-from tests.outside import Outside, Stranger
+from tests.remote_publishers import RemotePublisher, RemoteTransport
 
 Array, Stamped = get_message("std_msgs/msg/Float64MultiArray"), get_message("geometry_msgs/msg/TwistStamped")
 FORWARD = "forward_command_controller/ForwardCommandController"
@@ -27,7 +27,7 @@ async def test_velocities_end_and_positions_and_efforts_are_held(stand, kind, in
     stand.joint("hip", commands=(interface,))
     more = {"interface_name": interface} if kind == FORWARD else {}
     controller = stand.start(controller_class(kind), "hips", joints=["hip"], **more)
-    driver = Stranger(Outside(stand.graph), "/hips/commands", msg_type="std_msgs/msg/Float64MultiArray")
+    driver = RemotePublisher(RemoteTransport(stand.graph), "/hips/commands", msg_type="std_msgs/msg/Float64MultiArray")
     driver.send(Array(data=[0.5]))
     await stand.step(controller)
     assert stand.commands[f"hip/{interface}"].value == 0.5
@@ -43,7 +43,7 @@ async def test_a_drive_stops_before_its_time_out(stand):
         stand.joint(side, commands=("velocity",), position=0.0)
     drive = controller_class("diff_drive_controller/DiffDriveController")
     controller = stand.start(drive, "base", cmd_vel_timeout=10.0, **WHEELS)
-    driver = Stranger(Outside(stand.graph), "/base/cmd_vel", msg_type="geometry_msgs/msg/TwistStamped")
+    driver = RemotePublisher(RemoteTransport(stand.graph), "/base/cmd_vel", msg_type="geometry_msgs/msg/TwistStamped")
     message = Stamped()
     message.twist.linear.x = 1.0
     driver.send(message)
@@ -61,9 +61,10 @@ async def test_a_drive_says_once_that_two_drive_it_at_the_same_time(stand, clock
         stand.joint(side, commands=("velocity",), position=0.0)
     drive = controller_class("diff_drive_controller/DiffDriveController")
     controller = stand.start(drive, "base", **WHEELS)
-    outside = Outside(stand.graph)
+    transport = RemoteTransport(stand.graph)
     drivers = [
-        Stranger(outside, "/base/cmd_vel", name, "geometry_msgs/msg/TwistStamped") for name in ("keys", "planner")
+        RemotePublisher(transport, "/base/cmd_vel", name, "geometry_msgs/msg/TwistStamped")
+        for name in ("keys", "planner")
     ]
     message = Stamped()
     for speed in range(1, 101):
@@ -80,7 +81,7 @@ async def test_nothing_is_said_of_a_command_that_has_ended(stand):
         stand.joint(side, commands=("velocity",), position=0.0)
     drive = controller_class("diff_drive_controller/DiffDriveController")
     controller = stand.start(drive, "base", cmd_vel_timeout=0.05, **WHEELS)
-    driver = Stranger(Outside(stand.graph), "/base/cmd_vel", msg_type="geometry_msgs/msg/TwistStamped")
+    driver = RemotePublisher(RemoteTransport(stand.graph), "/base/cmd_vel", msg_type="geometry_msgs/msg/TwistStamped")
     message = Stamped()
     message.twist.linear.x = 1.0
     driver.send(message)

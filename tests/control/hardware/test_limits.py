@@ -116,7 +116,7 @@ async def test_the_manager_enforces_them_where_it_is_asked_to(graph, log, monkey
     assert made.load("positions")
     assert made.configure("positions")
     assert made.switch(["positions"], [], STRICT)[0]
-    made.controllers["positions"].controller._wanted = [9.0, 9.0]
+    made.controllers["positions"].controller._command = [9.0, 9.0]
     for cycle in range(1, 301):
         made.cycle(cycle * 10_000_000, 0.01)
     hip, knee = made.resources.commands(["hip/position", "knee/position"])

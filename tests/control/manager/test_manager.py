@@ -89,7 +89,7 @@ async def test_a_controller_is_loaded_configured_switched_and_unloaded(made, log
     started(it, "forward")
     assert it.switch(["forward"], [], STRICT) == (True, "Successfully switched controllers!")
     assert it.resources.claims == {"hip/position": "forward"}
-    it.controllers["forward"].controller._wanted = [0.7]
+    it.controllers["forward"].controller._command = [0.7]
     it.cycle(10, 0.01)
     it.cycle(20, 0.01)
     assert it.resources.states(["hip/position"])[0].value == 0.7

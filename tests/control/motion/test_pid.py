@@ -67,8 +67,8 @@ def test_the_time_constant_of_back_calculation_follows_from_the_gains():
 
 def test_tolerances_hold_up_to_their_value_and_zero_allows_anything():
     tolerance = StateTolerance(0.1, 0.0, 1.0)
-    assert tolerance.holds(-0.1, 99.0, 1.0)
-    assert not tolerance.holds(0.11, 0.0, 0.0)
+    assert tolerance.is_within(-0.1, 99.0, 1.0)
+    assert not tolerance.is_within(0.11, 0.0, 0.0)
     assert list(tolerance.violations(-0.2, 9.0, 2.0)) == [("Position", -0.2, 0.1), ("Acceleration", 2.0, 1.0)]
 
 

@@ -8,7 +8,7 @@ from linkwright.control.nodes.teleop.twist_mux import TwistMux
 from linkwright.diagnostics import LinkwrightError
 from linkwright.messages import get_message
 from linkwright.nodes import NodeOptions
-from tests.outside import Outside, Stranger
+from tests.remote_publishers import RemotePublisher, RemoteTransport
 
 TWIST, BOOL = get_message("geometry_msgs/msg/Twist"), get_message("std_msgs/msg/Bool")
 PARAMETERS = {
@@ -137,9 +137,9 @@ async def test_without_topics_it_says_so_and_runs(stage, logged):
 
 async def test_two_on_one_of_its_topics_are_told_and_not_what_it_chooses_between(traffic):
     mux(traffic.stage)
-    outside = Outside(traffic.stage.graph)
+    transport = RemoteTransport(traffic.stage.graph)
     named = (("/tab_vel", "tab"), ("/joy_vel", "joy"), ("/joy_vel", "pad"))
-    tablet, joystick, other = (Stranger(outside, topic, node) for topic, node in named)
+    tablet, joystick, other = (RemotePublisher(transport, topic, node) for topic, node in named)
 
     async def drive(*sources):
         for _ in range(20):
@@ -161,8 +161,8 @@ async def test_two_on_one_of_its_topics_are_told_and_not_what_it_chooses_between
 
 async def test_a_stop_goes_out_when_who_sent_the_last_velocity_is_lost(traffic):
     mux(traffic.stage)
-    outside = Outside(traffic.stage.graph)
-    tablet, joystick = (Stranger(outside, topic, topic[1:]) for topic in ("/tab_vel", "/joy_vel"))
+    transport = RemoteTransport(traffic.stage.graph)
+    tablet, joystick = (RemotePublisher(transport, topic, topic[1:]) for topic in ("/tab_vel", "/joy_vel"))
     for source, speed in ((tablet, 0.1), (joystick, 0.3)):
         message = TWIST()
         message.linear.x = speed

@@ -53,7 +53,7 @@ async def test_matches(graph, node):
     subscription = node.create_subscription(
         String, "topic", nothing, 1, event_callbacks=SubscriptionEventCallbacks(matched=subscribed.append)
     )
-    subscription.set_outside_count(2)
+    subscription.set_remote_count(2)
     await graph.settle()
     node.destroy_publisher(publisher)
     await graph.settle()
@@ -93,7 +93,7 @@ async def test_messages_of_other_processes_keep_a_deadline(node, clock):
     qos = QoSProfile(depth=1, deadline=Duration(seconds=1.0))
     events = SubscriptionEventCallbacks(deadline=missed.append)
     subscription = node.create_subscription(String, "topic", nothing, qos, event_callbacks=events)
-    subscription.set_outside_count(1)
+    subscription.set_remote_count(1)
     await clock.advance(5.0)
     for _ in range(10):
         subscription.receive(serialize(String()), MessageInfo(1, 1, bytes(16)))
@@ -164,8 +164,8 @@ async def test_the_liveliness_of_publishers_of_other_processes(graph, node):
         String, "topic", nothing, 1, event_callbacks=SubscriptionEventCallbacks(liveliness=changed.append)
     )
     for alive, not_alive in [(2, 0), (2, 0), (1, 1), (0, 1), (0, 0)]:
-        subscription.set_outside_count(alive + not_alive)
-        subscription.set_outside_liveliness(alive, not_alive)
+        subscription.set_remote_count(alive + not_alive)
+        subscription.set_remote_liveliness(alive, not_alive)
     await graph.settle()
     result = [(each.alive_count, each.not_alive_count, each.alive_count_change) for each in changed]
     assert result == [(2, 0, 2), (1, 1, -1), (0, 1, -1), (0, 0, 0)]
@@ -179,7 +179,7 @@ async def test_lost_messages(graph, node):
     publisher = node.create_publisher(String, "topic", 10)
     for _ in range(5):
         publisher.publish(String())
-    subscription.count_lost_outside(4)
+    subscription.count_lost_remote(4)
     await graph.settle()
     assert [(event.total_count, event.total_count_change) for event in lost] == [(1, 1), (2, 1), (3, 1), (7, 4)]
 

@@ -161,12 +161,12 @@ async def test_late_comers_do_not_get_what_has_outlived_its_lifespan(graph, cloc
     for text in "abc":
         publisher.publish(String(text))
         await clock.advance(0.6)
-    received, outside = [], []
+    received, sent = [], []
     node.create_subscription(String, "topic", received.append, QoSProfile(5, durability=LATCHED.durability))
-    publisher.set_outside(outside.append)
+    publisher.set_remote_sender(sent.append)
     await graph.settle()
     assert texts(received) == ["c"]
-    assert texts(outside) == ["c"]
+    assert texts(sent) == ["c"]
 
 
 async def test_a_volatile_publisher_keeps_nothing(graph):

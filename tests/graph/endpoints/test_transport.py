@@ -128,13 +128,13 @@ async def test_what_is_published_goes_out_while_somebody_matches(graph):
     publisher = graph.create_node("node").create_publisher(String, "topic", 1)
     sent = []
     publisher.publish(String("before"))
-    publisher.set_outside(sent.append)
-    publisher.set_outside_count(2)
+    publisher.set_remote_sender(sent.append)
+    publisher.set_remote_count(2)
     assert publisher.get_subscription_count() == 2
     publisher.publish(String("out"))
     data = serialize(String("raw"))
     publisher.publish(data)
-    publisher.set_outside(None)
+    publisher.set_remote_sender(None)
     publisher.publish(String("after"))
     assert sent == [String("out"), data]
 
@@ -144,8 +144,8 @@ async def test_what_is_kept_for_late_comers_goes_out_first_and_once(graph):
     for text in "abcd":
         publisher.publish(String(text))
     sent = []
-    publisher.set_outside(sent.append)
-    publisher.set_outside(sent.append)
+    publisher.set_remote_sender(sent.append)
+    publisher.set_remote_sender(sent.append)
     publisher.publish(String("e"))
     assert [message.data for message in sent] == list("bcde")
 
@@ -155,14 +155,14 @@ async def test_what_is_published_before_there_is_a_writer_is_held(graph):
 
     publisher = graph.create_node("node").create_publisher(String, "topic", 2)
     waited = []
-    publisher.hold_for_outside(lambda seconds: waited.append(seconds) or len(waited) > 1)
+    publisher.hold_for_remote(lambda seconds: waited.append(seconds) or len(waited) > 1)
     for text in "abc":
         publisher.publish(String(text))
     assert not publisher.wait_for_all_acked(Duration(seconds=1))
     assert publisher.wait_for_all_acked()
     assert waited == [1.0, None]
     sent = []
-    publisher.set_outside(sent.append)
+    publisher.set_remote_sender(sent.append)
     publisher.publish(String("d"))
     assert [message.data for message in sent] == list("bcd")
     assert publisher.wait_for_all_acked()
@@ -171,11 +171,11 @@ async def test_what_is_published_before_there_is_a_writer_is_held(graph):
 
 async def test_nothing_is_held_when_nobody_listens(graph):
     publisher = graph.create_node("node").create_publisher(String, "topic", 2)
-    publisher.hold_for_outside(lambda _: True)
+    publisher.hold_for_remote(lambda _: True)
     publisher.publish(String("a"))
-    publisher.set_outside(None)
+    publisher.set_remote_sender(None)
     sent = []
-    publisher.set_outside(sent.append)
+    publisher.set_remote_sender(sent.append)
     assert sent == []
 
 
@@ -185,7 +185,7 @@ async def test_acknowledgements_are_waited_for(graph):
     publisher = graph.create_node("node").create_publisher(String, "topic", LATCHED)
     assert publisher.wait_for_all_acked()
     asked = []
-    publisher.set_outside(print, lambda seconds: asked.append(seconds) or False)
+    publisher.set_remote_sender(print, lambda seconds: asked.append(seconds) or False)
     assert not publisher.wait_for_all_acked(Duration(seconds=2))
     assert not publisher.wait_for_all_acked(Duration(seconds=-1))
     assert asked == [2.0, None]
@@ -200,7 +200,7 @@ async def test_bytes_that_come_in_are_read_when_their_turn_comes(graph, log):
         node.create_subscription(String, "topic", lambda message, info: received.append((message, info)), 10),
     ]
     data = serialize(String("hello"))
-    info = MessageInfo(1, 2, b"g" * 16, from_outside=True)
+    info = MessageInfo(1, 2, b"g" * 16, is_remote=True)
     for reader in readers:
         reader.receive(data, info)
     await graph.settle()
@@ -220,7 +220,7 @@ async def test_malformed_bytes_are_dropped_and_told_once(graph, log):
     received = []
     reader = node.create_subscription(String, "topic", received.append, 10)
     for _ in range(3):
-        reader.receive(b"\x00\x01\x00\x00\xff\xff\xff\x7f", MessageInfo(0, 0, from_outside=True))
+        reader.receive(b"\x00\x01\x00\x00\xff\xff\xff\x7f", MessageInfo(0, 0, is_remote=True))
     reader.receive(serialize(String("good")), MessageInfo(0, 0))
     await graph.settle()
     assert received == [String("good")]
@@ -251,7 +251,7 @@ async def test_the_sender_is_told_to_callbacks_that_ask(graph, clock):
     await graph.settle()
     assert messages[0].publisher_gid == publisher.gid
     assert messages[0].source_timestamp == clock.now_ns()
-    assert not messages[0].from_outside
+    assert not messages[0].is_remote
 
 
 async def test_requests_go_out_where_this_process_has_no_server(graph):
@@ -260,13 +260,13 @@ async def test_requests_go_out_where_this_process_has_no_server(graph):
     early = client.call_async(Trigger.Request())
     asked, forgotten = [], []
 
-    class Outside:
+    class RemoteServer:
         def send(self, request, answer, number):
             asked.append(answer)
             return lambda: forgotten.append(request)
 
     assert not client.service_is_ready()
-    client.set_outside(Outside())
+    client.set_remote_service(RemoteServer())
     assert client.service_is_ready()
     late = client.call_async(Trigger.Request())
     assert len(asked) == 2

@@ -12,16 +12,16 @@ def test_each_is_told_once_as_long_as_it_is_there():
     graph = Graph(threads=True, on_log=log.append)
     graph.create_node("talker", namespace="/robot")
     graph.create_node("listener")
-    namesakes = SharedNameMonitor()
+    monitor = SharedNameMonitor()
     there = [NodeIdentity("talker", "/robot", "/"), NodeIdentity("listener", "/robot", "/")]
-    namesakes.review(graph.nodes(), [])
-    namesakes.review(graph.nodes(), there)
-    namesakes.review(graph.nodes(), there)
+    monitor.update(graph.nodes(), [])
+    monitor.update(graph.nodes(), there)
+    monitor.update(graph.nodes(), there)
     (record,) = log
     assert record.text.startswith("Another process has a node of the exact name '/robot/talker' too: ")
     assert "ROS_DOMAIN_ID" in record.text
-    namesakes.review(graph.nodes(), [])
-    namesakes.review(graph.nodes(), there)
+    monitor.update(graph.nodes(), [])
+    monitor.update(graph.nodes(), there)
     assert len(log) == 2
     graph.close_threadsafe()
 
@@ -30,7 +30,7 @@ def test_names_of_the_root_have_one_slash():
     log: list[LogRecord] = []
     graph = Graph(threads=True, on_log=log.append)
     graph.create_node("talker")
-    SharedNameMonitor().review(graph.nodes(), [NodeIdentity("talker", "/", "/")])
+    SharedNameMonitor().update(graph.nodes(), [NodeIdentity("talker", "/", "/")])
     assert "'/talker'" in log[0].text
     graph.close_threadsafe()
 
@@ -41,10 +41,10 @@ def test_who_asks_to_be_told_hears_of_each_change_and_nothing_is_logged():
     graph = Graph(threads=True, on_log=log.append)
     graph.create_node("talker")
     graph.create_node("listener")
-    namesakes = SharedNameMonitor(messages.append)
+    monitor = SharedNameMonitor(messages.append)
     talker, listener = NodeIdentity("talker", "/", "/"), NodeIdentity("listener", "/", "/")
     for there in ([], [talker], [talker, NodeIdentity("other", "/", "/")], [talker, listener], [listener], []):
-        namesakes.review(graph.nodes(), there)
+        monitor.update(graph.nodes(), there)
     assert messages == [
         frozenset({"/talker"}),
         frozenset({"/talker", "/listener"}),

@@ -232,13 +232,13 @@ async def test_a_model_broken_at_the_start_waits_for_the_repair(write, start: st
 async def test_a_broken_model_with_no_viewer_ends_the_launch(write) -> None:
     path = write("r.xacro", BROKEN)
     async with running(path, viewer=False) as bench:
-        await bench.until(lambda: bench.session.ending)
+        await bench.until(lambda: bench.session.is_ending)
         assert bench.err.count("error[XAC") == 1
 
 
 async def test_a_model_that_does_not_exist_ends_the_launch(tmp_path: Path) -> None:
     async with running(tmp_path / "none.urdf") as bench:
-        await bench.until(lambda: bench.session.ending)
+        await bench.until(lambda: bench.session.is_ending)
         assert bench.err.count("error[") == 1
         assert "Viewer:" not in bench.out
 

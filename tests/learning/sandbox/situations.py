@@ -20,7 +20,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from linkwright.learning.sandbox.identity import can_reach
+from linkwright.learning.sandbox.identity import can_be_reached
 from linkwright.learning.sandbox.landlock import landlock_version
 from linkwright.learning.sandbox.linux import libc
 from linkwright.learning.sandbox.outcome import Limits, Outcome, Protection
@@ -41,6 +41,7 @@ _CLONE_NEWUSER = 0x10000000
 SITUATIONS = {
     "root": (True, "all", True),
     "container": (True, "none", True),
+    "container with namespaces": (True, "all", True),  # those of users; root of a container may not enter others
     "container without Landlock": (True, "none", False),
     "user": (False, "all", True),
     "user without Landlock": (False, "all", False),
@@ -77,9 +78,8 @@ def interpreter(name: str) -> str | None:
     if name == "root" or os.geteuid() != 0:
         return sys.executable
     candidates = [sys.executable, shutil.which("python3", path="/usr/bin:/usr/local/bin")]
-    nobody = _user()
     for candidate in filter(None, candidates):
-        if can_reach(nobody, [candidate, os.path.realpath(candidate), str(ROOT)]):
+        if can_be_reached([candidate, os.path.realpath(candidate), str(ROOT / "src")]):
             version = subprocess.check_output([candidate, "-c", "import sys; print(sys.version_info >= (3, 10))"])
             if version.strip() == b"True":
                 return candidate
@@ -121,7 +121,7 @@ def _take_away(name: str) -> None:
         os.setresuid(user, user, user)
     if not is_root:
         resource.setrlimit(resource.RLIMIT_NPROC, (300, 300))  # the tests' own safety net
-    elif namespaces == "none":
+    elif name != "root":
         _keep_capabilities(_DOCKER_CAPABILITIES)
     denied = {}
     if namespaces != "all":

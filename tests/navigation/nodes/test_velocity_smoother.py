@@ -10,7 +10,7 @@ from linkwright.messages import get_message
 from linkwright.navigation.nodes.velocity_smoother import VelocitySmoother
 from linkwright.navigation.nodes.velocity_smoothing import Limits, smooth_velocities
 from linkwright.nodes import NodeOptions
-from tests.outside import Outside, Stranger
+from tests.remote_publishers import RemotePublisher, RemoteTransport
 
 TWIST, STAMPED = get_message("geometry_msgs/msg/Twist"), get_message("geometry_msgs/msg/TwistStamped")
 ODOMETRY = get_message("nav_msgs/msg/Odometry")
@@ -95,7 +95,7 @@ async def test_after_a_stop_nothing_is_said_of_commands_that_end(line, stage, lo
 
 async def test_it_stops_when_who_commanded_is_lost_and_says_so(line, stage, logged):
     one = line(velocity_timeout=10.0, enable_stamped_cmd_vel=False)
-    driver = Stranger(Outside(stage.graph), "/cmd_vel")
+    driver = RemotePublisher(RemoteTransport(stage.graph), "/cmd_vel")
     message = TWIST()
     message.linear.x = 0.25
     driver.send(message)

@@ -139,7 +139,7 @@ async def test_what_else_is_shown_goes_along():
         topic = w.display("Marker").properties.text("Topic")
         w.graph.create_node("marks").create_publisher(type(marker), topic, 10).publish(marker)
         await w.settle()
-        w.viewer.manager.measured(2.0, 0.0)
+        w.viewer.manager.fit_to_robot(2.0, 0.0)
         taken = snapshot_of(w.viewer, w.viewer.manager)
     logged = recorded(export_snapshot(taken, "html").decode())
     assert logged["awaits_size"] is False  # a page had measured the robot

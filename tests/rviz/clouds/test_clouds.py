@@ -17,9 +17,9 @@ from linkwright.rviz.clouds import (
     Points,
     ScanProjector,
     coloured,
+    deskew,
     points_of_cloud,
     supported_transformers,
-    swept,
 )
 from tests.work import lines_run
 
@@ -338,12 +338,12 @@ def test_each_ray_is_placed_where_the_scanner_was_when_it_was_sent():
     points = Points(np.array([[1, 0, 0]] * 3, np.float32), {"index": np.arange(3)})
     first = np.array([0.0, 0, 0, 0, 0, 0, 1])
     last = np.array([2.0, 0, 0, 0, 0, 1, 0])  # two metres on, and half a turn
-    moved = swept(points, np.array([0.0, 0.5, 1.0]), first, last).positions
+    moved = deskew(points, np.array([0.0, 0.5, 1.0]), first, last).positions
     np.testing.assert_allclose(moved, [[1, 0, 0], [1, 1, 0], [1, 0, 0]], atol=1e-6)
 
 
 def test_the_shorter_way_round_is_taken():
     points = Points(np.array([[1, 0, 0]], np.float32))
     same = np.array([0.0, 0, 0, 0, 0, 0, 1])
-    moved = swept(points, np.array([0.5]), same, -same).positions
+    moved = deskew(points, np.array([0.5]), same, -same).positions
     np.testing.assert_allclose(moved, [[1, 0, 0]], atol=1e-6)

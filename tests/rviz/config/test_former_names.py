@@ -99,8 +99,8 @@ def test_what_was_recalled_is_as_it_was():
         (("Topic", "Durability Policy"), "Volatile", []),
     ):
         properties.rows()
-        with properties.recording() as memories:
+        with properties.recording() as saved_entries:
             properties.set(path, value)
-        assert [memory.key for memory in memories] == keys
-        assert properties.recall(memories) == ([path] if keys else [])
+        assert [saved_entry.key for saved_entry in saved_entries] == keys
+        assert properties.restore(saved_entries) == ([path] if keys else [])
         assert yaml_tree.write(section) == text

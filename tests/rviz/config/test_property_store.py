@@ -125,10 +125,10 @@ def test_a_base_that_was_made_goes_with_the_value_that_is_taken_back(text):
         store.set(("Alpha",), 0.1)
     written = yaml_tree.write(document)
     for _ in range(2):
-        after = store.memories(before)
-        store.recall(before)
+        after = store.current_entries(before)
+        store.restore(before)
         assert yaml_tree.same(document, yaml_tree.parse(text, "x"))
-        store.recall(after)
+        store.restore(after)
         assert (yaml_tree.write(document), store.get("Alpha")) == (written, 0.1)
 
 

@@ -86,7 +86,7 @@ async def test_without_edits_nothing_is_written(tmp_path):
         await client.until("configuration", unsaved=True)
         await client.send("show_panels", shown=[])
         await client.drain(0.03)
-        assert made.viewer.manager.history.unsaved
+        assert made.viewer.manager.history.has_unsaved_edits
         assert made.viewer.keep_unsaved() == []
     assert not recovery_folder().exists()
 

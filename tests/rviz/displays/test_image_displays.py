@@ -117,7 +117,7 @@ async def test_while_no_panel_is_seen_nobody_listens_after_one_image():
         display.receive(ImageSize(display.id, 0, 0))
         assert publisher.get_subscription_count() == 0
         display.set_checked(False)
-        display.enabled_changed()
+        display.on_enabled_changed()
         display.receive(ImageSize(display.id, 3, 1))
         assert publisher.get_subscription_count() == 0
 

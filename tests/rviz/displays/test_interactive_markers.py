@@ -186,7 +186,7 @@ async def test_a_disabled_display_leaves_the_server():
         await connected(w)
         (display,) = w.viewer.displays
         display.set_checked(False)
-        display.enabled_changed()
+        display.on_enabled_changed()
         assert shown(w) == {}
         assert server._updates.get_subscription_count() == 0
 

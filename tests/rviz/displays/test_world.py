@@ -389,7 +389,7 @@ async def test_the_rays_of_lidars_are_listened_to_while_they_are_drawn():
         simulation.description.publish(String(WORLD.replace("</world>", SEEING)))
         await eventually(lambda: sent(made, "world_scene").fields["revision"] > revision)
         assert sent(made, "world_rays") is not None
-        made.display("World").time_reset()
+        made.display("World").on_time_reset()
         assert sent(made, "world_rays") is None
 
         made.display("World").set_property(("Lidar Rays",), "All")

@@ -68,11 +68,11 @@ class Rig:
 
     def pose(self, name: str) -> list[float]:
         """The pose of a frame in the last transforms sent."""
-        return self.sent()[-1].poses[self.stream.opening[0].names.index(name)].tolist()
+        return self.sent()[-1].poses[self.stream.current_frames[0].names.index(name)].tolist()
 
     def ages(self, name: str) -> list[float]:
         """The ages of a frame in all transforms sent with the last table."""
-        table = self.stream.opening[0]
+        table = self.stream.current_frames[0]
         return [each.ages[table.names.index(name)] for each in self.sent() if each.revision == table.revision]
 
     def kinds(self) -> list[str]:
@@ -215,7 +215,7 @@ async def test_nobody_watching_costs_nothing_until_a_page_opens(rig):
     await rig.settle()
     assert rig.said == []
     rig.stream.refresh()
-    table, frame = rig.stream.opening
+    table, frame = rig.stream.current_frames
     assert unpack(frame).revision == table.revision
     assert rig.kinds() == ["FrameTable", "Transforms", "FrameView"]
 
@@ -247,7 +247,7 @@ async def test_an_unknown_fixed_frame_places_nothing(rig):
 @streaming
 async def test_a_robot_of_one_link_has_its_frame_though_tf_does_not_know_it(rig):
     rig.own_frames = frozenset({"base"})
-    rig.stream.robot_changed(set())
+    rig.stream.on_robot_changed(set())
     await rig.settle()
     table, transforms, frames = rig.said
     assert (table.names, table.parents) == (["base"], [-1])
@@ -264,7 +264,7 @@ async def test_frames_of_a_robot_that_went_are_gone(rig):
     rig.send({("base", "tip"): IDENTITY, ("base", "old"): IDENTITY})
     await rig.settle()
     rig.said.clear()
-    rig.stream.robot_changed({"old", "never there"})
+    rig.stream.on_robot_changed({"old", "never there"})
     await eventually(lambda: len(rig.said) == 3)
     table, transforms, frames = rig.said
     assert sorted(table.names) == ["base", "tip"]

@@ -34,7 +34,7 @@ def test_edits_are_taken_back_and_done_again():
         value.set(number, None)
     value.history.undo()
     value.history.undo()
-    assert (value.number, value.history.undoable, value.history.redoable) == (
+    assert (value.number, value.history.undo_name, value.history.redo_name) == (
         1,
         EditName("set", "number"),
         EditName("set", "number"),
@@ -43,10 +43,10 @@ def test_edits_are_taken_back_and_done_again():
     assert value.number == 2
     value.set(9, None)
     value.history.redo()
-    assert (value.number, value.history.redoable) == (9, None)
+    assert (value.number, value.history.redo_name) == (9, None)
     for _ in range(5):
         value.history.undo()
-    assert (value.number, value.history.undoable) == (0, None)
+    assert (value.number, value.history.undo_name) == (0, None)
 
 
 def test_a_drag_is_one_edit():
@@ -75,30 +75,30 @@ def test_edits_of_different_things_are_different_edits():
 def test_what_was_saved_is_known_through_undo_and_redo():
     value = Value()
     value.set(1)
-    value.history.saved()
-    assert not value.history.unsaved
+    value.history.mark_saved()
+    assert not value.history.has_unsaved_edits
     value.set(2)  # not one with the edit before: that one is saved
-    assert value.history.unsaved
+    assert value.history.has_unsaved_edits
     value.history.undo()
-    assert (value.number, value.history.unsaved) == (1, False)
+    assert (value.number, value.history.has_unsaved_edits) == (1, False)
     value.history.undo()
-    assert value.history.unsaved
+    assert value.history.has_unsaved_edits
     value.set(7)
     value.history.undo()
-    assert value.history.unsaved  # what was saved cannot be come back to
-    value.history.saved()
-    assert not value.history.unsaved
+    assert value.history.has_unsaved_edits  # what was saved cannot be come back to
+    value.history.mark_saved()
+    assert not value.history.has_unsaved_edits
 
 
 def test_what_undo_does_not_know_counts_as_unsaved_too():
     value = Value()
-    value.history.touch()
-    assert value.history.unsaved
-    value.history.saved()
-    assert not value.history.unsaved
-    value.history.touch()
+    value.history.add_permanent_edit()
+    assert value.history.has_unsaved_edits
+    value.history.mark_saved()
+    assert not value.history.has_unsaved_edits
+    value.history.add_permanent_edit()
     value.history.clear()
-    assert not value.history.unsaved
+    assert not value.history.has_unsaved_edits
 
 
 def test_history_does_not_grow_without_end():
@@ -106,8 +106,8 @@ def test_history_does_not_grow_without_end():
     for number in range(MAX_EDITS + 10):
         value.set(number, None)
     steps = 0
-    while value.history.undoable:
+    while value.history.undo_name:
         value.history.undo()
         steps += 1
     assert steps == MAX_EDITS
-    assert value.history.unsaved
+    assert value.history.has_unsaved_edits

@@ -10,7 +10,7 @@ from linkwright.geometry.shapes import Box
 from linkwright.geometry.single import Pose
 from linkwright.geometry.solids import shape_properties
 from linkwright.sdf.editing import Change, EditError, add_include, add_light, add_shape, change, delete
-from linkwright.sdf.editing.shapes import solid
+from linkwright.sdf.editing.shapes import solid_properties
 from tests.sdf.editing.texts import PLAIN, inside, simulators_refuse, world_text
 
 POSE = (1.0, 2.0, 3.0, 0.0, 0.0, 0.5)
@@ -24,7 +24,7 @@ def test_a_shape_is_what_it_was_when_it_is_read_again(kind):
     thing = text.entities[name]
     assert (thing.shape.kind, thing.shape.size) == (kind, SIZES[kind])
     assert thing.pose.pose == Pose(POSE[:3], POSE[3:])
-    assert thing.static == (kind in ("wall", "ramp"))
+    assert thing.is_static == (kind in ("wall", "ramp"))
     assert not simulators_refuse(text)
     assert delete(text, [name]).text == PLAIN
     usual, name = add_shape(before, kind, POSE)
@@ -49,7 +49,7 @@ def test_a_ramp_has_the_mass_of_a_wedge():
         shape_properties(Box((step, size[1], h))).moved(Pose((-1 + (index + 0.5) * step, 0.0, h / 2 - size[2] / 2)))
         for index, h in enumerate(heights.tolist())
     ]
-    whole, wanted = combine(slices), solid("ramp", size)
+    whole, wanted = combine(slices), solid_properties("ramp", size)
     assert whole.mass == pytest.approx(wanted.mass)
     assert whole.center == pytest.approx(wanted.center, abs=1e-5)
     assert whole.inertia == pytest.approx(wanted.inertia, rel=1e-3, abs=1e-6)

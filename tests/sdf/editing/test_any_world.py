@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from linkwright.sdf.editing import Change, change, copy, delete, group, ungroup
-from linkwright.sdf.editing.shapes import length
+from linkwright.sdf.editing.shapes import format_length
 from linkwright.sdf.frames import placed_links
 from tests.sdf.editing.texts import world_text
 
@@ -24,10 +24,10 @@ ENDS = st.sampled_from(["\n", "\r\n"])
 def boxes(draw, name: str) -> str:
     """A box, written in some way, in some frame."""
     gap, quote, between = draw(SPACES), draw(QUOTES), draw(SEPARATORS)
-    numbers = [length(each) for each in draw(POSES)]
+    numbers = [format_length(each) for each in draw(POSES)]
     form = draw(st.sampled_from(["", ' relative_to="f"', " frame = 'f'"]))
     pose = draw(st.sampled_from([f"<pose{form}>{gap if '?' not in gap else ''}{between.join(numbers)}</pose>", ""]))
-    size = between.join(length(each) for each in draw(SIZES))
+    size = between.join(format_length(each) for each in draw(SIZES))
     geometry = f"<geometry>{gap}<box><size>{size}</size></box></geometry>"
     visual = f"<visual name={quote}v{quote}>{geometry}</visual>"
     inertial = draw(st.sampled_from(["", "<inertial><mass>2</mass></inertial>"]))
@@ -38,7 +38,7 @@ def boxes(draw, name: str) -> str:
 @st.composite
 def worlds(draw) -> str:
     """A world with three boxes and a frame."""
-    frame = f"<frame name='f'><pose>{' '.join(length(each) for each in draw(POSES))}</pose></frame>"
+    frame = f"<frame name='f'><pose>{' '.join(format_length(each) for each in draw(POSES))}</pose></frame>"
     parts = [draw(boxes(name)) for name in ("a", "b&amp;c", "d")]
     text = f"<?xml version='1.0'?>\n<sdf version='1.9'>\n<world name='w'>{frame}{''.join(parts)}\n</world>\n</sdf>\n"
     return text.replace("\n", draw(ENDS))
@@ -60,7 +60,7 @@ def test_what_is_moved_is_there_and_all_else_where_it_was(text, pose, name):
     before = world_text(text)
     after = change(before, [Change(name, pose=pose)])
     wanted = world_text(
-        f"<sdf version='1.9'><world name='w'><model name='m'><pose>{' '.join(map(length, pose))}</pose>"
+        f"<sdf version='1.9'><world name='w'><model name='m'><pose>{' '.join(map(format_length, pose))}</pose>"
         "<link name='l'/></model></world></sdf>"
     )
     assert close(after.entities[name].world_pose, wanted.entities["m"].world_pose, 1e-5)

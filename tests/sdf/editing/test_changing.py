@@ -27,10 +27,10 @@ def test_what_stands_in_a_world_is_told():
     things = world_text(PLAIN).entities
     assert list(things) == ["ground_plane", "box", "lamp"]
     assert [thing.kind for thing in things.values()] == ["model", "model", "light"]
-    assert things["ground_plane"].static
+    assert things["ground_plane"].is_static
     assert things["box"].shape.kind == "box"
     assert things["box"].shape.size == (0.5, 0.5, 0.5)
-    assert things["box"].shape.colour == (0.9, 0.4, 0.1, 1.0)
+    assert things["box"].shape.color == (0.9, 0.4, 0.1, 1.0)
     assert things["lamp"].world_pose[:3] == (0, 0, 3)
 
 
@@ -118,8 +118,8 @@ def test_what_is_no_size_is_refused(size):
 def test_what_is_no_simple_shape_has_neither_size_nor_colour():
     with pytest.raises(EditError, match="'ground_plane' cannot be resized"):
         change(world_text(PLAIN), [Change("ground_plane", size=(1, 1, 1))])
-    with pytest.raises(EditError, match="the colour of 'ground_plane' cannot be changed"):
-        change(world_text(PLAIN), [Change("ground_plane", colour=(1, 1, 1, 1))])
+    with pytest.raises(EditError, match="the color of 'ground_plane' cannot be changed"):
+        change(world_text(PLAIN), [Change("ground_plane", color=(1, 1, 1, 1))])
 
 
 def test_a_colour_takes_the_place_of_a_script():
@@ -127,17 +127,17 @@ def test_a_colour_takes_the_place_of_a_script():
         "<material><ambient>0.9 0.4 0.1 1</ambient><diffuse>0.9 0.4 0.1 1</diffuse></material>",
         "<material><script><uri>file://media/gazebo.material</uri><name>Gazebo/Red</name></script></material>",
     )
-    assert world_text(text).entities["box"].shape.colour == (1, 0, 0, 1)
-    after = change(world_text(text), [Change("box", colour=(0, 1, 0, 0.5))])
+    assert world_text(text).entities["box"].shape.color == (1, 0, 0, 1)
+    after = change(world_text(text), [Change("box", color=(0, 1, 0, 0.5))])
     assert "<material><ambient>0 1 0 0.5</ambient><diffuse>0 1 0 0.5</diffuse></material>" in after.text
-    assert after.entities["box"].shape.colour == (0, 1, 0, 0.5)
-    assert changed(PLAIN, Change("lamp", colour=(1, 0, 0, 1)))[-1] == "+ <diffuse>1 0 0 1</diffuse>"
+    assert after.entities["box"].shape.color == (0, 1, 0, 0.5)
+    assert changed(PLAIN, Change("lamp", color=(1, 0, 0, 1)))[-1] == "+ <diffuse>1 0 0 1</diffuse>"
 
 
 def test_what_moves_no_more_says_so_and_what_moves_again_has_a_mass():
     still = change(world_text(PLAIN), [Change("box", static=True), Change("ground_plane", static=False)])
-    assert still.entities["box"].static
-    assert not still.entities["ground_plane"].static
+    assert still.entities["box"].is_static
+    assert not still.entities["ground_plane"].is_static
     assert "<pose>2 0 0.250 0 0 0</pose>\n      <static>true</static>\n" in still.text
     bare = PLAIN.replace(PLAIN[PLAIN.index("        <inertial>") : PLAIN.index("        <collision")], "")
     still = change(world_text(bare), [Change("box", static=True)])
@@ -218,7 +218,7 @@ def test_what_something_refers_to_stays_unless_that_goes_too():
 
 def test_line_ends_stay():
     text = world_text(PLAIN.replace("\n", "\r\n"))
-    after, _ = copy(change(text, [Change("lamp", colour=(1, 1, 1, 1)), Change("box", static=True)]), ["box"], (1, 0, 0))
+    after, _ = copy(change(text, [Change("lamp", color=(1, 1, 1, 1)), Change("box", static=True)]), ["box"], (1, 0, 0))
     assert "\n" not in after.text.replace("\r\n", "")
 
 
@@ -232,7 +232,7 @@ def test_a_file_that_no_simulator_writes_is_edited_all_the_same():
     assert "<size>2 2 2</size>" in after.text
     assert "<model name='m'><pose>1 0 0 0 0 0</pose><link" in after.text
     entity = text.replace("'1 1 1'", "'<box/>'").replace("<size>&size;</size>", "<size>1 1 1</size>&size;")
-    assert change(world_text(entity), [Change("m", static=True)]).entities["m"].static
+    assert change(world_text(entity), [Change("m", static=True)]).entities["m"].is_static
 
 
 def test_a_thing_that_comes_from_an_entity_is_told():

@@ -74,11 +74,11 @@ def test_included_models_can_be_grouped_and_static_ones_are_static():
     text = world_text(PLAIN.replace(BOX, ""))
     text, wall = add_shape(text, "wall", (1, 0, 0.5, 0, 0, 0))
     grouped = group(text, ["ground_plane", wall], "floor")
-    assert grouped.entities["floor"].static
+    assert grouped.entities["floor"].is_static
     assert grouped.entities["floor"].member_names == ("wall", "ground_plane")
     apart, names = ungroup(grouped, "floor")
     assert sorted(names) == ["ground_plane", "wall"]
-    assert all(apart.entities[name].static for name in names)
+    assert all(apart.entities[name].is_static for name in names)
 
 
 @pytest.mark.parametrize(

@@ -19,8 +19,8 @@ from linkwright.simulation.nodes.bridge import (
     read_bridge_file,
 )
 from linkwright.simulation.plugins.bridged import hidden_gz_topic
-from tests.outside import Outside, Stranger
 from tests.places import GAZEBO_PACKAGE
+from tests.remote_publishers import RemotePublisher, RemoteTransport
 
 SCAN = "/scan@sensor_msgs/msg/LaserScan[gz.msgs.LaserScan"
 
@@ -290,7 +290,7 @@ async def test_the_drive_behind_a_bridge_is_stopped_when_who_drives_is_lost(stag
     word = f"/cmd_vel@{ros_type}]gz.msgs.Twist"
     bridge = ParameterBridge(stage.graph, NodeOptions(arguments=[word, "--ros-args", "-r", "/cmd_vel:=/drive"]))
     driven = heard(stage, "geometry_msgs/msg/Twist", "/cmd_vel")
-    driver = Stranger(Outside(stage.graph), "/drive", msg_type=ros_type)
+    driver = RemotePublisher(RemoteTransport(stage.graph), "/drive", msg_type=ros_type)
     message = get_message(ros_type)()
     getattr(message, "twist", message).linear.x = 0.3
     driver.send(message)

@@ -14,7 +14,7 @@ from linkwright.messages import get_service
 from linkwright.nodes import NodeOptions
 from linkwright.simulation.nodes.create import Create
 from linkwright.simulation.nodes.entities import DeleteEntity, Remove, SetEntityPose
-from linkwright.simulation.nodes.spawn_entity import SpawnEntity, parse
+from linkwright.simulation.nodes.spawn_entity import SpawnEntity, parse_arguments
 from tests.nodes.stage import Stage
 
 ROBOT = "<robot name='r'><link name='base'/></robot>"
@@ -233,7 +233,7 @@ async def test_create_takes_its_options_as_parameters_too_and_passes_over_what_i
 )
 def test_a_command_line_that_is_none(words, message):
     with pytest.raises(LinkwrightError) as caught:
-        parse(words)
+        parse_arguments(words)
     (finding,) = caught.value.diagnostics
     assert finding.code == "NODE810"
     assert message in str(finding.message)

@@ -52,7 +52,7 @@ def test_a_change_that_changes_nothing_is_no_step(tmp_path):
     path.write_text(PLAIN)
     world = EditedWorld.of_file(path, NOWHERE)
     world.edit(lambda text: change(text, [Change("box", pose=(2, 0, 0.25, 0, 0, 0), size=(0.5, 0.5, 0.5))]))
-    assert (world.can_undo, world.unsaved) == (False, False)
+    assert (world.can_undo, world.is_unsaved) == (False, False)
     world.undo()
     world.redo()
     assert world.world.text == PLAIN
@@ -63,7 +63,7 @@ def test_a_new_change_forgets_what_was_taken_back(tmp_path):
     path.write_text(PLAIN)
     world = edited(path, "a")
     world.undo()
-    assert (world.can_undo, world.can_redo, world.unsaved) == (False, True, False)
+    assert (world.can_undo, world.can_redo, world.is_unsaved) == (False, True, False)
     world.edit(lambda text: change(text, [Change("box", static=True)]))
     assert (world.can_undo, world.can_redo) == (True, False)
 
@@ -82,7 +82,7 @@ def test_no_other_file_is_written_over(tmp_path):
             world.save(name)
     assert (other.read_text(), path.read_text()) == ("mine", PLAIN)
     world.save(str(path))
-    assert not world.unsaved
+    assert not world.is_unsaved
     path.unlink()
     world.save(None)
     assert path.exists()

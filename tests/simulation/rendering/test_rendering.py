@@ -61,14 +61,14 @@ def test_walls_are_as_far_as_they_are(make):
 
 
 def test_distances_are_the_same_with_colours_and_without(make):
-    simulation = simulated(FLOOR, block("box", "2 0.5 0 0 0 0", "0.5 0.5 0.5", colour="1 0 0 1"))
+    simulation = simulated(FLOOR, block("box", "2 0.5 0 0 0 0", "0.5 0.5 0.5", color="1 0 0 1"))
     renderer, optics, pose = make(simulation), optics_of(CAMERA), (0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
-    both = renderer.render(optics, pose, Channels.DEPTH | Channels.COLOUR)
+    both = renderer.render(optics, pose, Channels.DEPTH | Channels.COLOR)
     alone = renderer.render(optics, pose, Channels.DEPTH)
-    again = renderer.render(optics, pose, Channels.DEPTH | Channels.COLOUR)
+    again = renderer.render(optics, pose, Channels.DEPTH | Channels.COLOR)
     assert (alone.depth == both.depth).all()
-    assert alone.colour is None
-    assert (again.colour == both.colour).all()
+    assert alone.color is None
+    assert (again.color == both.color).all()
 
 
 def test_the_floor_goes_on_to_the_horizon(make):
@@ -105,19 +105,19 @@ def test_what_reaches_into_the_image_is_seen(make, place):
 def test_what_is_too_near_or_too_far_is_not_seen(make):
     simulation = simulated(block("near", "0.3 0.1 0 0 0 0", "0.1 0.1 0.1"), block("far", "60 0 0 0 0 0", "1 90 90"))
     optics = replace(optics_of(CAMERA), near=0.5)
-    rendered = make(simulation).render(optics, IDENTITY, Channels.DEPTH | Channels.COLOUR)
+    rendered = make(simulation).render(optics, IDENTITY, Channels.DEPTH | Channels.COLOR)
     assert np.isinf(rendered.depth).all()
-    assert (rendered.colour == round(0.7 * 255)).all()
+    assert (rendered.color == round(0.7 * 255)).all()
 
 
 def test_colours_are_those_of_the_things(make):
     simulation = simulated(
-        block("left", "2 1 0 0 0 0", "0.1 1 1", colour="1 0 0 1"),
-        block("right", "2 -1 0 0 0 0", "0.1 1 1", colour="0 1 0 1"),
+        block("left", "2 1 0 0 0 0", "0.1 1 1", color="1 0 0 1"),
+        block("right", "2 -1 0 0 0 0", "0.1 1 1", color="0 1 0 1"),
     )
     renderer = make(simulation)
-    colour = renderer.render(optics_of(CAMERA), IDENTITY, Channels.COLOUR).colour
-    red, green = colour[60, 40].astype(int), colour[60, 120].astype(int)
+    color = renderer.render(optics_of(CAMERA), IDENTITY, Channels.COLOR).color
+    red, green = color[60, 40].astype(int), color[60, 120].astype(int)
     assert red[0] > 50
     assert red[1] == red[2] == 0
     assert green[1] > 50
@@ -139,8 +139,8 @@ def test_meshes_wear_the_images_of_their_materials(make, tmp_path, kind, request
     image.save(tmp_path / "halves.png")
     simulation = simulated(PANEL.format(folder=tmp_path, kind=kind, image="halves.png"))
     assert not simulation.scene.diagnostics
-    colour = make(simulation).render(optics_of(CAMERA), IDENTITY, Channels.COLOUR).colour.astype(int)
-    left, right = colour[60, 60], colour[60, 100]
+    color = make(simulation).render(optics_of(CAMERA), IDENTITY, Channels.COLOR).color.astype(int)
+    left, right = color[60, 60], color[60, 100]
     assert left[1] == right[1] == 0
     if request.node.callspec.params["make"] in ("embree", "mujoco"):  # rays: one colour a shape
         assert left[0] == left[2] > 50
@@ -186,15 +186,15 @@ def test_simple_shapes_wear_images(make, tmp_path, shape, distance, order, reque
     text = WEARING.format(shape=shape, image=tmp_path / "quarters.png")
     simulation = simulated(text)
     assert not simulation.scene.diagnostics
-    rendered = make(simulation).render(optics_of(CAMERA), IDENTITY, Channels.COLOUR | Channels.DEPTH)
+    rendered = make(simulation).render(optics_of(CAMERA), IDENTITY, Channels.COLOR | Channels.DEPTH)
     assert rendered.depth[60, 80] == pytest.approx(distance, abs=2e-3)
     if request.node.callspec.params["make"] in ("embree", "mujoco"):  # rays: one colour a shape
-        red, green, blue = rendered.colour[60, 80].astype(int)
+        red, green, blue = rendered.color[60, 80].astype(int)
         assert red == green > 0
         assert blue == pytest.approx(red / 2, abs=2)
         return
-    colour = rendered.colour.astype(int)
-    corners = [tuple(colour[row, column] > 40) for row in (50, 70) for column in (70, 90)]
+    color = rendered.color.astype(int)
+    corners = [tuple(color[row, column] > 40) for row in (50, 70) for column in (70, 90)]
     known = [tuple(np.array(quarter) > 0) for quarter in QUARTERS]
     assert set(corners) <= set(known)
     assert len(set(corners)) >= 2
@@ -276,13 +276,13 @@ def test_a_camera_sees_out_of_its_own_housing(make):
 
 
 def test_all_ways_make_the_same_image(make):
-    wall = block("wall", "4 0 1 0 0 0", "0.1 3 2", colour="0 0 1 1")
+    wall = block("wall", "4 0 1 0 0 0", "0.1 3 2", color="0 0 1 1")
     simulation = simulated(FLOOR, block("box", "2 0.4 0.3 0 0 0.5", "0.5 0.5 0.6"), wall)
     pose, optics = (0.0, 0.0, 0.5, 0.0, 0.0, 0.0, 1.0), optics_of(CAMERA)
-    exact = make_renderer(simulation, "mujoco").render(optics, pose, Channels.COLOUR | Channels.GEOMS)
-    other = make(simulation).render(optics, pose, Channels.COLOUR | Channels.GEOMS)
+    exact = make_renderer(simulation, "mujoco").render(optics, pose, Channels.COLOR | Channels.GEOMS)
+    other = make(simulation).render(optics, pose, Channels.COLOR | Channels.GEOMS)
     assert (exact.geoms != other.geoms).mean() < 0.01
-    apart = np.abs(exact.colour.astype(int) - other.colour.astype(int)).max(axis=-1)
+    apart = np.abs(exact.color.astype(int) - other.color.astype(int)).max(axis=-1)
     assert np.median(apart) <= 3
     assert (apart > 20).mean() < 0.02
 
@@ -307,10 +307,10 @@ def drawn(request: pytest.FixtureRequest):
 
         renderer = renderer_of(simulation, request.param)
         try:
-            renderer.render(optics_of(CAMERA), IDENTITY, Channels.COLOUR)
+            renderer.render(optics_of(CAMERA), IDENTITY, Channels.COLOR)
             (query,) = GL.glGenQueries(1, np.zeros(1, np.uint32))
             GL.glBeginQuery(GL.GL_PRIMITIVES_GENERATED, query)
-            rendered = renderer.render(optics_of(CAMERA), IDENTITY, Channels.COLOUR | Channels.DEPTH)
+            rendered = renderer.render(optics_of(CAMERA), IDENTITY, Channels.COLOR | Channels.DEPTH)
             GL.glEndQuery(GL.GL_PRIMITIVES_GENERATED)
             return rendered, int(GL.glGetQueryObjectuiv(query, GL.GL_QUERY_RESULT))
         finally:
@@ -325,8 +325,8 @@ def test_round_shapes_look_as_those_of_mujoco(drawn, monkeypatch, light):
     ours, few = drawn(simulation)
     monkeypatch.setattr(opengl, "_BUILT_IN", 0)
     theirs, many = drawn(simulation)
-    apart = np.abs(ours.colour.astype(int) - theirs.colour).max(axis=-1)
-    assert (theirs.colour != theirs.colour[0, 0]).any(axis=-1).mean() > 0.1
+    apart = np.abs(ours.color.astype(int) - theirs.color).max(axis=-1)
+    assert (theirs.color != theirs.color[0, 0]).any(axis=-1).mean() > 0.1
     assert (apart > 1).mean() < 1e-3
     seen = np.isfinite(ours.depth) & np.isfinite(theirs.depth)
     assert ours.depth[seen] == pytest.approx(theirs.depth[seen], abs=1e-3)
@@ -339,8 +339,8 @@ def test_a_lamp_lights_what_is_near(make):
         '<light name="lamp" type="point"><pose>1.5 1 0 0 0 0</pose><attenuation><range>9</range></attenuation></light>'
     )
     simulation = simulated(block("one", "2 1 0 0 0 0", "0.1 1 1"), block("other", "2 -1 0 0 0 0", "0.1 1 1"), lamp)
-    colour = make(simulation).render(optics_of(CAMERA), IDENTITY, Channels.COLOUR).colour
-    assert colour[60, 40, 0] > colour[60, 120, 0] + 20
+    color = make(simulation).render(optics_of(CAMERA), IDENTITY, Channels.COLOR).color
+    assert color[60, 40, 0] > color[60, 120, 0] + 20
 
 
 def test_a_distorted_point_comes_back():

@@ -237,7 +237,7 @@ async def test_controllers_go_on_when_the_model_is_changed(file):
         await world.describe(description(wheel("left_joint") + wheel("right_joint")))
         await world.start("broadcaster", "wheels")
         heavier = text.replace("<mass>", "<mass>1", 1)
-        server.renew(model(heavier), "mbot")
+        server.replace_model(model(heavier), "mbot")
         await world.advance(0.1)
         listed = (await world.ask("list_controllers")).controller
         assert {each.name: each.state for each in listed} == {"broadcaster": "active", "wheels": "active"}

@@ -88,7 +88,7 @@ def test_a_mesh_that_is_not_there_is_told_once(tmp_path):
 
 
 def test_a_mesh_of_too_many_triangles_is_left_out(room, monkeypatch):
-    monkeypatch.setattr("linkwright.simulation.scene.meshes._MOST_TRIANGLES", 7)
+    monkeypatch.setattr("linkwright.simulation.scene.meshes._MAX_TRIANGLES", 7)
     simulation = simulated(GROUND, mesh_model(room))
     (found,) = simulation.scene.diagnostics
     assert found.code == "SIM115"
@@ -225,7 +225,7 @@ def test_a_wheel_that_is_a_mesh_rolls_in_one_point(tmp_path):
     </model>"""
     scene = Scene(world(text), MeshLibrary(finder()))
     scene.add_velocity_motor("m::j", 1.0, 5.0)
-    scene.settle()
+    scene.set_wheel_surfaces()
     (geom,) = scene.bodies["m::wheel"].geoms
     assert geom.type == mujoco.mjtGeom.mjGEOM_ELLIPSOID
     assert geom.size == pytest.approx([0.1, 0.1, 0.02], rel=1e-4)

@@ -11,14 +11,14 @@ _SIDES = (("east", "3.05 0"), ("west", "-2.05 0"), ("north", "0 4.05"), ("south"
 CARRIER = '<model name="carrier"><static>true</static><pose>{pose}</pose><link name="link"/></model>'
 
 
-def block(name: str, pose: str, size: str, *, retro: float = 0.0, colour: str = "1 0 0 1") -> str:
+def block(name: str, pose: str, size: str, *, retro: float = 0.0, color: str = "1 0 0 1") -> str:
     """A box that stands still, is seen and touched."""
     geometry = f"<geometry><box><size>{size}</size></box></geometry>"
     text = f"<laser_retro>{retro}</laser_retro>" if retro else ""
     return (
         f'<model name="{name}"><static>true</static><pose>{pose}</pose><link name="link">'
         f'<collision name="collision">{geometry}{text}</collision>'
-        f'<visual name="visual">{geometry}{text}<material><diffuse>{colour}</diffuse></material></visual>'
+        f'<visual name="visual">{geometry}{text}<material><diffuse>{color}</diffuse></material></visual>'
         "</link></model>"
     )
 

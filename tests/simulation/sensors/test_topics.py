@@ -472,10 +472,10 @@ async def test_labels_are_seen_and_all_else_is_background():
     world = labelled("cup", "2 0.5 0 0 0 0", 7), labelled("other", "2 -0.5 0 0 0 0", 7), WALL
     text = carrier(sensor("segmentation_camera", f"<topic>seg</topic>{EYE}"))
     async with served(*world, text) as (server, graph, _):
-        maps, coloured = await heard(server, graph, "/seg/labels_map", "/seg/colored_map")
+        maps, colored = await heard(server, graph, "/seg/labels_map", "/seg/colored_map")
         assert set(pixels_of(maps).reshape(-1).tolist()) == {0, 7}
-        assert pixels_of(coloured)[24, 24].any()
-        assert not pixels_of(coloured)[0, 0].any()
+        assert pixels_of(colored)[24, 24].any()
+        assert not pixels_of(colored)[0, 0].any()
 
 
 async def test_boxes_are_around_what_is_labelled():

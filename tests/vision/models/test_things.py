@@ -60,9 +60,9 @@ def look(playground, eye, model):
     x, y, z = simulation.data.geom_xpos[geoms].mean(axis=0) - eye
     turn = quaternion_from_rpy((0.0, atan2(-z, hypot(x, y)), atan2(y, x)))
     optics = Optics(WIDTH, HEIGHT, FOCAL, FOCAL, WIDTH / 2, HEIGHT / 2, 0.05, 30.0)
-    image = renderer.render(optics, (*eye, *turn), Channels.COLOUR | Channels.GEOMS)
+    image = renderer.render(optics, (*eye, *turn), Channels.COLOR | Channels.GEOMS)
     rows, columns = np.nonzero(np.isin(image.geoms, geoms))
-    return image.colour, np.array([[columns.min(), rows.min(), columns.max() + 1, rows.max() + 1]], np.float32)
+    return image.color, np.array([[columns.min(), rows.min(), columns.max() + 1, rows.max() + 1]], np.float32)
 
 
 @pytest.mark.parametrize(("eye", "model", "name"), LOOKS, ids=[look[1] for look in LOOKS])

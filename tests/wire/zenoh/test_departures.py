@@ -45,7 +45,7 @@ class Scene:
     def names_lost(self) -> list[str]:
         """Those that are lost once all is judged."""
         self.time += 2 * GRACE
-        assert self.departures.review() is None
+        assert self.departures.report_lost_publishers() is None
         return [each.name for each in self.lost]
 
 

@@ -22,8 +22,8 @@ class _Server(ActionServer):
 
     on_cancel_requested: Callable[[ServerGoalHandle], object]
 
-    def state_changed(self, goal: ServerGoalHandle) -> None:
-        super().state_changed(goal)
+    def on_goal_state_change(self, goal: ServerGoalHandle) -> None:
+        super().on_goal_state_change(goal)
         if goal.is_cancel_requested:
             self.on_cancel_requested(goal)
 

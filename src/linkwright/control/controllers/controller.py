@@ -115,7 +115,7 @@ class Controller(ABC, Generic[P]):
         self.time_ns = 0
         self.state: LifecycleState = UNCONFIGURED
         self._parameters: ParameterTable[P] = ParameterTable(context.node.graph_node, self.PARAMETERS)
-        for name, hint in self._parameters.unknown():
+        for name, hint in self._parameters.unknown_parameters():
             message = phrase("'{name}' is not a parameter of this controller", name=name)
             self.node.logger.warning(message if hint is None else joined((message, hint), "; "))
 

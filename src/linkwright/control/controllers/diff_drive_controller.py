@@ -85,7 +85,7 @@ class DiffDriveController(LimitedDrive[Parameters]):
             parameters.right_wheel_radius_multiplier * parameters.wheel_radius,
         )
         super().on_configure()
-        self._odometry.serve(self.node)
+        self._odometry.create_reset_service(self.node)
 
     def _check_wheels(self) -> None:
         parameters = self.parameters

@@ -26,7 +26,10 @@ def variances(name: str, values: tuple[float, ...]) -> Variances:
     if len(values) != _AXES:
         raise ControllerError(
             phrase(
-                "'{name}' must have {needed} numbers, but it has {count}", name=name, needed=_AXES, count=len(values)
+                "'{name}' must have {expected_count} numbers, but it has {count}",
+                name=name,
+                expected_count=_AXES,
+                count=len(values),
             )
         )
     return values
@@ -119,7 +122,7 @@ class DriveOdometry:
         self._last_published_ns = last_ns + period_ns
         return True
 
-    def serve(self, node: ControllerNode) -> None:
+    def create_reset_service(self, node: ControllerNode) -> None:
         """Offer the service ``~/set_odometry``, which resets the pose.
 
         The service type is ``control_msgs/srv/SetOdometry``.

@@ -59,21 +59,21 @@ class _ForwardingController(Controller[P], Generic[P]):
     def on_configure(self) -> None:
         """Subscribe to the commands."""
         self._interface_names()
-        self._wanted: Sequence[float] | None = None
+        self._command: Sequence[float] | None = None
         commander = self.node.commander(self._stop_velocities)
         self.node.subscribe("std_msgs/msg/Float64MultiArray", "~/commands", self._on_command, commander=commander)
 
     def on_activate(self) -> None:
         """Discard earlier commands."""
-        self._wanted = None
+        self._command = None
 
     def on_deactivate(self) -> None:
         """Discard the last command."""
-        self._wanted = None
+        self._command = None
 
     def update(self, time_ns: int, period_s: float) -> None:
         """Forward the last command."""
-        values = self._wanted
+        values = self._command
         if values is None:
             return
         for command, value in zip(self.commands, values, strict=True):
@@ -84,15 +84,15 @@ class _ForwardingController(Controller[P], Generic[P]):
 
         Returns whether any commanded velocity was not zero.
         """
-        if self._wanted is None:
+        if self._command is None:
             return False
         is_velocity = [name.endswith(f"/{VELOCITY}") for name in self._interface_names()]
-        old_values = self._wanted
-        self._wanted = [
+        old_values = self._command
+        self._command = [
             0.0 if is_velocity_value else value
             for is_velocity_value, value in zip(is_velocity, old_values, strict=True)
         ]
-        return self._wanted != old_values
+        return self._command != old_values
 
     def _on_command(self, message: Any) -> None:
         values, count = list(message.data), len(self.commands)
@@ -107,7 +107,7 @@ class _ForwardingController(Controller[P], Generic[P]):
         if any(value != value for value in values):
             self.node.logger.error("a command with NaN is not forwarded", throttle_duration_sec=1.0)
             return
-        self._wanted = values
+        self._command = values
 
 
 class ForwardCommandController(_ForwardingController[ForwardParameters]):

@@ -96,7 +96,7 @@ class Gripper(Controller[P]):
         self._position_state, self._velocity_state = self.states[0], self.states[1]
         if not isfinite(self._position_state.value):
             raise ControllerError(phrase("the positions of the joints are not known yet"))
-        self._stay()
+        self._hold_position()
         self._goal = None
         self._last_motion_ns = self._next_feedback_ns = 0
         self._active = True
@@ -113,7 +113,7 @@ class Gripper(Controller[P]):
     def update(self, time_ns: int, period_s: float) -> None:
         """Command the gripper, and end the goal if it is reached or the gripper is stalled."""
         position, velocity = self._position_state.value, self._velocity_state.value
-        effort = self._command(self._wanted - position, velocity, period_s)
+        effort = self._command(self._target - position, velocity, period_s)
         goal = self._goal
         if goal is None:
             return
@@ -122,7 +122,7 @@ class Gripper(Controller[P]):
             goal.feedback(self._report(self._feedback(), position, velocity, effort))
         if abs(velocity) > self.parameters.stall_velocity_threshold:
             self._last_motion_ns = time_ns
-        is_reached = abs(self._wanted - position) < self.parameters.goal_tolerance
+        is_reached = abs(self._target - position) < self.parameters.goal_tolerance
         is_stalled = (
             not is_reached and time_ns - self._last_motion_ns > self.parameters.stall_timeout * NANOSECONDS_PER_SECOND
         )
@@ -137,7 +137,7 @@ class Gripper(Controller[P]):
     # --- goals --------------------------------------------------------------------------------------------------------
 
     def _is_allowed(self, request: Any) -> bool:
-        problem = self._objection(request)
+        problem = self._goal_problem(request)
         if not self._active:
             problem = "Can't accept new action goals. Controller is not running."
         if problem is not None:
@@ -161,20 +161,20 @@ class Gripper(Controller[P]):
         if self._goal is goal:
             self.node.logger.info("Canceling active action goal because cancel callback received.")
             self._cancel_goal()
-            self._stay()
+            self._hold_position()
 
     def _cancel_goal(self) -> None:
         if self._goal is not None:
             self._goal.cancel(self._result())
             self._goal = None
 
-    def _stay(self) -> None:
-        self._wanted = self._position_state.value
+    def _hold_position(self) -> None:
+        self._target = self._position_state.value
         self._max_effort = self.parameters.max_effort
 
     # --- steps that differ between grippers ---------------------------------------------------------------------------
 
-    def _objection(self, request: Any) -> str | None:
+    def _goal_problem(self, request: Any) -> str | None:
         """Return the error message for an invalid goal, or None if the goal is valid."""
         if isfinite(request.command.position):
             return None
@@ -182,7 +182,7 @@ class Gripper(Controller[P]):
 
     def _accept(self, request: Any) -> None:
         """Store the position and maximum effort of a goal."""
-        self._wanted = request.command.position
+        self._target = request.command.position
         self._max_effort = request.command.max_effort
 
     def _command(self, error: float, velocity: float, period_s: float) -> float:
@@ -190,7 +190,7 @@ class Gripper(Controller[P]):
 
         By default, the reported effort is the maximum effort.
         """
-        self.commands[0].value = self._wanted
+        self.commands[0].value = self._target
         return self._max_effort
 
     def _report(self, message: Any, position: float, velocity: float, effort: float) -> Any:
@@ -251,11 +251,11 @@ class ParallelGripper(Gripper[ParallelGripperParameters]):
         ]
         return [f"{parameters.joint}/{POSITION}", *limit_interfaces]
 
-    def _stay(self) -> None:
-        super()._stay()
+    def _hold_position(self) -> None:
+        super()._hold_position()
         self._max_velocity = self.parameters.max_velocity
 
-    def _objection(self, request: Any) -> str | None:
+    def _goal_problem(self, request: Any) -> str | None:
         positions = request.command.position
         if len(positions) != 1:
             return f"Received action goal with wrong number of position values, expects 1, got {len(positions)}"
@@ -263,7 +263,7 @@ class ParallelGripper(Gripper[ParallelGripperParameters]):
 
     def _accept(self, request: Any) -> None:
         parameters, command = self.parameters, request.command
-        self._wanted = command.position[0]
+        self._target = command.position[0]
         self._max_effort = (
             command.effort[0] if parameters.max_effort_interface and len(command.effort) else parameters.max_effort
         )

@@ -350,7 +350,7 @@ class JointTrajectoryController(Controller[Parameters]):
     def _is_within(self, tolerances: Sequence[StateTolerance]) -> bool:
         error = self._error
         errors = zip(tolerances, error.positions, error.velocities, error.accelerations, strict=True)
-        return all(tolerance.holds(*joint_errors) for tolerance, *joint_errors in errors)
+        return all(tolerance.is_within(*joint_errors) for tolerance, *joint_errors in errors)
 
     def _report(self, tolerances: Sequence[StateTolerance]) -> None:
         error = self._error

@@ -26,7 +26,7 @@ _DEFAULT_VARIANCES = (0.0, 7.0, 14.0, 21.0, 28.0, 35.0)
 
 @dataclass(frozen=True, kw_only=True)
 class BaseFrameOffset:
-    """The pose of the robot's frame relative to the centre of the wheels, in m and rad."""
+    """The pose of the robot's frame relative to the center of the wheels, in m and rad."""
 
     x: float = 0.0
     y: float = 0.0
@@ -148,7 +148,7 @@ class MecanumDriveController(Controller[Parameters]):
             velocity_variances=variances("twist_covariance_diagonal", parameters.twist_covariance_diagonal),
             publishes_transforms=parameters.enable_odom_tf,
         )
-        self._odometry.serve(node)
+        self._odometry.create_reset_service(node)
         self._state = node.publisher("control_msgs/msg/MecanumDriveControllerState", "~/controller_state")
 
     def on_activate(self) -> None:
@@ -196,7 +196,7 @@ class MecanumDriveController(Controller[Parameters]):
             command.value = value
 
     def _base_velocity(self, forward: float, sideways: float, angular: float) -> tuple[float, float, float]:
-        """Return the velocity of the robot's frame from the velocity of the wheels' centre."""
+        """Return the velocity of the robot's frame from the velocity of the wheels' center."""
         offset = self._settings.kinematics.base_frame_offset
         base_forward, base_sideways = _rotate(
             forward - offset.y * angular, sideways + offset.x * angular, -offset.theta

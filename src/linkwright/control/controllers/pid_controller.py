@@ -211,7 +211,7 @@ class PidController(Controller[Parameters]):
         indices = [names.index(name) for name in expected_names]
         ordered = [float(values[index]) for index in indices]
         if self._has_rates:
-            ordered += [float(rates[place]) if rates else nan for place in indices]
+            ordered += [float(rates[index]) if rates else nan for index in indices]
         return ordered
 
     def _on_set_feedforward(self, request: Any, response: Any) -> Any:

@@ -90,11 +90,11 @@ def _bounds(axis: str, kind: str, min_value: float, max_value: float) -> Bounds:
     if min_value > max_value:
         raise ControllerError(
             phrase(
-                "the minimum {kind} of '{axis}' ({least:g}) is greater than the maximum ({greatest:g})",
+                "the minimum {kind} of '{axis}' ({minimum:g}) is greater than the maximum ({maximum:g})",
                 kind=kind,
                 axis=axis,
-                least=min_value,
-                greatest=max_value,
+                minimum=min_value,
+                maximum=max_value,
             )
         )
     return min_value, max_value

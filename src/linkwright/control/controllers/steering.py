@@ -170,7 +170,7 @@ class SteeringController(Controller[P], Generic[P]):
             publishes_transforms=parameters.enable_odom_tf,
             window=parameters.velocity_rolling_window_size,
         )
-        self._odometry.serve(node)
+        self._odometry.create_reset_service(node)
         self._state = node.publisher("control_msgs/msg/SteeringControllerStatus", "~/controller_state")
 
     def _check_joints(self) -> None:
@@ -184,10 +184,11 @@ class SteeringController(Controller[P], Generic[P]):
             if len(names) != needed:
                 raise ControllerError(
                     phrase(
-                        "{kind} configuration requires exactly {needed} {what} joint(s), but {count} were provided",
+                        "{kind} configuration requires exactly {expected_count} {role} joint(s), "
+                        "but {count} were provided",
                         kind=self.KIND,
-                        needed=needed,
-                        what=role,
+                        expected_count=needed,
+                        role=role,
                         count=len(names),
                     )
                 )

@@ -214,12 +214,12 @@ class CommandLimits:
                     self._reported.add((limiter.name, kind))
                     self._logger.warning(
                         phrase(
-                            "joint '{joint}': the commanded {kind} {wanted:g} is outside its limits; {given:g} "
+                            "joint '{joint}': the commanded {kind} {requested:g} is outside its limits; {limited:g} "
                             "is sent instead (reported once)",
                             joint=limiter.name,
                             kind=kind,
-                            wanted=requested,
-                            given=limited,
+                            requested=requested,
+                            limited=limited,
                         )
                     )
 

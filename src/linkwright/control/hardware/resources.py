@@ -56,7 +56,7 @@ class Resources:
 
     # --- loading ------------------------------------------------------------------------------------------------------
 
-    def load(self, descriptions: Sequence[HardwareDescription], make: HardwareFactory) -> None:
+    def load(self, descriptions: Sequence[HardwareDescription], create_hardware: HardwareFactory) -> None:
         """Create hardware from descriptions.
 
         If a type is not supported, a mock replaces it, and a warning is logged.
@@ -64,7 +64,7 @@ class Resources:
         for description in descriptions:
             self._logger.info(f"Loading hardware '{description.name}' ")
             try:
-                hardware = make(description, self._logger)
+                hardware = create_hardware(description, self._logger)
             except LinkwrightError as error:
                 self._logger.error(error.diagnostics[0].message)  # noqa: TRY400 - the message is for users
                 continue
@@ -156,11 +156,13 @@ class Resources:
             raise KeyError(f"{kind} interface with '{name}' does not exist")
         return match
 
-    def offer(self, controller: str, references: list[CommandInterface], exported: list[StateInterface]) -> None:
+    def add_exported_interfaces(
+        self, controller: str, references: list[CommandInterface], exported: list[StateInterface]
+    ) -> None:
         """Add the references and exported states of a chainable controller."""
         self._references[controller], self._exported[controller] = references, exported
 
-    def withdraw(self, controller: str) -> None:
+    def remove_exported_interfaces(self, controller: str) -> None:
         """Remove the references and exported states of a controller."""
         self.set_available(controller, available=False)
         self._references.pop(controller, None)

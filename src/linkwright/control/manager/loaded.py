@@ -13,7 +13,7 @@ from linkwright.graph.lifecycle.states import ACTIVE, INACTIVE
 
 
 @dataclass(eq=False, slots=True)
-class Loaded:
+class LoadedController:
     """A controller that a manager has loaded.
 
     Attributes:
@@ -87,17 +87,17 @@ class Loaded:
             self.last_commands = values
             return ""
         replaced_name = ""
-        before = self.last_commands
+        last_values = self.last_commands
         for index, command in enumerate(commands):
             value = command.value
             if isfinite(value):
-                before[index] = value
-            elif isfinite(before[index]):
+                last_values[index] = value
+            elif isfinite(last_values[index]):
                 replaced_name = replaced_name or command.name
-                command.value = before[index] if command.kind == POSITION else 0.0
+                command.value = last_values[index] if command.kind == POSITION else 0.0
             elif value == value:  # The value is infinite, and a finite command is missing.
                 replaced_name = replaced_name or command.name
-                command.value = before[index]
+                command.value = last_values[index]
         return replaced_name
 
     def halt(self) -> None:

@@ -18,8 +18,8 @@ from linkwright.control.hardware.component import Hardware
 from linkwright.control.hardware.interfaces import CommandInterface, StateInterface
 from linkwright.control.hardware.limits import CommandLimits
 from linkwright.control.hardware.resources import Resources
-from linkwright.control.manager.loaded import Loaded
-from linkwright.control.manager.nodes import ProcessArguments, controller_node, words_of
+from linkwright.control.manager.loaded import LoadedController
+from linkwright.control.manager.nodes import ProcessArguments, controller_node, string_list
 from linkwright.control.manager.switching import BEST_EFFORT, Switch, SwitchPlanner, SwitchRefusedError
 from linkwright.diagnostics import LinkwrightError, phrase
 from linkwright.graph import Node, Parameter
@@ -75,13 +75,13 @@ class ControllerManager:
         self.resources = resources
         self.update_rate = update_rate
         self.robot_description = ""
-        self.controllers: dict[str, Loaded] = {}
+        self.controllers: dict[str, LoadedController] = {}
         self.limits: CommandLimits | None = None
         self.on_change: Callable[[], object] = lambda: None
         self._exchange = exchange
         self._process = process or ProcessArguments()
         self._logger = node.get_logger()
-        self._active: list[Loaded] = []
+        self._active: list[LoadedController] = []
 
     # --- loading ------------------------------------------------------------------------------------------------------
 
@@ -94,7 +94,7 @@ class ControllerManager:
         if name in self.controllers:
             logger.error(f"A controller named '{name}' was already loaded inside the controller manager")
             return False
-        kind = next(iter(words_of(self.node, f"{name}.type")), "")
+        kind = next(iter(string_list(self.node, f"{name}.type")), "")
         if not kind:
             logger.error(f"The 'type' param was not defined for '{name}'.")
             return False
@@ -112,8 +112,8 @@ class ControllerManager:
         if controller is None:
             logger.error(f"Could not initialize the controller named '{name}'")
             return False
-        fallbacks = tuple(words_of(self.node, f"{name}.fallback_controllers"))
-        self.controllers[name] = Loaded(name, str(kind), controller, fallbacks)
+        fallbacks = tuple(string_list(self.node, f"{name}.fallback_controllers"))
+        self.controllers[name] = LoadedController(name, str(kind), controller, fallbacks)
         self.on_change()
         return True
 
@@ -131,7 +131,7 @@ class ControllerManager:
         except LinkwrightError as error:
             self._log_error(error)
         except Exception as error:  # noqa: BLE001 - an error of a controller must not stop other controllers
-            self._logger.error(_traced("Exception thrown during init stage with message", error))  # noqa: TRY400 - `_traced` has its place
+            self._logger.error(_with_traceback("Exception thrown during init stage with message", error))  # noqa: TRY400 - `_with_traceback` has its place
         if node is not None:
             node.destroy_node()
         return None
@@ -222,7 +222,7 @@ class ControllerManager:
             return False
         if loaded.is_inactive and not self._clean_up(loaded):
             return False
-        if not self._call(loaded, "on_configure", controller.on_configure):
+        if not self._call_callback(loaded, "on_configure", controller.on_configure):
             label = controller.state.label
             self._logger.error(f"After configuring, controller '{name}' is in state '{label}' , expected inactive.")
             return False
@@ -233,8 +233,8 @@ class ControllerManager:
         ]
         exported = [StateInterface(name, exported_state) for exported_state in controller.exported_states()]
         controller.references, controller.exported = references, exported
-        self.resources.offer(name, references, exported)
-        self._sort()
+        self.resources.add_exported_interfaces(name, references, exported)
+        self._sort_controllers()
         self.on_change()
         return True
 
@@ -249,7 +249,7 @@ class ControllerManager:
         self.on_change()
         return is_clean
 
-    def _set_rate(self, loaded: Loaded) -> None:
+    def _set_rate(self, loaded: LoadedController) -> None:
         controller_rate, manager_rate = loaded.controller.update_rate, self.update_rate
         loaded.period_ns = (
             0
@@ -265,25 +265,25 @@ class ControllerManager:
                 "rate."
             )
 
-    def _clean_up(self, loaded: Loaded) -> bool:
-        self.resources.withdraw(loaded.name)
-        is_clean = self._call(loaded, "on_cleanup", loaded.controller.on_cleanup)
+    def _clean_up(self, loaded: LoadedController) -> bool:
+        self.resources.remove_exported_interfaces(loaded.name)
+        is_clean = self._call_callback(loaded, "on_cleanup", loaded.controller.on_cleanup)
         loaded.controller.node.clear()
         loaded.controller.references, loaded.controller.exported = [], []
         loaded.controller.state = UNCONFIGURED if is_clean else loaded.controller.state
         return is_clean
 
-    def _sort(self) -> None:
+    def _sort_controllers(self) -> None:
         """Sort the controllers by their dependencies, into the order of updates.
 
         A controller precedes the controllers whose references it commands, and follows the controllers whose exported
         states it reads. If it does both, it precedes them, as a drive precedes the PID controllers that export wheel
         speeds.
         """
-        order: dict[str, Loaded] = {}
+        order: dict[str, LoadedController] = {}
         names = self.resources.command_names
 
-        def add(loaded: Loaded, path: tuple[str, ...]) -> None:
+        def add(loaded: LoadedController, path: tuple[str, ...]) -> None:
             if loaded.name in order or loaded.name in path:
                 return
             references = set(self.resources.reference_names(loaded.name))
@@ -337,7 +337,7 @@ class ControllerManager:
                 self._logger.error(problem)
                 self._logger.error(message)
                 return False, message
-        failed = self._perform(switch, start, stop)
+        failed = self._perform_switch(switch, start, stop)
         self.on_change()
         if failed:
             return False, "; ".join(failed)
@@ -347,7 +347,7 @@ class ControllerManager:
         all_names = self.resources.command_names
         return [command_name for name in names for command_name in self.controllers[name].claimed_commands(all_names)]
 
-    def _perform(self, switch: Switch, start: list[str], stop: list[str]) -> list[str]:
+    def _perform_switch(self, switch: Switch, start: list[str], stop: list[str]) -> list[str]:
         self.resources.perform_switch(start, stop)
         for name in switch.deactivate:
             self._deactivate(self.controllers[name])
@@ -358,11 +358,11 @@ class ControllerManager:
         activation_order = [controller for controller in reversed(self.controllers) if controller in switch.activate]
         return [failure for name in activation_order if (failure := self._activate(self.controllers[name]))]
 
-    def _set_chained(self, loaded: Loaded, *, chained: bool) -> None:
-        if self._call(loaded, "on_set_chained_mode", lambda: loaded.controller.on_set_chained_mode(chained)):
+    def _set_chained(self, loaded: LoadedController, *, chained: bool) -> None:
+        if self._call_callback(loaded, "on_set_chained_mode", lambda: loaded.controller.on_set_chained_mode(chained)):
             loaded.controller.is_chained = chained
 
-    def _activate(self, loaded: Loaded) -> str:
+    def _activate(self, loaded: LoadedController) -> str:
         """Activate a controller, and return an error message, or an empty string if that succeeded."""
         controller, resources, name = loaded.controller, self.resources, loaded.name
         claims = loaded.claimed_commands(
@@ -388,7 +388,7 @@ class ControllerManager:
             return failure
         resources.claims.update(dict.fromkeys(claims, name))
         loaded.next_ns, loaded.last_commands = 0, [nan] * len(controller.commands)
-        if not self._call(loaded, "on_activate", controller.on_activate):
+        if not self._call_callback(loaded, "on_activate", controller.on_activate):
             label = controller.state.label
             failure = f"After activation, controller '{name}' is in state '{label}' (2), expected 'active' (3)."
             self._logger.error(failure)
@@ -399,9 +399,9 @@ class ControllerManager:
         self._active = [controller for controller in self.controllers.values() if controller.is_active]
         return ""
 
-    def _deactivate(self, loaded: Loaded, *, stop_joints: bool = False) -> None:
+    def _deactivate(self, loaded: LoadedController, *, stop_joints: bool = False) -> None:
         controller = loaded.controller
-        self._call(loaded, "on_deactivate", controller.on_deactivate)
+        self._call_callback(loaded, "on_deactivate", controller.on_deactivate)
         loaded.replace_invalid_commands()
         if stop_joints:
             loaded.halt()
@@ -410,13 +410,13 @@ class ControllerManager:
         self.resources.set_available(loaded.name, available=False)
         self._active = [controller for controller in self._active if controller is not loaded]
 
-    def _release(self, loaded: Loaded) -> None:
+    def _release(self, loaded: LoadedController) -> None:
         claims = self.resources.claims
         for name in [interface_name for interface_name, owner in claims.items() if owner == loaded.name]:
             del claims[name]
         loaded.controller.commands, loaded.controller.states = [], []
 
-    def _call(self, loaded: Loaded, callback_name: str, callback: Callable[[], object]) -> bool:
+    def _call_callback(self, loaded: LoadedController, callback_name: str, callback: Callable[[], object]) -> bool:
         """Call a callback of a controller, log any error, and return whether the callback succeeded."""
         logger = loaded.controller.node.logger
         try:
@@ -425,17 +425,17 @@ class ControllerManager:
             logger.error(error.diagnostics[0].message)  # noqa: TRY400 - the message is for users
             return False
         except Exception as error:  # noqa: BLE001 - an error of a controller must not stop other controllers
-            logger.error(_traced(f"Caught exception in callback for {callback_name}", error))  # noqa: TRY400 - `_traced` has its place
+            logger.error(_with_traceback(f"Caught exception in callback for {callback_name}", error))  # noqa: TRY400 - `_with_traceback` has its place
             self._on_error(loaded)
             return False
         return True
 
-    def _on_error(self, loaded: Loaded) -> None:
+    def _on_error(self, loaded: LoadedController) -> None:
         try:
             loaded.controller.on_error()
         except Exception as error:  # noqa: BLE001 - an error of a controller must not stop other controllers
             logger = loaded.controller.node.logger
-            logger.error(_traced("Caught exception in callback for on_error", error))  # noqa: TRY400 - as above
+            logger.error(_with_traceback("Caught exception in callback for on_error", error))  # noqa: TRY400 - as above
 
     def set_hardware_state(self, name: str, target: LifecycleState) -> bool:
         """Bring hardware to a lifecycle state, and return whether the state was reached.
@@ -488,19 +488,19 @@ class ControllerManager:
         if failed:
             self._stop_users_of(failed)
 
-    def _log_wrong_command(self, loaded: Loaded, name: str) -> None:
+    def _log_wrong_command(self, loaded: LoadedController, name: str) -> None:
         loaded.controller.node.logger.error(
             f"The command '{name}' is not a number; the hardware gets the last position, or 0 for velocity and effort",
             throttle_duration_sec=1.0,
         )
 
-    def _fail(self, loaded: Loaded, error: Exception) -> None:
+    def _fail(self, loaded: LoadedController, error: Exception) -> None:
         """Handle an exception in a controller's update.
 
         The controller and the controllers that command it are deactivated, their joints are stopped, and the fallbacks
         are activated.
         """
-        message = _traced("Caught exception while updating", error)
+        message = _with_traceback("Caught exception while updating", error)
         if isinstance(error, ControllerError):
             message = error.diagnostics[0].message
         loaded.controller.node.logger.error(message)
@@ -513,7 +513,7 @@ class ControllerManager:
             self._logger.error(f"Activating fallback controllers : [ {' '.join(loaded.fallbacks)} ]")
             self.switch(loaded.fallbacks, (), BEST_EFFORT)
 
-    def _commanding_controllers(self, loaded: Loaded) -> list[Loaded]:
+    def _commanding_controllers(self, loaded: LoadedController) -> list[LoadedController]:
         """Return the active controllers that command a controller directly or indirectly."""
         references = self.resources.reference_names(loaded.name)
         owners = dict.fromkeys(
@@ -535,7 +535,7 @@ class ControllerManager:
             self._stop(users)
         self.on_change()
 
-    def _users_of(self, hardware: Sequence[Hardware]) -> list[Loaded]:
+    def _users_of(self, hardware: Sequence[Hardware]) -> list[LoadedController]:
         """Return the active controllers that use hardware, and the controllers that command them."""
         names = {name for component in hardware for name in self.resources.names_of(component)}
         users = [
@@ -553,7 +553,7 @@ class ControllerManager:
             ),
         ]
 
-    def _stop(self, controllers: Sequence[Loaded]) -> None:
+    def _stop(self, controllers: Sequence[LoadedController]) -> None:
         for controller in controllers:
             if controller.is_active:
                 commanded_names = {command.component for command in controller.controller.commands}
@@ -573,7 +573,7 @@ def _component_names(interfaces: Iterable[str]) -> set[str]:
     return {interface.partition("/")[0] for interface in interfaces}
 
 
-def _traced(message: str, error: Exception) -> str:
+def _with_traceback(message: str, error: Exception) -> str:
     """Return an error message with a traceback, for authors of controllers."""
     frames = traceback.format_exception(type(error), error, error.__traceback__)
     return f"{message}: {type(error).__name__}: {error}\n{''.join(frames).rstrip()}"

@@ -10,7 +10,7 @@ from typing import Any
 
 from linkwright.control.controllers.registry import controller_types
 from linkwright.control.hardware.component import Hardware
-from linkwright.control.manager.loaded import Loaded
+from linkwright.control.manager.loaded import LoadedController
 from linkwright.control.manager.manager import ControllerManager
 from linkwright.control.manager.statistics import StatisticsTopics
 from linkwright.graph.lifecycle.states import ACTIVE, FINALIZED, INACTIVE, UNCONFIGURED, LifecycleState
@@ -97,7 +97,7 @@ class ManagerServices:
         response.controller = [self._controller(controller) for controller in self._manager.controllers.values()]
         return response
 
-    def _controller(self, loaded: Loaded) -> Any:
+    def _controller(self, loaded: LoadedController) -> Any:
         resources = self._manager.resources
         controller = loaded.controller
         message = get_message(f"{_PACKAGE}/msg/ControllerState")(name=loaded.name, type=loaded.type)

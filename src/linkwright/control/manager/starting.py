@@ -9,7 +9,7 @@ from linkwright.control.hardware.description import hardware_from_robot
 from linkwright.control.hardware.limits import CommandLimits, JointLimiter, limits_of
 from linkwright.control.hardware.resources import HardwareFactory, Resources
 from linkwright.control.manager.manager import ControllerManager
-from linkwright.control.manager.nodes import words_of
+from linkwright.control.manager.nodes import string_list
 from linkwright.descriptions import DescriptionLibrary
 from linkwright.diagnostics import Diagnostic, Severity
 from linkwright.graph import Logger
@@ -50,11 +50,11 @@ def load_hardware(manager: ControllerManager, text: str, library: DescriptionLib
         manager.limits = _command_limits(reading.robot, resources, logger)
     remaining = dict.fromkeys(resources.components)
     inactive_names = [
-        *words_of(node, f"{_INITIAL_STATE_PARAMETER}.inactive"),
-        *words_of(node, "configure_components_on_start"),
+        *string_list(node, f"{_INITIAL_STATE_PARAMETER}.inactive"),
+        *string_list(node, "configure_components_on_start"),
     ]
     for target, names in (
-        (UNCONFIGURED, words_of(node, f"{_INITIAL_STATE_PARAMETER}.unconfigured")),
+        (UNCONFIGURED, string_list(node, f"{_INITIAL_STATE_PARAMETER}.unconfigured")),
         (INACTIVE, inactive_names),
     ):
         for name in filter(None, names):
@@ -64,7 +64,7 @@ def load_hardware(manager: ControllerManager, text: str, library: DescriptionLib
             logger.info(f"Setting component '{name}' to '{target.label}' state.")
             resources.set_state(name, target)
             del remaining[name]
-    activated_names = words_of(node, "activate_components_on_start")
+    activated_names = string_list(node, "activate_components_on_start")
     for name in remaining:
         if not activated_names or name in activated_names:
             resources.set_state(name, ACTIVE)

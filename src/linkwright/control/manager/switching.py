@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from linkwright.control.hardware.resources import Resources
-from linkwright.control.manager.loaded import Loaded
+from linkwright.control.manager.loaded import LoadedController
 from linkwright.graph.log.logger import Logger
 
 BEST_EFFORT, STRICT, AUTO, FORCE_AUTO = 1, 2, 3, 4
@@ -55,7 +55,7 @@ class SwitchPlanner:
     """
 
     def __init__(
-        self, controllers: Mapping[str, Loaded], resources: Resources, logger: Logger, strictness: int
+        self, controllers: Mapping[str, LoadedController], resources: Resources, logger: Logger, strictness: int
     ) -> None:
         self._controllers = controllers
         self._resources = resources
@@ -123,14 +123,14 @@ class SwitchPlanner:
             raise SwitchRefusedError(problem)
         return False
 
-    def _following_names(self, loaded: Loaded) -> Iterator[str]:
+    def _following_names(self, loaded: LoadedController) -> Iterator[str]:
         """Yield the names of the controllers whose references a controller commands."""
         for interface in loaded.claimed_commands([]):
             name = interface.partition("/")[0]
             if name in self._controllers and name != loaded.name:
                 yield name
 
-    def _preceding_controllers(self, loaded: Loaded) -> Iterator[Loaded]:
+    def _preceding_controllers(self, loaded: LoadedController) -> Iterator[LoadedController]:
         """Yield the controllers that command the references of a controller."""
         references = set(self._resources.reference_names(loaded.name))
         for other in self._controllers.values():
@@ -164,7 +164,7 @@ class SwitchPlanner:
             )
         return self._following_problem(loaded)
 
-    def _following_problem(self, loaded: Loaded) -> str:
+    def _following_problem(self, loaded: LoadedController) -> str:
         switch = self._switch
         for interface in loaded.claimed_commands([]):
             commanded = self._controllers.get(interface.partition("/")[0])

@@ -63,7 +63,7 @@ class Pid:
     def reset(self) -> None:
         """Reset the integral and the last error."""
         self.integral = 0.0
-        self._before = 0.0
+        self._previous_error = 0.0
 
     def command(self, error: float, period_s: float, rate: float | None = None) -> float:
         """Return the command for an error.
@@ -79,8 +79,8 @@ class Pid:
         if period_s <= 0.0 or not isfinite(error):
             return 0.0
         if rate is None:
-            rate = (error - self._before) / period_s
-            self._before = error
+            rate = (error - self._previous_error) / period_s
+            self._previous_error = error
         elif not isfinite(rate):
             return 0.0
         gains = self.gains

@@ -26,7 +26,7 @@ class StateTolerance:
     velocity: float = 0.0
     acceleration: float = 0.0
 
-    def holds(self, position: float, velocity: float, acceleration: float) -> bool:
+    def is_within(self, position: float, velocity: float, acceleration: float) -> bool:
         """Return whether all three errors are within the tolerance."""
         return (
             not (self.position > 0.0 and abs(position) > self.position)

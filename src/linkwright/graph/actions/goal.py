@@ -78,7 +78,7 @@ class GoalOwner(Protocol):
     def publish_feedback(self, goal_id: Any, feedback: Any) -> None:
         """Publish the feedback of a goal."""
 
-    def state_changed(self, goal: ServerGoalHandle) -> None:
+    def on_goal_state_change(self, goal: ServerGoalHandle) -> None:
         """Publish the states of all goals after the state of one has changed."""
 
     def forget(self, goal: ServerGoalHandle) -> None:
@@ -197,7 +197,7 @@ class ServerGoalHandle:
                     f"{self._status.name} with event {event.name}"
                 )
             self._status = new_status
-        self._server.state_changed(self)
+        self._server.on_goal_state_change(self)
 
     def destroy(self) -> None:
         """Deactivate the handle, and remove the goal from its server."""

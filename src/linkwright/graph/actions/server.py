@@ -196,7 +196,7 @@ class ActionServer(ActionEndpoint):
             message.feedback = feedback
             self._feedback_publisher.publish(message)
 
-    def state_changed(self, goal: ServerGoalHandle) -> None:
+    def on_goal_state_change(self, goal: ServerGoalHandle) -> None:
         """Publish the states of all goals.
 
         If the goal has ended, start the timeout of its result.

@@ -65,7 +65,7 @@ class MessageInfo(Mapping[str, Any]):
         source_timestamp: when the message was published, in nanoseconds since the epoch.
         received_timestamp: when the message was received, in nanoseconds since the epoch.
         publisher_gid: the GID of the publisher, 16 bytes.
-        from_outside: whether another process sent the message.
+        is_remote: whether another process sent the message.
         publication_sequence_number: the publisher's count of messages; None if the publisher does not send it.
         reception_sequence_number: the subscription's count of messages; None if the subscription does not count.
     """
@@ -73,7 +73,7 @@ class MessageInfo(Mapping[str, Any]):
     source_timestamp: int
     received_timestamp: int
     publisher_gid: bytes = bytes(16)
-    from_outside: bool = False
+    is_remote: bool = False
     publication_sequence_number: int | None = None
     reception_sequence_number: int | None = None
 
@@ -229,7 +229,7 @@ class Endpoint(Part):
 class MatchListener(Protocol):
     """A listener that is notified when endpoints match, and when they no longer match."""
 
-    def matched(self, change: int) -> None:
+    def on_match_change(self, change: int) -> None:
         """Handle a change in the number of matching endpoints.
 
         Args:
@@ -250,7 +250,7 @@ class TopicEndpoint(Endpoint, Generic[M]):
     is_alive = True
     events: MatchListener | None
     _check_interface = staticmethod(check_is_valid_msg_type)
-    _outside_count = 0
+    _remote_count = 0
 
     @property
     def topic_name(self) -> str:
@@ -267,14 +267,14 @@ class TopicEndpoint(Endpoint, Generic[M]):
         """The message class."""
         return self.interface  # type: ignore[no-any-return]  # made from the name of a type
 
-    def set_outside_count(self, count: int) -> None:
+    def set_remote_count(self, count: int) -> None:
         """Set the number of matching endpoints in other processes, and report a change.
 
         The transport calls this method. A change causes a QoS event.
         """
-        previous_count, self._outside_count = self._outside_count, count
+        previous_count, self._remote_count = self._remote_count, count
         if self.events is not None and count != previous_count:
-            self.events.matched(count - previous_count)
+            self.events.on_match_change(count - previous_count)
 
 
 class ServiceEndpoint(Endpoint):

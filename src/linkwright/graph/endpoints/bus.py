@@ -29,13 +29,13 @@ class Transport(Protocol):
     ``open_*`` is called for each endpoint when it is created, ``close_*`` when it is destroyed; neither may block.
 
     Incoming traffic is passed to ``Subscription.receive(message, info)`` and ``Service.receive(request, reply,
-    request_id)``, from any thread. For outgoing traffic the transport calls ``Publisher.set_outside`` and
-    ``Client.set_outside`` when the first endpoint outside matches, and again when none matches any longer. For a
-    transient local publisher it calls ``Publisher.set_outside`` from the start, because late joiners must be
+    request_id)``, from any thread. For outgoing traffic the transport calls ``Publisher.set_remote_sender`` and
+    ``Client.set_remote_service`` when the first remote endpoint matches, and again when none matches any longer. For a
+    transient local publisher it calls ``Publisher.set_remote_sender`` from the start, because late joiners must be
     served.
 
-    The transport reports the number of matches with ``set_outside_count``, and the number of live publishers among them
-    with ``Subscription.set_outside_liveliness``.
+    The transport reports the number of matches with ``set_remote_count``, and the number of live publishers among them
+    with ``Subscription.set_remote_liveliness``.
     """
 
     def open_node(self, node: NodeIdentity) -> None:
@@ -78,7 +78,7 @@ class Transport(Protocol):
         """Withdraw an endpoint that was announced with `open_presence`."""
 
     def look_around(self) -> None:
-        """Discover the nodes and endpoints outside the process.
+        """Discover the nodes and endpoints of other processes.
 
         The graph calls this method before each query for remote nodes or endpoints. A transport need not start
         discovery earlier. The first call may block for a few seconds at most. After that call, discovery continues in
@@ -98,7 +98,7 @@ class Transport(Protocol):
         """
 
     def watch(self, callback: Callable[[], None]) -> None:
-        """Register a callback for changes to nodes and endpoints outside.
+        """Register a callback for changes to remote nodes and endpoints.
 
         The transport may call `callback` from any thread.
         """

@@ -105,7 +105,7 @@ class EndpointEvents(Entity):
         """The description of this entity in log messages."""
         return f"event callback of topic '{self._name}'"
 
-    def matched(self, change: int) -> None:
+    def on_match_change(self, change: int) -> None:
         """Count a change in the number of matching endpoints, and queue the callback."""
         self._match_count += change
         total = self._count("matched", max(change, 0))
@@ -178,9 +178,9 @@ class SubscriptionEvents(EndpointEvents):
         self._message_lost = callbacks.message_lost
         self._alive_count = 0
         self._not_alive_count = 0
-        self._outside_counts = (0, 0)
+        self._remote_counts = (0, 0)
 
-    def received(self) -> None:
+    def record_message(self) -> None:
         """Record the arrival of a message, from this process or another."""
         if self._deadline is not None:
             self._deadline.restart()
@@ -189,12 +189,12 @@ class SubscriptionEvents(EndpointEvents):
         """Count lost messages, and queue the callback."""
         self._notify(self._message_lost, QoSMessageLostInfo(self._count("lost", count), count))
 
-    def set_outside_liveliness(self, alive: int, not_alive: int) -> None:
+    def set_remote_liveliness(self, alive: int, not_alive: int) -> None:
         """Set the numbers of publishers in other processes that are alive and not alive."""
-        (previous_alive, previous_not_alive), self._outside_counts = self._outside_counts, (alive, not_alive)
-        self.liveliness(alive - previous_alive, not_alive - previous_not_alive)
+        (previous_alive, previous_not_alive), self._remote_counts = self._remote_counts, (alive, not_alive)
+        self.on_liveliness_change(alive - previous_alive, not_alive - previous_not_alive)
 
-    def liveliness(self, alive_change: int, not_alive_change: int) -> None:
+    def on_liveliness_change(self, alive_change: int, not_alive_change: int) -> None:
         """Update the numbers of publishers that are alive and not alive, and queue the callback."""
         if not alive_change and not not_alive_change:
             return
@@ -232,10 +232,10 @@ class PublisherEvents(EndpointEvents):
 
     @property
     def wants_messages(self) -> bool:
-        """Whether `published` must be called for every message."""
+        """Whether `record_publication` must be called for every message."""
         return bool(self._watchdogs)
 
-    def published(self) -> None:
+    def record_publication(self) -> None:
         """Record that a message was published."""
         if self._deadline is not None:
             self._deadline.restart()

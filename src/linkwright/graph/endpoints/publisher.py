@@ -51,9 +51,9 @@ class Publisher(TopicEndpoint[M]):
         self.callback_group = node.default_callback_group if callback_group is None else callback_group
         self.event_callbacks = event_callbacks
         self.events: PublisherEvents | None = None
-        self.outside: Callable[[Any], None] | None = None
-        """The function that sends messages to other processes, or None if there is no match. See `set_outside`."""
-        self.assert_outside: Callable[[], None] | None = None
+        self.send_remote: Callable[[Any], None] | None = None
+        """Sends messages to other processes, or None if there is no match. See `set_remote_sender`."""
+        self.assert_remote_liveliness: Callable[[], None] | None = None
         """Asserts the publisher's liveliness in other processes, set by the transport."""
         self.lifespan_ns = limit_ns(qos_profile.lifespan)
         self._wait_until_acknowledged: Callable[[float | None], bool] | None = None
@@ -92,9 +92,9 @@ class Publisher(TopicEndpoint[M]):
         if self._is_plain:
             for receive in self._receivers:
                 receive(msg)
-            outside = self.outside
-            if outside is not None:
-                outside(msg)
+            send_remote = self.send_remote
+            if send_remote is not None:
+                send_remote(msg)
         else:
             self._publish_complete(msg)
 
@@ -106,8 +106,8 @@ class Publisher(TopicEndpoint[M]):
         return (self.event_callbacks or PublisherEventCallbacks()).handlers()
 
     def get_subscription_count(self) -> int:
-        """Return the number of matching subscriptions, inside the process and outside."""
-        return len(self._receivers_by_subscription) + self._outside_count
+        """Return the number of matching subscriptions, in this process and others."""
+        return len(self._receivers_by_subscription) + self._remote_count
 
     def assert_liveliness(self) -> None:
         """Assert that the publisher is alive, as the liveliness policy MANUAL_BY_TOPIC requires.
@@ -118,8 +118,8 @@ class Publisher(TopicEndpoint[M]):
         self.check_alive()
         if self.events is not None:
             self.events.assert_liveliness()
-        if self.assert_outside is not None:
-            self.assert_outside()
+        if self.assert_remote_liveliness is not None:
+            self.assert_remote_liveliness()
 
     def wait_for_all_acked(self, timeout: Duration | None = None) -> bool:
         """Block until all reliable subscriptions have acknowledged the published messages.
@@ -153,7 +153,7 @@ class Publisher(TopicEndpoint[M]):
             self._receivers = tuple(self._receivers_by_subscription.values())
         subscription.add_publisher(self)
         if self.events is not None:
-            self.events.matched(1)
+            self.events.on_match_change(1)
 
     def disconnect(self, subscription: Subscription[Any]) -> None:
         """Disconnect a subscription of this process."""
@@ -163,7 +163,7 @@ class Publisher(TopicEndpoint[M]):
             self._receivers = tuple(self._receivers_by_subscription.values())
         subscription.remove_publisher(self)
         if self.events is not None:
-            self.events.matched(-1)
+            self.events.on_match_change(-1)
 
     def begin(self) -> None:
         """Set up the publisher's events, then add the publisher to the graph."""
@@ -179,30 +179,30 @@ class Publisher(TopicEndpoint[M]):
         self._accepted_type = None
         for subscription in tuple(self._receivers_by_subscription):
             self.disconnect(subscription)
-        self.outside = None
+        self.send_remote = None
 
     def local_subscriptions(self) -> tuple[Subscription[Any], ...]:
         """Return the subscriptions of this process that are connected to the publisher."""
         return tuple(self._receivers_by_subscription)
 
-    def hold_for_outside(self, wait_until_sent: Callable[[float | None], bool]) -> None:
-        """Hold messages for other processes until `set_outside` is called.
+    def hold_for_remote(self, wait_until_sent: Callable[[float | None], bool]) -> None:
+        """Hold messages for other processes until `set_remote_sender` is called.
 
         The transport calls both, in this order. In ROS 2, a discovered subscription receives all messages of a
         publisher, including the first. The transport creates the writer in its own thread, shortly after the publisher
         is created. Messages that are published before are therefore held.
 
         Args:
-            wait_until_sent: waits until `set_outside` was called, for at most the given seconds (None for no limit);
-                returns whether it was called.
+            wait_until_sent: waits until `set_remote_sender` was called, for at most the given seconds (None for no
+                limit); returns whether it was called.
         """
         with self._lock:
-            if self._late_joiner_messages is None and self.outside is None:
+            if self._late_joiner_messages is None and self.send_remote is None:
                 self._wait_until_sent = wait_until_sent
                 self._held_messages = deque(maxlen=self.qos_profile.queue_length)
-                self.outside = self._held_messages.append
+                self.send_remote = self._held_messages.append
 
-    def set_outside(
+    def set_remote_sender(
         self,
         send: Callable[[Any], None] | None,
         wait_until_acknowledged: Callable[[float | None], bool] | None = None,
@@ -221,11 +221,11 @@ class Publisher(TopicEndpoint[M]):
         """
         with self._lock:
             held_messages, self._held_messages = self._held_messages, None
-            if send is not None and (self.outside is None or held_messages is not None):
+            if send is not None and (self.send_remote is None or held_messages is not None):
                 for message in self._unexpired_messages() if held_messages is None else held_messages:
                     operation = f"sending the messages of topic '{self.name}'"
                     run_logged(self.node.logger, operation, partial(send, message))  # `publish` has returned: just log
-            self.outside = send
+            self.send_remote = send
             self._wait_until_acknowledged = wait_until_acknowledged if send is not None else None
 
     def _publish_complete(self, message: Any) -> None:
@@ -233,7 +233,7 @@ class Publisher(TopicEndpoint[M]):
             if (
                 not self._receivers
                 and self._late_joiner_messages is None
-                and self.outside is None
+                and self.send_remote is None
                 and self.events is None
             ):
                 return
@@ -242,17 +242,17 @@ class Publisher(TopicEndpoint[M]):
             if self._late_joiner_messages is not None:
                 self._late_joiner_messages.append((self.node.timebase.steady_ns(), message))
             if self.events is not None:
-                self.events.published()
+                self.events.record_publication()
             for receive in self._receivers:
                 receive(message)
-            if self.outside is not None:
-                self.outside(message)
+            if self.send_remote is not None:
+                self.send_remote(message)
 
     def _on_liveliness_change(self, change: int) -> None:
         self.is_alive = change > 0
         for subscription in self.local_subscriptions():
             if subscription.events is not None:
-                subscription.events.liveliness(change, -change)
+                subscription.events.on_liveliness_change(change, -change)
 
     def _unexpired_messages(self) -> list[Any]:
         """Remove the expired messages that are stored for late joiners, and return the others."""

@@ -274,7 +274,7 @@ def deep_copy(message: M) -> M:
     return deserialize(serialize(copied), type(copied))  # type: ignore[no-any-return]  # the same type
 
 
-class OutsideService(Protocol):
+class RemoteService(Protocol):
     """A service server in another process, as seen by a client."""
 
     def send(self, request: Any, on_response: Callable[[Any], None], number: int) -> Callable[[], None]:
@@ -316,8 +316,8 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
         self._describe(node, srv_type, srv_name, qos_profile)
         self.unblockable = not node.strict_callback_groups  # see `linkwright.graph.loop.future` for the reason
         self.raw = raw
-        self.outside: OutsideService | None = None
-        """The server in another process, or None while there is none. See `set_outside`."""
+        self.remote_service: RemoteService | None = None
+        """The server in another process, or None while there is none. See `set_remote_service`."""
         self._server: Service[Request, Response] | None = None
         self._numbers = itertools.count(1)
         self._lock = threading.RLock()
@@ -337,7 +337,7 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
             InvalidHandleError: the client was destroyed.
         """
         self.check_alive()
-        return self._server is not None or self.outside is not None
+        return self._server is not None or self.remote_service is not None
 
     def wait_for_service(self, timeout_sec: float | None = None) -> bool:
         """Block the calling thread until a server is available.
@@ -437,7 +437,7 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
         super().retire()
         self._completions.clear()
         self._server = None
-        self.outside = None
+        self.remote_service = None
         self.end_introspection()
 
     # --- called by the bus and the transport ---------------------------------------------------------------------
@@ -447,19 +447,19 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
         self._server = server
         self._send_queued()
 
-    def set_outside(self, outside: OutsideService | None) -> None:
+    def set_remote_service(self, remote_service: RemoteService | None) -> None:
         """Set the server in another process, or None if there is none.
 
         The transport calls this method.
 
         The client uses this server only if this process has none.
         """
-        self.outside = outside
+        self.remote_service = remote_service
         self._send_queued()
         self.node.graph.notify_change()
 
     def _send_queued(self) -> None:
-        while self._server is not None or self.outside is not None:
+        while self._server is not None or self.remote_service is not None:
             with self._lock:
                 if not self._unsent:
                     return
@@ -474,8 +474,8 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
                     self._unsent.appendleft((future, request))
 
     def _send(self, future: Future[Response], request: Request) -> bool:
-        server, outside = self._server, self.outside
-        if server is None and outside is None:
+        server, remote_service = self._server, self.remote_service
+        if server is None and remote_service is None:
             return False
         request_id = RequestId(self.gid, next(self._numbers))
         on_response = partial(self._receive, future, request_id)
@@ -483,8 +483,8 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
             self.service_events.publish_event(EventType.REQUEST_SENT, request_id, request=request)
         if server is not None:
             server.receive(request, on_response, request_id)
-        elif outside is not None:
-            cancel = outside.send(request, on_response, request_id.number)
+        elif remote_service is not None:
+            cancel = remote_service.send(request, on_response, request_id.number)
             if future in self._pending:
                 self._pending[future] = cancel
         return True

@@ -134,8 +134,8 @@ class Subscription(TopicEndpoint[M], Entity):
         return (self.event_callbacks or SubscriptionEventCallbacks()).handlers()
 
     def get_publisher_count(self) -> int:
-        """Return the number of matching publishers, inside the process and outside."""
-        return len(self._publishers) + self._outside_count
+        """Return the number of matching publishers, in this process and others."""
+        return len(self._publishers) + self._remote_count
 
     @property
     def is_cft_enabled(self) -> bool:
@@ -193,15 +193,15 @@ class Subscription(TopicEndpoint[M], Entity):
         """
         self._is_batched = True
 
-    def set_outside_liveliness(self, alive: int, not_alive: int) -> None:
+    def set_remote_liveliness(self, alive: int, not_alive: int) -> None:
         """Set the numbers of matching publishers in other processes that are alive and not alive.
 
         The transport calls this.
         """
         if self.events is not None:
-            self.events.set_outside_liveliness(alive, not_alive)
+            self.events.set_remote_liveliness(alive, not_alive)
 
-    def count_lost_outside(self, count: int) -> None:
+    def count_lost_remote(self, count: int) -> None:
         """Count lost messages from other processes.
 
         The transport calls this method.
@@ -225,7 +225,7 @@ class Subscription(TopicEndpoint[M], Entity):
         if self._filter is not None and not self._passes_filter(message, self._filter):
             return
         if self.events is not None:
-            self.events.received()
+            self.events.record_message()
         self._waiting.append(message if info is None else QueuedMessage(message, info))
         if not self._announced:
             dispatcher = self.dispatcher
@@ -262,8 +262,8 @@ class Subscription(TopicEndpoint[M], Entity):
         """
         self._publishers[publisher] = None
         if self.events is not None:
-            self.events.matched(1)
-            self.events.liveliness(int(publisher.is_alive), int(not publisher.is_alive))
+            self.events.on_match_change(1)
+            self.events.on_liveliness_change(int(publisher.is_alive), int(not publisher.is_alive))
 
     def remove_publisher(self, publisher: TopicEndpoint[Any]) -> None:
         """Record that a publisher of this process was disconnected.
@@ -271,8 +271,8 @@ class Subscription(TopicEndpoint[M], Entity):
         The publisher calls this method.
         """
         if self._publishers.pop(publisher, self) is None and self.events is not None:
-            self.events.matched(-1)
-            self.events.liveliness(-int(publisher.is_alive), -int(not publisher.is_alive))
+            self.events.on_match_change(-1)
+            self.events.on_liveliness_change(-int(publisher.is_alive), -int(not publisher.is_alive))
 
     def has_work(self) -> bool:
         """Return whether messages or notifications of lost publishers are queued."""

@@ -17,7 +17,7 @@ from linkwright.graph.loop.node_handle import NodeHandle
 from linkwright.graph.names.rules import NodeIdentity, split
 from linkwright.graph.qos.profile import UNKNOWN_QOS, HistoryPolicy, QoSProfile
 
-OnNamesakes = Callable[[frozenset[str]], object]
+OnSharedNames = Callable[[frozenset[str]], object]
 """Receives the full names of the nodes of this process whose names other processes also use.
 It may be called from any thread, but never by two threads at the same time.
 """
@@ -30,20 +30,20 @@ class SharedNameMonitor:
         notify: receives the shared names when they change. None logs a warning for each name when it becomes shared.
     """
 
-    def __init__(self, notify: OnNamesakes | None = None) -> None:
+    def __init__(self, notify: OnSharedNames | None = None) -> None:
         self._notify = notify
         self._shared_names: frozenset[str] = frozenset()
         self._lock = threading.RLock()
 
-    def review(self, local_nodes: Collection[NodeHandle], outside: Collection[NodeIdentity]) -> None:
+    def update(self, local_nodes: Collection[NodeHandle], remote_nodes: Collection[NodeIdentity]) -> None:
         """Compare the node names of this process with those of other processes.
 
         Reports the shared names when they have changed.
         """
-        if not outside and not self._shared_names:
+        if not remote_nodes and not self._shared_names:
             return
         with self._lock:
-            remote_names = {node_identity.full_name for node_identity in outside}
+            remote_names = {node_identity.full_name for node_identity in remote_nodes}
             previous_names = self._shared_names
             self._shared_names = frozenset(node.identity.full_name for node in local_nodes) & remote_names
             if self._shared_names == previous_names:
@@ -199,7 +199,7 @@ class GraphQueries:
         return self._matching_endpoints(lambda _: True)
 
     def publishers(self) -> list[EndpointInfo]:
-        """Return the publishers of all topics, in this process and outside."""
+        """Return the publishers of all topics, in this process and others."""
         return self._matching_endpoints(lambda endpoint: endpoint.kind is _PUBLISHER)
 
     def remote_endpoints(self) -> Sequence[EndpointInfo]:
@@ -376,7 +376,7 @@ class GraphQueries:
         return self._matching_endpoints(lambda endpoint: endpoint.kind is kind and endpoint.name == name)
 
     def _matching_endpoints(self, is_match: Callable[[Endpoint | EndpointInfo], bool]) -> list[EndpointInfo]:
-        """Return the endpoints that meet a condition, in this process and outside.
+        """Return the endpoints that meet a condition, in this process and others.
 
         Only the matching endpoints are described, because describing an endpoint takes time.
         """

@@ -190,11 +190,11 @@ class NodeQueries:
         return self.__graph.get_subscriptions_info_by_topic(name)
 
     def count_publishers(self, topic_name: str) -> int:
-        """Return the number of publishers of a topic, in this process and outside."""
+        """Return the number of publishers of a topic, in this process and others."""
         return self.__graph.count_publishers(_resolve_for_query(self.__handle.resolve_topic_name, topic_name))
 
     def count_subscribers(self, topic_name: str) -> int:
-        """Return the number of subscriptions to a topic, in this process and outside."""
+        """Return the number of subscriptions to a topic, in this process and others."""
         return self.__graph.count_subscribers(_resolve_for_query(self.__handle.resolve_topic_name, topic_name))
 
     def count_services(self, service_name: str) -> int:

@@ -169,9 +169,9 @@ class BufferCore:
             return True, ""
         with self._lock:
             for argument, frame in (("target", target_frame), ("source", source_frame)):
-                objection = self._objection(f"canTransform argument {argument}_frame", frame)
-                if objection:
-                    return False, objection
+                reason = self._refusal_reason(f"canTransform argument {argument}_frame", frame)
+                if reason:
+                    return False, reason
             return self._can_transform(target_frame, source_frame, to_nanoseconds(time))
 
     def can_transform_full_core(
@@ -181,9 +181,9 @@ class BufferCore:
         frames = (("target", target_frame), ("source", source_frame), ("fixed", fixed_frame))
         with self._lock:
             for argument, frame in frames:
-                objection = self._objection(f"canTransform argument {argument}_frame", frame)
-                if objection:
-                    return False, objection
+                reason = self._refusal_reason(f"canTransform argument {argument}_frame", frame)
+                if reason:
+                    return False, reason
             result = self._can_transform(target_frame, fixed_frame, to_nanoseconds(target_time))
             return self._can_transform(fixed_frame, source_frame, to_nanoseconds(source_time)) if result[0] else result
 
@@ -382,7 +382,7 @@ class BufferCore:
             raise unknown_frame_error(argument, frame, self._numbers)
         return number
 
-    def _objection(self, argument: str, frame: str) -> str | None:
+    def _refusal_reason(self, argument: str, frame: str) -> str | None:
         reason: str | None = frame_name_problem(frame)
         if reason is None and frame not in self._numbers:
             reason = "frame does not exist"

@@ -67,7 +67,7 @@ class Omissions:
             "{count} parts of the launch are skipped, and the rest runs",
             len(self._unreported),
         )
-        self._log.diagnostics(
+        self._log.write_diagnostics(
             [Diagnostic("LAUNCH146", message, severity=Severity.WARNING, notes=tuple(self._unreported))]
         )
         self._unreported.clear()
@@ -96,6 +96,6 @@ def add_no_skip_note(error: LinkwrightError) -> None:
 
 
 def _is_missing(error: LinkwrightError) -> bool:
-    if isinstance(error, (ModuleNotFoundError, FileNotFoundError)) or getattr(error, "missing", False):
+    if isinstance(error, (ModuleNotFoundError, FileNotFoundError)) or getattr(error, "is_missing", False):
         return True
     return any(diagnostic.code in _MISSING_SOFTWARE_CODES for diagnostic in error.diagnostics)

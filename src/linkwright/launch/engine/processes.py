@@ -90,7 +90,7 @@ class RunningProcess:
         """
         plan = self.plan
         if plan.log_command:
-            self._log.info_line(self.name, f"process details: cmd='{' '.join(plan.command)}', cwd='{plan.folder}'")
+            self._log.write_info(self.name, f"process details: cmd='{' '.join(plan.command)}', cwd='{plan.folder}'")
         try:
             await self._start()
         except (OSError, ValueError) as error:
@@ -124,7 +124,7 @@ class RunningProcess:
         if self._is_stopping or self._ended.is_set():
             return
         self._is_stopping = True
-        self._log.info_line(self.name, f"sending signal 'SIGINT' to process[{self.name}]")
+        self._log.write_info(self.name, f"sending signal 'SIGINT' to process[{self.name}]")
         self.signal_group(signal.SIGINT)
         for seconds, sent_signal, next_signal in (
             (self.plan.seconds_to_sigterm, "SIGINT", "SIGTERM"),
@@ -134,7 +134,7 @@ class RunningProcess:
             if await self._ends_within(seconds, _ESCALATION_SECONDS[next_signal]):
                 return
             waited_seconds = round(time.monotonic() - start, 1) if self._is_hurried else seconds
-            self._log.error_line(
+            self._log.write_error(
                 self.name,
                 f"process[{self.name}] failed to terminate '{waited_seconds:g}' seconds after receiving "
                 f"'{sent_signal}', "
@@ -157,7 +157,7 @@ class RunningProcess:
 
     def signal(self, signal_number: signal.Signals) -> None:
         """Send a signal that the launch file requested, and log it."""
-        self._log.info_line(self.name, f"sending signal '{signal_number.name}' to process[{self.name}]")
+        self._log.write_info(self.name, f"sending signal '{signal_number.name}' to process[{self.name}]")
         self.signal_group(signal_number)
 
     def is_group_alive(self) -> bool:
@@ -217,7 +217,7 @@ class RunningProcess:
         self._guardian.watch(transport.get_pid())
         details = self._details(transport)
         self.plan.action.process_details = details
-        self._log.info_line(self.name, f"process started with pid [{transport.get_pid()}]")
+        self._log.write_info(self.name, f"process started with pid [{transport.get_pid()}]")
         self._emit(events.ProcessStarted(action=self.plan.action, **details))
         if self._is_stopping:  # `stop` was called while the process was being created
             self.signal_group(signal.SIGINT)
@@ -298,17 +298,17 @@ class RunningProcess:
 
     def _log_line(self, stream_number: int, line: str) -> None:
         formatted_line = self.plan.output_format.format(line=line, this=self.plan.action)
-        self._log.process_line(self.name, stream_number, formatted_line, self.plan.destinations[stream_number])
+        self._log.write_process_line(self.name, stream_number, formatted_line, self.plan.destinations[stream_number])
 
     def _report_end(self, pid: int, returncode: int) -> None:
         is_requested_end = (
             returncode in (-signal.SIGINT, 128 + signal.SIGINT) or not _HAS_GROUPS
         )  # ended by terminate()
         if returncode == 0 or (self._is_stopping and is_requested_end):
-            self._log.info_line(self.name, f"process has finished cleanly [pid {pid}]")
+            self._log.write_info(self.name, f"process has finished cleanly [pid {pid}]")
             return
         command = " ".join(self.plan.command)
-        self._log.error_line(self.name, f"process has died [pid {pid}, exit code {returncode}, cmd '{command}'].")
+        self._log.write_error(self.name, f"process has died [pid {pid}, exit code {returncode}, cmd '{command}'].")
 
 
 class _LineSplitter:

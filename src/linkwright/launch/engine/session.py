@@ -56,7 +56,7 @@ class LaunchSession:
         self.context = LaunchContext() if context is None else context
         self._queue = self.context.attach(self)
         self.loop: asyncio.AbstractEventLoop | None = None
-        self.ending = False
+        self.is_ending = False
         self._failures: set[object] = set()
         self._is_visiting = False
         self._wake_event = asyncio.Event()
@@ -144,7 +144,7 @@ class LaunchSession:
         try:
             self._visit(entity, context)
         except LinkwrightError as error:
-            self.log.diagnostics(self._omissions.with_skip_command(error))
+            self.log.write_diagnostics(self._omissions.with_skip_command(error))
             self.fail(entity)
             self.host.forget_planned()
             self.shut_down("a launch action failed")
@@ -162,7 +162,7 @@ class LaunchSession:
         if self._omissions.skip(error):
             self._omissions.report()
             return
-        self.log.diagnostics(error.diagnostics)
+        self.log.write_diagnostics(error.diagnostics)
         self.fail(subject)
 
     def fail(self, failure: object) -> None:
@@ -274,8 +274,8 @@ class LaunchSession:
 
         If the launch is already ending, its processes receive SIGTERM now, and SIGKILL half a second later.
         """
-        self.log.warning_line("launch", reason)
-        if self.ending:
+        self.log.write_warning("launch", reason)
+        if self.is_ending:
             self.processes.escalate()
             return
         self.emit(events.Shutdown(reason=reason, due_to_sigint=True))
@@ -296,7 +296,7 @@ class LaunchSession:
     def _log_running_processes(self) -> None:
         names = self.processes.names
         if names:
-            self.log.info_line("launch", f"waiting for {', '.join(names)} to end; press Ctrl-C again to end them now")
+            self.log.write_info("launch", f"waiting for {', '.join(names)} to end; press Ctrl-C again to end them now")
 
     # --- visits ---------------------------------------------------------------------------------------------
 
@@ -306,7 +306,7 @@ class LaunchSession:
         try:
             next_entities = entity.visit(context)
         except DescriptionError as error:
-            if not (error.missing or self.ending):
+            if not (error.is_missing or self.is_ending):
                 self._retry_when_fixed(entity, context.snapshot(), error)
             elif not self._omissions.skip(located(error, entity.place)):
                 raise
@@ -351,7 +351,7 @@ class LaunchSession:
                 self._handle(self._queue.get_nowait())
                 await self._start_hosted()
             if not self._is_busy():
-                if self.ending:
+                if self.is_ending:
                     return
                 if self.options.shutdown_when_idle:
                     self.shut_down("idle")
@@ -363,7 +363,7 @@ class LaunchSession:
         return bool(self.processes.is_busy or self._tasks or self._waiting or self._held_futures or self.host.is_busy)
 
     def _handle(self, event: events.Event) -> None:
-        self.log.debug_line("launch", f"processing event: '{event.name}'")
+        self.log.write_debug("launch", f"processing event: '{event.name}'")
         context = self.context
         context.push_locals()
         try:
@@ -376,9 +376,9 @@ class LaunchSession:
             for entity in entities:
                 self.visit(entity, context)
         except (Exception, SystemExit) as error:  # noqa: BLE001 - handlers are the launch file's code
-            self.log.diagnostics(explain(error, phrase("an event handler")).diagnostics)
+            self.log.write_diagnostics(explain(error, phrase("an event handler")).diagnostics)
             self.fail(event)
-            if not self.ending and not isinstance(event, events.Shutdown):
+            if not self.is_ending and not isinstance(event, events.Shutdown):
                 self.shut_down("an event handler failed")
         finally:
             context.pop_locals()
@@ -387,7 +387,7 @@ class LaunchSession:
     def _react(self, event: events.Event) -> None:
         """End the launch, or stop or signal processes, as the event requests."""
         if isinstance(event, events.Shutdown):
-            if not self.ending:
+            if not self.is_ending:
                 self._begin_shutdown(event)
         elif isinstance(event, events.ShutdownProcess):
             self.processes.stop_matching(event.process_matcher)
@@ -397,7 +397,7 @@ class LaunchSession:
             self.host.stop_matching(event.process_matcher)
 
     def _begin_shutdown(self, event: events.Shutdown) -> None:
-        self.ending = True
+        self.is_ending = True
         for cancel in tuple(self._waiting.values()):
             if cancel is not None:
                 cancel()
@@ -413,7 +413,7 @@ class LaunchSession:
     async def _start_hosted(self) -> None:
         await self.host.start_planned()
         waits_for_fix = any(isinstance(failure, XacroCall) for failure in self._failures)
-        if waits_for_fix and not self.host.has_viewer and not self.ending:
+        if waits_for_fix and not self.host.has_viewer and not self.is_ending:
             self.shut_down("the robot description has errors, and there is no viewer that waits for a fix")
 
     def hold(self, future: asyncio.Future[Any]) -> None:

@@ -285,11 +285,11 @@ class LaunchContext:
         if self._session is not None:
             log = self._session.log
             if level >= logging.ERROR:
-                log.error_line(name, text)
+                log.write_error(name, text)
             elif level >= logging.WARNING:
-                log.warning_line(name, text)
+                log.write_warning(name, text)
             else:
-                (log.info_line if level >= logging.INFO else log.debug_line)(name, text)
+                (log.write_info if level >= logging.INFO else log.write_debug)(name, text)
         else:
             from linkwright.launch.log.loggers import get_logger
 
@@ -309,7 +309,7 @@ class LaunchContext:
         if self._session is None:
             print_diagnostics([warning], sys.stderr)
         else:
-            self._session.log.diagnostics([warning])
+            self._session.log.write_diagnostics([warning])
 
     def report_findings(self, description: object, findings: Sequence[Diagnostic]) -> None:
         """Report findings about a robot description in the log and the viewer."""
@@ -321,7 +321,7 @@ class LaunchContext:
     @property
     def is_shutdown(self) -> bool:
         """Whether the launch is ending."""
-        return self._is_shutdown or (self._session is not None and self._session.ending)
+        return self._is_shutdown or (self._session is not None and self._session.is_ending)
 
     def _set_is_shutdown(self, state: bool) -> None:
         self._is_shutdown = state

@@ -81,7 +81,7 @@ class RunningLaunch(Protocol):
         """The event loop of the launch, or None if the launch is not running."""
 
     @property
-    def ending(self) -> bool:
+    def is_ending(self) -> bool:
         """Whether the launch is ending."""
 
     @property

@@ -134,8 +134,8 @@ class LoadComposableNodes(Action):
             return
         warning = record_node_start(context, name)
         if warning is not None:
-            log.warning_line(container, warning)
-        log.info_line(_LOGGER_NAME, f"Loaded node '{name}' in container '{container}'")
+            log.write_warning(container, warning)
+        log.write_info(_LOGGER_NAME, f"Loaded node '{name}' in container '{container}'")
         if isinstance(description, ComposableLifecycleNode):
             _monitor_lifecycle_node(context, description, name)
 

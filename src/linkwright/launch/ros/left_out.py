@@ -45,7 +45,7 @@ def _without_skipped(context: LaunchContext, names: Iterable[str]) -> list[str]:
     remaining_names = []
     for name in names:
         if name.rpartition("/")[2] in context.session.left_out:
-            context.session.log.warning_line("launch", f"'{name}' is skipped, so no lifecycle manager waits for it")
+            context.session.log.write_warning("launch", f"'{name}' is skipped, so no lifecycle manager waits for it")
         else:
             remaining_names.append(name)
     return remaining_names

@@ -89,7 +89,7 @@ class LifecycleEventManager:
         if response is not None and not response.success:
             name = TRANSITIONS[transition_id]
             text = f"Failed to make transition '{name}' for LifecycleNode '{self.node_name}'"
-            context.session.log.error_line("launch_ros.actions.lifecycle_node", text)
+            context.session.log.write_error("launch_ros.actions.lifecycle_node", text)
 
 
 async def call_service(context: LaunchContext, client: Any, request: Any) -> Any:
@@ -103,7 +103,7 @@ async def call_service(context: LaunchContext, client: Any, request: Any) -> Any
         if context.is_shutdown:
             awaited = "service response" if client.service_is_ready() else "service"
             text = f"Abandoning wait for the '{client.srv_name}' {awaited}, due to shutdown."
-            context.session.log.warning_line("launch_ros", text)
+            context.session.log.write_warning("launch_ros", text)
             client.remove_pending_request(future)
             return None
         await _wait_briefly(future)

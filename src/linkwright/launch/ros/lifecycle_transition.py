@@ -116,7 +116,7 @@ class LifecycleTransition(Action):
         def end(context: LaunchContext) -> None:
             if reason is not None:
                 text = f"Stopping transitions for {name} because '{reason}'"
-                context.session.log.info_line("launch_ros.actions.lifecycle_transition", text)
+                context.session.log.write_info("launch_ros.actions.lifecycle_transition", text)
             for handler in self._handlers.pop(name, ()):
                 with suppress(ValueError):  # raised if the handler was unregistered after its event
                     context.unregister_event_handler(handler)

@@ -212,7 +212,7 @@ class Node(ExecuteProcess):
         if self.is_node_name_fully_specified():
             warning = record_node_start(context, self.node_name)
             if warning is not None:
-                context.session.log.warning_line(process_name, warning)
+                context.session.log.write_warning(process_name, warning)
         return None
 
     def __extended(self, context: LaunchContext) -> list[Any]:

@@ -301,6 +301,11 @@ def _object_to(part: Visual | Collision, expected: ShapeSpec) -> Phrase | None:
                 "its {size} is {actual:g} m, but should be {expected:g} m", size=name, actual=actual, expected=wanted
             )
     matrix = matrix_from_pose(row_from_pose(part.origin))
+    largest_angle = max(map(abs, part.origin.rpy))
+    if expected.along is not None and largest_angle > 2 * np.pi:
+        return phrase(
+            "its rpy contains {angle:g}: angles are in radians, and a quarter turn is 1.5708", angle=largest_angle
+        )
     if expected.along is not None and _angle(matrix[:3, 2], expected.along, either_sign=True) > _ANGLE_TOLERANCE:
         return phrase(
             "its axis points along {actual}, but should point along {expected}",

@@ -17,6 +17,7 @@ from typing import Any
 from linkwright.diagnostics import LinkwrightError, foreign, phrase
 from linkwright.learning.checks.declaring import Check, load_checks
 from linkwright.learning.checks.not_yet import NotYet
+from linkwright.learning.checks.programs import describe_failure
 from linkwright.learning.checks.results import CheckResult, StepResult
 from linkwright.learning.checks.work import Work
 from linkwright.learning.course import CHECKS_FILE, Step, load_lesson
@@ -24,6 +25,9 @@ from linkwright.learning.local_text import LocalText
 
 TIME_LIMIT = 120.0
 """The seconds after which the process of a step's checks is ended. Checks with simulated worlds take the longest."""
+
+_DOMAINS = 100
+"""The number of ROS domains among which the process of a check selects its own, without domain 0, the default."""
 
 MODULE = "linkwright.learning.checks.running"
 
@@ -54,7 +58,7 @@ def _run(check: Check, work: Work) -> CheckResult:
     except LinkwrightError as error:
         return CheckResult(check.title, passed=False, message=LocalText.from_phrase(error.diagnostics[0].message))
     except Exception as error:  # noqa: BLE001 - the learner's files can be anything
-        message = phrase("the check failed: {error}", error=foreign(f"{type(error).__name__}: {error}"))
+        message = describe_failure(error, work.folder.resolve())
         return CheckResult(check.title, passed=False, message=LocalText.from_phrase(message))
     return CheckResult(check.title, passed=True)
 
@@ -148,6 +152,8 @@ def _read(output: Path) -> Any:
 
 def main(words: Sequence[str]) -> int:
     """Run the checks of a step, as `check_command` requests it."""
+    os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
+    os.environ["ROS_DOMAIN_ID"] = str(1 + os.getpid() % _DOMAINS)
     lesson_folder, step_id, workspace, output, *answers = words
     lesson = load_lesson(Path(lesson_folder))
     step = next(step for step in lesson.steps if step.id == step_id)

@@ -49,7 +49,9 @@ def remove_harmful(folder: str) -> tuple[str, ...]:
 
 
 def give_to(user: int, group: int, folder: str) -> None:
-    """Make a user the owner of a folder and of its contents, without following links."""
+    """Make a user the owner of a folder and of its contents, without following links, if this process is root's."""
+    if os.geteuid() != 0:
+        return
     os.chown(folder, user, group, follow_symlinks=False)
     for path in _paths_of(folder):
         if stat.S_ISDIR((status := os.lstat(path)).st_mode) or status.st_nlink == 1:

@@ -94,14 +94,14 @@ class _MountAttributes(ctypes.Structure):
     )
 
 
-def make_read_only(path: str) -> None:
-    """Make a mount and all mounts below it read-only, without set-user-ID programs (Linux 5.12)."""
+def make_read_only(path: str, *, with_mounts_below: bool = True) -> None:
+    """Make a mount, and all mounts below it, read-only, without set-user-ID programs (Linux 5.12)."""
     attributes = _MountAttributes(attr_set=_MOUNT_ATTR_RDONLY | _MOUNT_ATTR_NOSUID)
     system_call(
         _SYS_MOUNT_SETATTR,
         ctypes.c_int(_AT_FDCWD),
         os.fsencode(path),
-        ctypes.c_uint(_AT_RECURSIVE),
+        ctypes.c_uint(_AT_RECURSIVE if with_mounts_below else 0),
         ctypes.byref(attributes),
         ctypes.c_size_t(ctypes.sizeof(attributes)),
     )

@@ -7,6 +7,7 @@ import fcntl
 import os
 import socket
 import struct
+from collections.abc import Collection
 from pathlib import Path
 
 from linkwright.learning.sandbox.linux import (
@@ -18,7 +19,7 @@ from linkwright.learning.sandbox.linux import (
     unshare,
 )
 
-_NAMES = {"processes": CLONE_NEWPID, "mounts": CLONE_NEWNS, "ipc": CLONE_NEWIPC, "network": CLONE_NEWNET}
+_NAMESPACES = {"processes": CLONE_NEWPID, "mounts": CLONE_NEWNS, "ipc": CLONE_NEWIPC, "network": CLONE_NEWNET}
 
 _SIOCGIFFLAGS = 0x8913
 _SIOCSIFFLAGS = 0x8914
@@ -59,12 +60,12 @@ def map_users(pid: int) -> None:
     (proc / "gid_map").write_text(f"{os.getegid()} {os.getegid()} 1", "ascii")
 
 
-def enter_namespaces() -> set[str]:
-    """Create the namespaces that the system allows, and return their names.
+def enter_namespaces(wanted: Collection[str]) -> set[str]:
+    """Create those of some namespaces that the system allows, and return their names.
 
     That of processes holds for the next child of this process.
     """
-    return {name for name, flag in _NAMES.items() if _can_enter(flag)}
+    return {name for name, flag in _NAMESPACES.items() if name in wanted and _can_enter(flag)}
 
 
 def _can_enter(flag: int) -> bool:

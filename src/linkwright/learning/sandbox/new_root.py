@@ -37,11 +37,12 @@ def enter_new_root(readable: list[str], folder: str, temporary_bytes: int, *, ow
     """
     mount("none", "/", flags=MS_REC | MS_PRIVATE)
     root = _Root(readable, folder)
+    root.mount_temporary_folders(temporary_bytes)
+    root.mount_devices()
+    root.mount_proc(own_processes=own_processes)
     root.bind_readable()
-    root.prepare_special_folders()
-    make_read_only(root.base)
-    root.mount_special_folders(temporary_bytes, own_processes=own_processes)
     root.bind_folder()
+    make_read_only(root.base, with_mounts_below=False)
     change_root(root.base)
 
 
@@ -58,6 +59,8 @@ class _Root:
         self._links: dict[str, str] = {}
         self._sources: dict[str, int] = {}
         for path in readable:
+            if path.startswith("/proc/"):
+                continue
             real = self._follow_links(path)
             if real is not None:
                 self._sources[real] = os.open(real, os.O_PATH | os.O_CLOEXEC)
@@ -83,64 +86,59 @@ class _Root:
     def _at(self, path: str) -> str:
         return self.base + path
 
-    def bind_readable(self) -> None:
-        done: list[str] = []
-        for real in sorted(self._sources, key=lambda path: path.count("/")):
-            if not any(real == above or real.startswith(above.rstrip("/") + "/") for above in done):
-                self._bind(self._sources[real], real)
-                done.append(real)
-        for link, target in self._links.items():
-            with contextlib.suppress(FileExistsError, OSError):
-                Path(self._at(link)).parent.mkdir(parents=True, exist_ok=True)
-                Path(self._at(link)).symlink_to(target)
-
-    def _bind(self, source: int, path: str, flags: int = MS_REC) -> None:
+    def _bind(self, source: int, path: str) -> str:
+        """Mount an opened file or folder at its path in the new root, and return its place."""
         place = self._at(path)
         if Path(f"/proc/self/fd/{source}").is_dir():
             Path(place).mkdir(parents=True, exist_ok=True)
         else:
             Path(place).parent.mkdir(parents=True, exist_ok=True)
             Path(place).touch(exist_ok=True)
-        mount(f"/proc/self/fd/{source}", place, flags=MS_BIND | flags)
+        mount(f"/proc/self/fd/{source}", place, flags=MS_BIND | MS_REC)
+        return place
 
-    def prepare_special_folders(self) -> None:
-        """Create the later mount points, while the root can be written."""
-        for path in ("/dev/shm", "/dev/pts", "/proc", "/tmp", "/sys"):
-            Path(self._at(path)).mkdir(parents=True, exist_ok=True)
-        for name in _DEVICES:
-            Path(self._at(f"/dev/{name}")).touch()
+    def mount_temporary_folders(self, size: int) -> None:
+        """Mount the folders that are in memory and end with the run, before what is mounted in them."""
+        for path in ("/dev/shm", "/tmp"):
+            Path(self._at(path)).mkdir(parents=True)
+            mount("linkwright", self._at(path), "tmpfs", MS_NOSUID | MS_NODEV, f"mode=1777,size={size}")
+
+    def mount_devices(self) -> None:
+        for name, source in self._devices.items():
+            self._bind(source, f"/dev/{name}")
         for name, target in (("fd", "fd"), ("stdin", "fd/0"), ("stdout", "fd/1"), ("stderr", "fd/2")):
             Path(self._at(f"/dev/{name}")).symlink_to(f"/proc/self/{target}")
+        Path(self._at("/dev/pts")).mkdir()
         Path(self._at("/dev/ptmx")).symlink_to("pts/ptmx")
-        if not self._folder.startswith("/tmp/"):
-            with contextlib.suppress(OSError):  # it exists already, below a folder that may be read
-                Path(self._at(self._folder)).mkdir(parents=True, exist_ok=True)
-
-    def mount_special_folders(self, temporary_bytes: int, *, own_processes: bool) -> None:
-        for name, source in self._devices.items():
-            mount(f"/proc/self/fd/{source}", self._at(f"/dev/{name}"), flags=MS_BIND)
-        options = f"mode=1777,size={temporary_bytes}"
-        for path in ("/dev/shm", "/tmp"):
-            mount("linkwright", self._at(path), "tmpfs", MS_NOSUID | MS_NODEV, options)
         with contextlib.suppress(OSError):  # terminals are missing then
-            mount("devpts", self._at("/dev/pts"), "devpts", MS_NOSUID | MS_NOEXEC, "newinstance,ptmxmode=0666,mode=620")
-        self._mount_proc(own_processes=own_processes)
+            options = "newinstance,ptmxmode=0666,mode=620"
+            mount("devpts", self._at("/dev/pts"), "devpts", MS_NOSUID | MS_NOEXEC, options)
 
-    def _mount_proc(self, *, own_processes: bool) -> None:
+    def mount_proc(self, *, own_processes: bool) -> None:
         """Mount /proc of the new processes. Where that is not allowed, it contains only files about the machine."""
-        proc = self._at("/proc")
+        proc = Path(self._at("/proc"))
+        proc.mkdir()
         if own_processes:
             with contextlib.suppress(OSError):
-                mount("proc", proc, "proc", MS_NOSUID | MS_NODEV | MS_NOEXEC)
+                mount("proc", str(proc), "proc", MS_NOSUID | MS_NODEV | MS_NOEXEC)
                 return
-        mount("linkwright", proc, "tmpfs", MS_NOSUID | MS_NODEV | MS_NOEXEC, "mode=755,size=1m")
         for name in _FILES_OF_PROC:
-            place = Path(proc, name)
-            place.touch()
             with contextlib.suppress(OSError):
-                mount(f"/proc/self/fd/{self._old_proc}/{name}", str(place), flags=MS_BIND)
-                make_read_only(str(place))
+                source = os.open(name, os.O_PATH | os.O_CLOEXEC, dir_fd=self._old_proc)
+                make_read_only(self._bind(source, f"/proc/{name}"))
+
+    def bind_readable(self) -> None:
+        """Mount the files that the run may read. A mounted folder has those below it."""
+        done: list[str] = []
+        for real in sorted(self._sources, key=lambda path: path.count("/")):
+            if not any(real == above or real.startswith(above.rstrip("/") + "/") for above in done):
+                make_read_only(self._bind(self._sources[real], real))
+                done.append(real)
+        for link, target in self._links.items():
+            with contextlib.suppress(OSError):  # it exists in a folder that is mounted
+                Path(self._at(link)).parent.mkdir(parents=True, exist_ok=True)
+                Path(self._at(link)).symlink_to(target)
 
     def bind_folder(self) -> None:
-        Path(self._at(self._folder)).mkdir(parents=True, exist_ok=True)
-        mount(f"/proc/self/fd/{self._folder_source}", self._at(self._folder), flags=MS_BIND)
+        """Mount the folder of the run, which may be in a readable one."""
+        self._bind(self._folder_source, self._folder)

@@ -104,11 +104,15 @@ def nameless_files(pid: int) -> dict[tuple[int, int], int]:
 def _processes_of_ps() -> Iterator[ProcessUsage]:
     """Read the table of processes that ps(1) prints, which POSIX describes. It has no threads."""
     command = ["ps", "-A", "-o", "pid=,ppid=,rss=,time="]
-    table = subprocess.run(command, capture_output=True, text=True, check=False, stdin=subprocess.DEVNULL)  # noqa: S603 - fixed
-    for line in table.stdout.splitlines():
+    with subprocess.Popen(  # noqa: S603 - fixed words
+        command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True
+    ) as table:
+        lines = table.communicate()[0].splitlines()
+    for line in lines:
         with contextlib.suppress(ValueError):
             pid, parent, kibibytes, time = line.split()
-            yield ProcessUsage(int(pid), int(parent), 1, _seconds_of(time), int(kibibytes) * 1024)
+            if int(pid) != table.pid:
+                yield ProcessUsage(int(pid), int(parent), 1, _seconds_of(time), int(kibibytes) * 1024)
 
 
 def _seconds_of(time: str) -> float:

@@ -1,4 +1,4 @@
-"""The files that every run may read: Python, its packages, and the libraries and settings of the system."""
+"""The files that every run may read: Python, Linkwright, and the programs, libraries and settings of the system."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 import linkwright
+from linkwright.packages.finder import shipped_folder
 
 _SYSTEM_FOLDERS = (
     "/usr", "/bin", "/sbin", "/lib", "/lib32", "/lib64", "/libx32", "/nix/store", "/gnu/store",
@@ -24,7 +25,8 @@ def readable_everywhere() -> list[str]:
     """Return the paths that every run may read, those of them that exist."""
     installation = [sys.prefix, sys.exec_prefix, sys.base_prefix, sys.base_exec_prefix]
     packages = [str(Path(folder).parent) for folder in linkwright.__path__]
+    shipped = [str(folder) for folder in [shipped_folder()] if folder is not None]
     interpreter = [sys.executable, os.path.realpath(sys.executable)]
     settings = [f"/etc/{name}" for name in _SETTINGS]
-    paths = dict.fromkeys([*installation, *interpreter, *packages, *_SYSTEM_FOLDERS, *settings, *_STATES])
+    paths = dict.fromkeys([*installation, *interpreter, *packages, *shipped, *_SYSTEM_FOLDERS, *settings, *_STATES])
     return [os.path.abspath(path) for path in paths if path and Path(path).exists()]

@@ -20,7 +20,7 @@ from linkwright.learning.sandbox.readable import readable_everywhere
 
 _SUPERVISE = "import json, sys; sys.path[:] = json.loads(sys.argv[1]); from {module} import main; main()"
 _MODULE = "linkwright.learning.sandbox.supervisor"
-_PASSED_ON = ("PATH", "LANG", "LC_ALL", "LC_CTYPE", "TZ", "LINKWRIGHT_LANGUAGE")
+_PASSED_ON = ("PATH", "LANG", "LC_ALL", "LC_CTYPE", "LC_MESSAGES", "LINKWRIGHT_LANG", "TZ")
 
 
 def run_in_sandbox(

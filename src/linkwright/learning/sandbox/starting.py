@@ -86,7 +86,8 @@ class Start:
     """A pipe on which the supervisor lets the child continue."""
     output: tuple[int, int]
     user: int | None
-    wants_namespaces: bool
+    wanted_namespaces: frozenset[str]
+    """Of `processes`, `mounts`, `ipc` and `network`."""
     needs_root_folder: bool
     """Whether the program could not run without a root folder of its own."""
 
@@ -109,7 +110,7 @@ class Start:
         from linkwright.learning.sandbox.linux import die_with_parent
 
         die_with_parent(signal.SIGKILL, supervisor)
-        if self.wants_namespaces:
+        if self.wanted_namespaces:
             confinement.namespaces = self._enter_namespaces()
         if "processes" not in confinement.namespaces:
             self._prepare_namespaces(confinement)
@@ -122,7 +123,7 @@ class Start:
     def _enter_namespaces(self) -> set[str]:
         from linkwright.learning.sandbox.namespaces import enter_namespaces, enter_user_namespace
 
-        if os.geteuid() == 0 and (entered := enter_namespaces()):
+        if os.geteuid() == 0 and (entered := enter_namespaces(self.wanted_namespaces)):
             return entered
         try:
             enter_user_namespace()
@@ -131,7 +132,7 @@ class Start:
         self.messages.send(map=os.getpid())
         if os.read(self.go[0], 1) != b"y":
             os._exit(125)
-        entered = enter_namespaces()
+        entered = enter_namespaces(self.wanted_namespaces)
         if not entered:
             self._give_up()
         return entered | {"user"}
@@ -148,14 +149,16 @@ class Start:
             bring_up_loopback()
         if "mounts" in confinement.namespaces:
             temporary_bytes = max(1 << 20, self.plan.limits.memory // _TEMPORARY_SHARE)
-            with contextlib.suppress(OSError):
+            try:
                 enter_new_root(
                     list(self.plan.readable),
                     self.plan.folder,
                     temporary_bytes,
                     own_processes="processes" in confinement.namespaces,
                 )
-                confinement.namespaces.add("root")
+            except OSError:  # the mounts made so far cannot stay
+                self._give_up()
+            confinement.namespaces.add("root")
         if self.needs_root_folder and "root" not in confinement.namespaces:
             self._give_up()
 
@@ -201,20 +204,21 @@ class Start:
         from linkwright.learning.sandbox import landlock
         from linkwright.learning.sandbox.identity import become
         from linkwright.learning.sandbox.linux import die_with_parent, drop_capabilities, forbid_new_privileges
-        from linkwright.learning.sandbox.seccomp import forbid_local_servers
+        from linkwright.learning.sandbox.seccomp import filter_system_calls
 
         if self.user is not None:
             become(self.user)
         drop_capabilities()
         forbid_new_privileges()
         die_with_parent(signal.SIGKILL, parent)
-        if "root" not in confinement.namespaces and self.user is None:
-            confinement.local_servers_forbidden = forbid_local_servers()
+        shares_servers = "root" not in confinement.namespaces and self.user is None
+        is_filtered = filter_system_calls(forbid_local_servers=shares_servers)
+        confinement.local_servers_forbidden = is_filtered and shares_servers
         if "root" in confinement.namespaces and landlock.landlock_version() < landlock.MOVE_VERSION:
             return  # it would forbid moving files between folders, and the root folder protects as well
         special = [path for path in ("/tmp", "/dev/shm", "/dev/pts") if "root" in confinement.namespaces]
         devices = [f"/dev/{name}" for name in ("null", "zero", "full", "random", "urandom", "ptmx", "tty")]
-        proc = ["/proc"] if "processes" in confinement.namespaces else []
+        proc = ["/proc"] if "root" in confinement.namespaces else []
         with contextlib.suppress(OSError):
             confinement.landlock, confinement.landlock_signals = landlock.restrict(
                 [*self.plan.readable, *proc],

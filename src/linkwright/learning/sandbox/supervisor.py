@@ -21,6 +21,7 @@ from linkwright.learning.sandbox.starting import Confinement, Messages, Start
 from linkwright.learning.sandbox.usage import Watchdog
 
 _INTERVAL_SECONDS = 0.05
+_NAMESPACES = frozenset({"processes", "mounts", "ipc", "network"})
 _TRUNCATE_VERSION = 3
 """The version of Landlock since which the size of files outside cannot be changed."""
 
@@ -48,7 +49,7 @@ class _Supervisor:
         self._output = _Output(plan.limits.output_bytes)
         self._messages = Messages()
         self._confinement = Confinement()
-        self._owner = os.stat(plan.folder)
+        self._owner = os.lstat(plan.folder)
         self._leader = 0
         self._status: int | None = None
         self._end_requested = False
@@ -72,6 +73,8 @@ class _Supervisor:
             finally:
                 end_descendants(self._confinement.user)
         finally:
+            if not os.path.samestat(os.lstat(folder), self._owner):
+                raise RunFailedError("the program has replaced its folder")
             give_to(self._owner.st_uid, self._owner.st_gid, folder)
         self._output.read_all()
         exceeded = exceeded or watchdog.find_exceeded_at_end() or self._exceeded_by_signal()
@@ -87,15 +90,17 @@ class _Supervisor:
         )
 
     def _start(self) -> None:
-        """Start the program with namespaces, or without them where they are of no use."""
+        """Start the program with all namespaces, or with those that work here."""
         user = self._find_user()
-        needs_root_folder = user is not None and not self._can_reach(user)
-        if self._try_to_start(user, wants_namespaces=True, needs_root_folder=needs_root_folder):
+        needs_root_folder = user is not None and not self._can_reach()
+        if self._try_to_start(user, _NAMESPACES, needs_root_folder=needs_root_folder):
             return
         if needs_root_folder:
             user = None
-        if not self._try_to_start(user, wants_namespaces=False, needs_root_folder=False):
-            raise RunFailedError("the program's process ended before the program started")
+        for namespaces in (_NAMESPACES - {"mounts"}, frozenset[str]()):
+            if self._try_to_start(user, namespaces):
+                return
+        raise RunFailedError("the program's process ended before the program started")
 
     def _find_user(self) -> int | None:
         if sys.platform != "linux":
@@ -104,19 +109,19 @@ class _Supervisor:
 
         return find_unused_user()
 
-    def _can_reach(self, user: int) -> bool:
-        from linkwright.learning.sandbox.identity import can_reach
+    def _can_reach(self) -> bool:
+        from linkwright.learning.sandbox.identity import can_be_reached
 
-        return can_reach(user, [self._plan.folder, *self._plan.readable])
+        return can_be_reached([self._plan.folder, *self._plan.readable])
 
-    def _try_to_start(self, user: int | None, *, wants_namespaces: bool, needs_root_folder: bool) -> bool:
+    def _try_to_start(self, user: int | None, namespaces: frozenset[str], *, needs_root_folder: bool = False) -> bool:
         owner = (self._owner.st_uid, self._owner.st_gid) if user is None else (user, user)
         give_to(*owner, self._plan.folder)
         self._confinement.user = user
         self._messages = Messages()
         go_reader, go = os.pipe()
         start = Start(
-            self._plan, self._messages, (go_reader, go), self._output.writers, user, wants_namespaces, needs_root_folder
+            self._plan, self._messages, (go_reader, go), self._output.writers, user, namespaces, needs_root_folder
         )
         supervisor = os.getpid()
         self._leader = os.fork()

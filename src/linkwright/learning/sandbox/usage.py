@@ -84,7 +84,6 @@ class Watchdog:
         self._before = measure_folder(folder)
         self._start = time.monotonic()
         self._next_walk = self._next_check = self._start
-        self._written_by: dict[int, int] = {}
         self._nameless_on_disk = 0
         self._device = os.stat(folder).st_dev
         self._may_trace = _may_trace_all()
@@ -138,9 +137,10 @@ class Watchdog:
         return Exceeded.MEMORY if is_exceeded else None
 
     def _check_written(self, found: list[ProcessUsage]) -> Exceeded | None:
-        self._written_by.update({process.pid: written_bytes(process.pid) for process in found})
-        written = max(sum(self._written_by.values()), self._nameless_on_disk)
-        return Exceeded.DISK_BYTES if written > self._limits.disk_bytes else None
+        """Compare the bytes written with the limit. Those of an ended process are part of its parent's."""
+        written = sum(written_bytes(pid) for pid in (os.getpid(), *(process.pid for process in found)))
+        is_exceeded = max(written, self._nameless_on_disk) > self._limits.disk_bytes
+        return Exceeded.DISK_BYTES if is_exceeded else None
 
     @contextlib.contextmanager
     def _access_to_processes(self) -> Iterator[None]:

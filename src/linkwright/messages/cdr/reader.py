@@ -27,10 +27,10 @@ _SCOPE: dict[str, Any] = {
     "bools": cdr_values.read_bools,
     "single_bytes": cdr_values.read_bytes,
     "wide": cdr_values.read_wide_text,
-    "truncated": cdr_values.truncated,
-    "unterminated": cdr_values.unterminated,
-    "bad_bool": cdr_values.bad_bool,
-    "too_long": cdr_values.too_long,
+    "raise_truncated": cdr_values.raise_truncated,
+    "raise_unterminated": cdr_values.raise_unterminated,
+    "raise_bad_bool": cdr_values.raise_bad_bool,
+    "raise_too_long": cdr_values.raise_too_long,
     "check_bounds": cdr_values.check_bounds,
     "array": array,
 }
@@ -80,8 +80,8 @@ class _ReaderCode:
     In the code, `p` is the position in the data, including the header, and `e` is the end of the data.
     """
 
-    def __init__(self, place: Alignment, class_of: ClassOf, order: Order, known: int | None) -> None:
-        self.place = place
+    def __init__(self, alignment: Alignment, class_of: ClassOf, order: Order, known: int | None) -> None:
+        self.alignment = alignment
         self._known_position = known
         """The position as a number, or None once it differs between messages."""
         self._class_of = class_of
@@ -133,7 +133,7 @@ class _ReaderCode:
         elif primitive.python is bool:
             value = f"b{next(self._names)}"
             self._read_primitive("B", 1, value)
-            self._after_run += [f"if {value} > 1: bad_bool({value})", f"{target} = {value} == 1"]
+            self._after_run += [f"if {value} > 1: raise_bad_bool({value})", f"{target} = {value} == 1"]
         else:
             assert primitive.code is not None
             self._read_primitive(primitive.code, primitive.size, target)
@@ -144,7 +144,7 @@ class _ReaderCode:
             self._write_position()
             part = _compile_part(structure, self._class_of, self._order)
             self._add_line(f"{target}, p = {self._constant_name(part, 'R')}(d, p, e)")
-            self.place = ANYWHERE
+            self.alignment = ANYWHERE
         else:
             name = self.add_creation(structure)
             self._add_line(f"{target} = {name}")
@@ -154,17 +154,17 @@ class _ReaderCode:
         length = self._read_length()
         if kind.base == "wstring":
             self._add_line(f"{target}, p = wide(d, p, {length}, {self._order!r})")
-            self.place = Alignment(4, 0)
+            self.alignment = Alignment(4, 0)
         else:
             self._add_line(f"if {length}:")
             self._add_line(f"    q = p + {length} - 1")
-            self._add_line("    if d[q]: unterminated()")
+            self._add_line("    if d[q]: raise_unterminated()")
             self._add_line(f"    {target} = str(d[p:q], 'utf-8')")
             self._add_line("    p = q + 1")
             self._add_line(f"else: {target} = ''")
-            self.place = ANYWHERE
+            self.alignment = ANYWHERE
         if kind.string_bound is not None:
-            self._add_line(f"if len({target}) > {kind.string_bound}: too_long({name!r}, {kind.string_bound})")
+            self._add_line(f"if len({target}) > {kind.string_bound}: raise_too_long({name!r}, {kind.string_bound})")
 
     def _array(self, field: Field, target: str) -> None:
         kind, primitive, size = field.type, field.type.primitive, field.type.size
@@ -191,7 +191,7 @@ class _ReaderCode:
         kind, primitive = field.type, field.type.primitive
         length = self._read_length()
         if kind.size is not None:
-            self._add_line(f"if {length} > {kind.size}: too_long({field.name!r}, {kind.size})")
+            self._add_line(f"if {length} > {kind.size}: raise_too_long({field.name!r}, {kind.size})")
         if kind.is_numeric_array:
             assert primitive is not None
             self._read_numbers(primitive, length, target)
@@ -199,12 +199,12 @@ class _ReaderCode:
             self._read_small_values(primitive, length, target)
         elif kind.base == "string" and self._order == "<":
             self._add_line(f"{target}, p = texts(d, p, {length})")
-            self.place = ANYWHERE
+            self.alignment = ANYWHERE
             if kind.string_bound is not None:
                 self._add_line(f"check_bounds({field.name!r}, {target}, {kind.string_bound})")
         else:
             min_size = 4 if primitive is not None else facts(LIBRARY.structure(kind.base)).min_size
-            self._add_line(f"if {length} * {min_size} > e - p: truncated()")
+            self._add_line(f"if {length} * {min_size} > e - p: raise_truncated()")
             self._read_repeated(field, target, length)
 
     def _read_numbers(self, primitive: Primitive, length: str, target: str) -> None:
@@ -212,7 +212,7 @@ class _ReaderCode:
         self._add_line(f"if {length}:")
         self._depth += 1
         if primitive.size == 8:
-            padding = self.place.padding(8)
+            padding = self.alignment.padding(8)
             if padding is None:
                 self._add_line("p = (p + 3 & -8) + 4")
             elif padding:
@@ -224,14 +224,14 @@ class _ReaderCode:
         self._add_line("p = q")
         self._depth -= 1
         self._add_line(f"else: {target} = array({code!r})")
-        self.place = Alignment(min(primitive.size, 4), 0)
+        self.alignment = Alignment(min(primitive.size, 4), 0)
 
     def _read_small_values(self, primitive: Primitive, length: str, target: str) -> None:
         reader = "bools" if primitive.python is bool else "single_bytes"
         self._add_line(f"q = p + {length}")
         self._add_line(f"{target} = {reader}(d, p, q)")
         self._add_line("p = q")
-        self.place = ANYWHERE
+        self.alignment = ANYWHERE
 
     def _read_repeated(self, field: Field, target: str, length: str) -> None:
         """Generate a loop over the values of a field.
@@ -242,20 +242,20 @@ class _ReaderCode:
         self._write_position()
         values, value = f"l{next(self._names)}", f"x{next(self._names)}"
         self._add_line(f"{target} = {values} = []")
-        start_place = self.place
+        start_alignment = self.alignment
         while True:
             line_count = len(self._lines)
-            self.place = start_place
+            self.alignment = start_alignment
             with self._loop(length):
                 self._read_single(field.name, item_type, value)
                 self._write_position()
                 self._add_line(f"{values}.append({value})")
-            common_place = start_place.common(self.place)
-            if common_place == start_place:
+            common_alignment = start_alignment.common(self.alignment)
+            if common_alignment == start_alignment:
                 break
-            start_place = common_place
+            start_alignment = common_alignment
             del self._lines[line_count:]
-        self.place = start_place
+        self.alignment = start_alignment
 
     # --- positions and runs ---------------------------------------------------------------------------------
 
@@ -274,20 +274,20 @@ class _ReaderCode:
     def _read_primitive(self, code: str, size: int, target: str) -> None:
         self._align(size)
         self._run.append((code, target))
-        self.place = self.place.after(size)
+        self.alignment = self.alignment.after(size)
 
     def _align(self, size: int) -> None:
-        padding = self.place.padding(size)
+        padding = self.alignment.padding(size)
         if padding is None:
             self.end_run()
             self._add_line({2: "p += p & 1", 4: "p += -p & 3", 8: "p = (p + 3 & -8) + 4"}[size])
-            self.place = Alignment(size, 0)
+            self.alignment = Alignment(size, 0)
         elif padding:
             if self._run:
                 self._run.append((f"{padding}x", ""))
             else:
                 self._skip_bytes(padding)
-            self.place = self.place.after(padding)
+            self.alignment = self.alignment.after(padding)
 
     def end_run(self) -> None:
         """Generate the code that unpacks the fields of the current run, and start a new run."""
@@ -307,7 +307,7 @@ class _ReaderCode:
 
     def _skip(self, size: int) -> None:
         self._skip_bytes(size)
-        self.place = self.place.after(size)
+        self.alignment = self.alignment.after(size)
 
     def _skip_bytes(self, size: int) -> None:
         if self._known_position is None:

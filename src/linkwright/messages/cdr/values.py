@@ -104,7 +104,7 @@ def read_texts(data: bytes, at: int, count: int) -> tuple[list[str], int]:
         return cached_block[1].copy(), at + cached_block[2]
     start, end = at, len(data)
     if count * 4 > end - at:
-        truncated()
+        raise_truncated()
     texts = []
     unpack_length = _LENGTH.unpack_from
     for _ in range(count):
@@ -114,7 +114,7 @@ def read_texts(data: bytes, at: int, count: int) -> tuple[list[str], int]:
         if length:
             terminator = at + length - 1
             if data[terminator]:
-                unterminated()
+                raise_unterminated()
             texts.append(str(data[at:terminator], "utf-8"))
             at = terminator + 1
         else:
@@ -133,7 +133,7 @@ def read_numbers(code: str, data: bytes, start: int, end: int) -> array[Any]:
         DataFaultError: the message is too short.
     """
     if end > len(data):
-        truncated()
+        raise_truncated()
     if end - start <= _MAX_DIRECT_COPY:
         return array(code, data[start:end])
     numbers = array(code)
@@ -149,9 +149,9 @@ def read_bools(data: bytes, start: int, end: int) -> list[bool]:
     """
     values = data[start:end]
     if len(values) < end - start:
-        truncated()
+        raise_truncated()
     if values.translate(None, b"\0\1"):
-        bad_bool(max(values))
+        raise_bad_bool(max(values))
     return list(map(bool, values))
 
 
@@ -162,7 +162,7 @@ def read_bytes(data: bytes, start: int, end: int) -> list[bytes]:
         DataFaultError: the message is too short.
     """
     if end > len(data):
-        truncated()
+        raise_truncated()
     return [data[at : at + 1] for at in range(start, end)]
 
 
@@ -183,7 +183,7 @@ def read_wide_text(data: bytes, at: int, count: int, order: str) -> tuple[str, i
     """
     end = at + count * 4
     if end > len(data):
-        truncated()
+        raise_truncated()
     units = array("I", data[at:end])
     if order == ">":
         units.byteswap()
@@ -201,22 +201,22 @@ def write_wide_text(text: str) -> bytes:
     return _LENGTH.pack(len(units)) + units.tobytes()
 
 
-def truncated() -> None:
+def raise_truncated() -> None:
     """Raise a DataFaultError for truncated data, or for an impossible length in the data."""
     raise DataFaultError(phrase("the data ends in the middle of the message, or contains a wrong length"))
 
 
-def unterminated() -> None:
+def raise_unterminated() -> None:
     """Raise a DataFaultError for a string that does not end with NUL."""
     raise DataFaultError(phrase("the end of a string does not match its length"))
 
 
-def bad_bool(value: int) -> None:
+def raise_bad_bool(value: int) -> None:
     """Raise a DataFaultError for a bool that is neither 0 nor 1."""
     raise DataFaultError(phrase("a bool has the invalid value {value}", value=value))
 
 
-def too_long(name: str, bound: int) -> None:
+def raise_too_long(name: str, bound: int) -> None:
     """Raise a DataFaultError for a field with more values or characters than its bound allows."""
     raise DataFaultError(phrase("'{name}' is longer than its maximum length of {bound}", name=name, bound=bound))
 
@@ -224,4 +224,4 @@ def too_long(name: str, bound: int) -> None:
 def check_bounds(name: str, texts: list[str], bound: int) -> None:
     """Raise a DataFaultError if a string is longer than a bound."""
     if any(len(text) > bound for text in texts):
-        too_long(name, bound)
+        raise_too_long(name, bound)

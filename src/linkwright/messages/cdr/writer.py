@@ -61,7 +61,7 @@ _part_writers: dict[str, Callable[..., int]] = {}
 def compile_writer(structure: Structure) -> Callable[[Any], bytes]:
     """Return a new function that serializes a message to bytes, including the header."""
     code = _WriterCode(START)
-    code.pack("I", str(_HEADER), place=START)
+    code.pack("I", str(_HEADER), alignment=START)
     code.structure(structure, "m", 0)
     result = code.result()
     writer: Callable[[Any], bytes] = code.compiled(f"def write(m):\n{code.body()}    return {result}\n", structure)
@@ -93,8 +93,8 @@ class _WriterCode:
     In the code, `p` is the position after the header, and `o` is the list of pieces.
     """
 
-    def __init__(self, place: Alignment) -> None:
-        self.place = place
+    def __init__(self, alignment: Alignment) -> None:
+        self.alignment = alignment
         self.needs_position = False
         self._lines: list[str] = []
         self._depth = 1
@@ -191,7 +191,7 @@ class _WriterCode:
             self.sync()
             self.needs_position = self._uses_list = True
             self._add_line(f"p = {self._constant_name(_compile_part(structure), 'W')}(o, {value}, p)")
-            self.place = ANYWHERE
+            self.alignment = ANYWHERE
         else:
             self.structure(structure, value if value.isidentifier() else self._assign_variable(value), following)
 
@@ -214,17 +214,17 @@ class _WriterCode:
         self._end_run()
         if primitive.size == 8:
             # No padding follows the length of an empty sequence.
-            if self.place.padding(8) is None:
+            if self.alignment.padding(8) is None:
                 self.sync()
                 self.needs_position = True
                 padding = self._assign_variable(f"-p & 4 if {length} else 0")
             else:
-                padding = self._assign_variable(f"{self.place.padding(8)} if {length} else 0")
+                padding = self._assign_variable(f"{self.alignment.padding(8)} if {length} else 0")
             self._pieces.append(f"PAD[{padding}]")
             self._unsynced_sizes.append(padding)
         self._pieces.append(values)
         self._unsynced_sizes.append(f"{primitive.size} * {length}" if primitive.size > 1 else length)
-        self.place = Alignment(min(primitive.size, 4), 0)
+        self.alignment = Alignment(min(primitive.size, 4), 0)
 
     def _values(self, field: Field, values: str, following: int) -> None:
         kind, primitive = field.type, field.type.primitive
@@ -235,8 +235,8 @@ class _WriterCode:
                 with self._loop("e", values) as item:
                     self._add_line(f"check_bound({field.name!r}, {item}, {kind.string_bound})")
             self.align(4)
-            cache_name, place = ("LIST4", Alignment(4, 0)) if following >= 4 else ("LIST1", ANYWHERE)
-            self._add_piece(self._assign_variable(f"{cache_name}[tuple({values})]"), place)
+            cache_name, alignment = ("LIST4", Alignment(4, 0)) if following >= 4 else ("LIST1", ANYWHERE)
+            self._add_piece(self._assign_variable(f"{cache_name}[tuple({values})]"), alignment)
         else:
             item_type = FieldType(kind.base, kind.string_bound)
             self._write_repeated(values, lambda item: self._write_single(field.name, item_type, item, 0))
@@ -252,27 +252,27 @@ class _WriterCode:
         """
         self.flush()
         self.sync()
-        start_place = self.place
+        start_alignment = self.alignment
         while True:
             line_count, unsynced, names = len(self._lines), list(self._unsynced_sizes), self._names
-            self.place = start_place
+            self.alignment = start_alignment
             with self._loop("e", values) as item:
                 write_item(item)
                 self.flush()
                 self.sync()
-            common_place = start_place.common(self.place)
-            if common_place == start_place:
+            common_alignment = start_alignment.common(self.alignment)
+            if common_alignment == start_alignment:
                 break
-            start_place = common_place
+            start_alignment = common_alignment
             del self._lines[line_count:]
             self._unsynced_sizes, self._names = unsynced, names
-        self.place = start_place
+        self.alignment = start_alignment
 
     # --- pieces ---------------------------------------------------------------------------------------------
 
     def align(self, size: int) -> None:
         """Generate the code that pads to a multiple of `size`."""
-        padding = self.place.padding(size)
+        padding = self.alignment.padding(size)
         if padding is None:
             self._end_run()
             self.sync()
@@ -280,18 +280,18 @@ class _WriterCode:
             padding_name = self._assign_variable(f"-p & {size - 1}")
             self._pieces.append(f"PAD[{padding_name}]")
             self._unsynced_sizes.append(padding_name)
-            self.place = Alignment(size, 0)
+            self.alignment = Alignment(size, 0)
         elif padding:
             self._run.append((f"{padding}x", ""))
             self._advance(padding)
 
-    def pack(self, code: str, value: str, place: Alignment | None = None) -> None:
+    def pack(self, code: str, value: str, alignment: Alignment | None = None) -> None:
         """Add a primitive to the current run.
 
-        The position must be aligned. If `place` is not None, the position does not advance.
+        The position must be aligned. If `alignment` is not None, the position does not advance.
         """
         self._run.append((code, value))
-        if place is None:
+        if alignment is None:
             self._advance(struct.calcsize("<" + code))
 
     def flush(self) -> None:
@@ -310,11 +310,11 @@ class _WriterCode:
             self._add_line("p += " + " + ".join(terms + ([str(constant_size)] if constant_size else [])))
             self._unsynced_sizes = []
 
-    def _add_piece(self, name: str, place: Alignment) -> None:
+    def _add_piece(self, name: str, alignment: Alignment) -> None:
         self._end_run()
         self._pieces.append(name)
         self._unsynced_sizes.append(f"len({name})")
-        self.place = place
+        self.alignment = alignment
 
     def _end_run(self) -> None:
         if self._run:
@@ -326,7 +326,7 @@ class _WriterCode:
 
     def _advance(self, size: int) -> None:
         self._unsynced_sizes.append(str(size))
-        self.place = self.place.after(size)
+        self.alignment = self.alignment.after(size)
 
     # --- lines and names ------------------------------------------------------------------------------------
 

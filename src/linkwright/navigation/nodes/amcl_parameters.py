@@ -9,7 +9,7 @@ from linkwright.graph import Node
 from linkwright.navigation.localization.motion_models import MotionModel, Noise, Pose, differential, omnidirectional
 from linkwright.navigation.localization.particle_filter import FilterSettings
 from linkwright.navigation.localization.sensor_models import MODELS, BeamSkipping, LaserSettings
-from linkwright.nodes.parameter_tables import declared
+from linkwright.nodes.parameter_tables import declare_table
 from linkwright.nodes.settings import bad_value
 
 _MOTION_MODELS: dict[str, MotionModel] = {
@@ -102,7 +102,7 @@ class AmclSettings:
 
 def declare_parameters(node: Node) -> tuple[AmclParameters, LaserSettings, FilterSettings]:
     """Declare all parameters that are not declared yet, and read them."""
-    return declared(node, AmclParameters), declared(node, LaserSettings), declared(node, FilterSettings)
+    return declare_table(node, AmclParameters), declare_table(node, LaserSettings), declare_table(node, FilterSettings)
 
 
 def read_parameters(node: Node) -> AmclSettings:

@@ -173,7 +173,7 @@ class BehaviorNode(ManagedNode):
         self._running = (server, behavior, name)
         self._started_ns = self.now_ns()
         self._requested_velocity = STILL
-        self._output.review()
+        self._output.update_type()
         self.begin_cycles(self._period, self._cycle)
 
     def _create_behavior(self, name: str, goal: Any, start: Pose) -> Behavior | str:

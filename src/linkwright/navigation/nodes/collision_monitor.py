@@ -129,7 +129,7 @@ class MonitorNode(ManagedNode):
             self.get_logger().error("Velocity message contains NaNs or Infs! Ignoring as invalid!")
             return
         if self._last_verdict.velocity == STILL:
-            self._output.review()
+            self._output.update_type()
         self._output.frame_id = message.header.frame_id if stamped else ""
         verdict = self._limit(velocity)
         if verdict.zone != self._last_verdict.zone:

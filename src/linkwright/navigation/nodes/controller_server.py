@@ -145,7 +145,7 @@ class ControllerNode(ManagedNode):
             self._progress_checker = checker
             self._progress_checker.begin()
             self._last_valid_ns = self.now_ns()
-            self._output.review()
+            self._output.update_type()
             self.begin_cycles(1.0 / self._frequency, self._cycle)
 
     def _accept_path(self, message: Any) -> None:

@@ -25,7 +25,7 @@ from linkwright.navigation.costmaps.voxel_layer import MAX_LEVELS, VoxelLayer, V
 from linkwright.navigation.grids.grid import Grid
 from linkwright.navigation.nodes.costmap_sources import MapTopic, PointsTopic, RangeTopic, SensorTopic
 from linkwright.navigation.nodes.plugins import declare_unused, string_list, value_of
-from linkwright.nodes.parameter_tables import declared
+from linkwright.nodes.parameter_tables import declare_table
 from linkwright.nodes.settings import bad_value
 
 DEFAULT_LAYERS: Final = {
@@ -169,7 +169,7 @@ def _static(shared: Surroundings, name: str) -> Layer:
 def _make_obstacle_layer(shared: Surroundings, name: str) -> Layer:
     return ObstacleLayer(
         _make_buffers(shared, name),
-        declared(shared.node, Heights, name),
+        declare_table(shared.node, Heights, name),
         combination_method=shared.value(f"{name}.combination_method", 1),
         footprint_clearing=shared.value(f"{name}.footprint_clearing_enabled", True),
     )
@@ -178,13 +178,13 @@ def _make_obstacle_layer(shared: Surroundings, name: str) -> Layer:
 def _make_voxel_layer(shared: Surroundings, name: str) -> Layer:
     if shared.value(f"{name}.publish_voxel_map", False):
         shared.node.get_logger().info(f"{name}.publish_voxel_map is not supported: '{name}' publishes no voxels")
-    voxels: Voxels = declared(shared.node, Voxels, name)
+    voxels: Voxels = declare_table(shared.node, Voxels, name)
     if not 0 < voxels.z_voxels <= MAX_LEVELS:
         valid_counts = [str(count) for count in range(1, MAX_LEVELS + 1)]
         raise bad_value(f"{name}.z_voxels", voxels.z_voxels, shared.node.get_name(), valid_counts)
     return VoxelLayer(
         _make_buffers(shared, name),
-        declared(shared.node, Heights, name),
+        declare_table(shared.node, Heights, name),
         voxels,
         combination_method=shared.value(f"{name}.combination_method", 1),
         footprint_clearing=shared.value(f"{name}.footprint_clearing_enabled", True),
@@ -199,7 +199,7 @@ def _make_buffers(shared: Surroundings, name: str) -> list[ObservationBuffer]:
         kind = shared.value(f"{prefix}.data_type", "LaserScan")
         if kind not in _DATA_TYPES:
             raise bad_value(f"{prefix}.data_type", kind, shared.node.get_name(), _DATA_TYPES)
-        buffer = ObservationBuffer(declared(shared.node, Source, prefix))
+        buffer = ObservationBuffer(declare_table(shared.node, Source, prefix))
         topic = PointsTopic(
             shared.node,
             _in_parent_namespace(shared.node, shared.value(f"{prefix}.topic", source)),
@@ -217,11 +217,11 @@ def _make_buffers(shared: Surroundings, name: str) -> list[ObservationBuffer]:
 
 
 def _make_inflation_layer(shared: Surroundings, name: str) -> Layer:
-    return InflationLayer(declared(shared.node, Inflation, name))
+    return InflationLayer(declare_table(shared.node, Inflation, name))
 
 
 def _make_range_layer(shared: Surroundings, name: str) -> Layer:
-    layer = RangeLayer(declared(shared.node, RangeSettings, name))
+    layer = RangeLayer(declare_table(shared.node, RangeSettings, name))
     shared.value(f"{name}.inflate_cone", 1.0)
     shared.value(f"{name}.input_sensor_type", "ALL")
     for topic in string_list(shared.node, f"{name}.topics", []):

@@ -25,7 +25,7 @@ from linkwright.navigation.following.pure_pursuit import PurePursuitParameters, 
 from linkwright.navigation.following.rotation_shim import RotationShim, RotationShimParameters
 from linkwright.navigation.following.sampling import Limits, SamplingFollower, SamplingParameters
 from linkwright.navigation.nodes.plugins import declare_unused, type_of, value_of
-from linkwright.nodes.parameter_tables import declared
+from linkwright.nodes.parameter_tables import declare_table
 from linkwright.nodes.settings import bad_value
 
 DWB, MPPI = "dwb_core/DWBLocalPlanner", "nav2_mppi_controller/MPPIController"
@@ -61,7 +61,7 @@ def make_follower(node: Node, plugin: str) -> Follower:
 
 
 def _make_rotation_shim(node: Node, plugin: str) -> Follower:
-    parameters = declared(node, RotationShimParameters, plugin)
+    parameters = declare_table(node, RotationShimParameters, plugin)
     primary = str(value_of(node, f"{plugin}.primary_controller", DWB)).replace("::", "/")
     follower = RotationShim(_make_basic_follower(node, plugin, primary), parameters)
     unused_parameters = declare_unused(node, plugin)
@@ -75,7 +75,7 @@ def _make_basic_follower(node: Node, plugin: str, kind: str) -> Follower:
         return SamplingFollower(_dwb_parameters(node, plugin))
     if kind == MPPI:
         return SamplingFollower(_mppi_parameters(node, plugin))
-    return RegulatedPurePursuit(declared(node, PurePursuitParameters, plugin))
+    return RegulatedPurePursuit(declare_table(node, PurePursuitParameters, plugin))
 
 
 def _dwb_parameters(node: Node, plugin: str) -> SamplingParameters:
@@ -120,8 +120,12 @@ def make_goal_checker(node: Node, plugin: str) -> GoalChecker:
     """
     kind = type_of(node, plugin, DEFAULT_GOAL_CHECKERS)
     checkers: dict[str, Callable[[], GoalChecker]] = {
-        "nav2_controller/SimpleGoalChecker": lambda: SimpleGoalChecker(declared(node, SimpleGoalParameters, plugin)),
-        "nav2_controller/StoppedGoalChecker": lambda: StoppedGoalChecker(declared(node, StoppedGoalParameters, plugin)),
+        "nav2_controller/SimpleGoalChecker": lambda: SimpleGoalChecker(
+            declare_table(node, SimpleGoalParameters, plugin)
+        ),
+        "nav2_controller/StoppedGoalChecker": lambda: StoppedGoalChecker(
+            declare_table(node, StoppedGoalParameters, plugin)
+        ),
     }
     checker: GoalChecker = _make_checker(node, plugin, kind, checkers)
     return checker
@@ -134,8 +138,12 @@ def make_progress_checker(node: Node, plugin: str) -> ProgressChecker:
     """
     kind = type_of(node, plugin, DEFAULT_PROGRESS_CHECKERS)
     checkers: dict[str, Callable[[], ProgressChecker]] = {
-        "nav2_controller/SimpleProgressChecker": lambda: ProgressChecker(declared(node, ProgressParameters, plugin)),
-        "nav2_controller/PoseProgressChecker": lambda: ProgressChecker(declared(node, PoseProgressParameters, plugin)),
+        "nav2_controller/SimpleProgressChecker": lambda: ProgressChecker(
+            declare_table(node, ProgressParameters, plugin)
+        ),
+        "nav2_controller/PoseProgressChecker": lambda: ProgressChecker(
+            declare_table(node, PoseProgressParameters, plugin)
+        ),
     }
     checker: ProgressChecker = _make_checker(node, plugin, kind, checkers)
     return checker

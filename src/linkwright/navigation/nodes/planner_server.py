@@ -31,7 +31,7 @@ from linkwright.navigation.nodes.plugins import declare_unused, string_list, typ
 from linkwright.navigation.nodes.slices import WAIT, SlicedWork
 from linkwright.navigation.planning.planner import PlanError, Settings, plan
 from linkwright.nodes.options import NodeOptions
-from linkwright.nodes.parameter_tables import declared
+from linkwright.nodes.parameter_tables import declare_table
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 _NAVFN: Final = "nav2_navfn_planner/NavfnPlanner"
@@ -106,7 +106,7 @@ class PlannerNode(ManagedNode):
 
     def _create_planner(self, name: str) -> Settings:
         kind = type_of(self, name, _DEFAULT_TYPES)
-        settings = declared(self, Settings, name, _REPLACED_TYPES.get(kind))
+        settings = declare_table(self, Settings, name, _REPLACED_TYPES.get(kind))
         if kind != _NAVFN:
             declare_unused(self, name)
             self.get_logger().warning(

@@ -23,7 +23,7 @@ from linkwright.navigation.nodes.managed import ManagedNode, ManagedServer
 from linkwright.navigation.nodes.paths import path_message, poses_from_messages
 from linkwright.navigation.nodes.plugins import declare_unused, string_list, type_of
 from linkwright.navigation.planning.smoothing import Smoothing, directions, smoothed
-from linkwright.nodes.parameter_tables import declared
+from linkwright.nodes.parameter_tables import declare_table
 
 _SIMPLE: Final = "nav2_smoother/SimpleSmoother"
 _DEFAULT_TYPES: Final = {"simple_smoother": _SIMPLE}
@@ -61,7 +61,7 @@ class SmootherNode(ManagedNode):
 
     def _declare_smoother(self, name: str) -> None:
         kind = type_of(self, name, _DEFAULT_TYPES)
-        declared(self, Smoothing, name)
+        declare_table(self, Smoothing, name)
         declare_unused(self, name)
         if kind != _SIMPLE:
             self.get_logger().warning(f"{kind} is not supported: '{name}' smooths as {_SIMPLE} does")

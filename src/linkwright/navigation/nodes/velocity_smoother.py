@@ -169,7 +169,7 @@ class _ManagedSmoother(ManagedNode):
             return
         assert self._output is not None, "it is configured"
         if not any(self._last_velocities):
-            self._output.review()
+            self._output.update_type()
         self._output.frame_id = message.header.frame_id if is_stamped else ""
         self._command = values
         self._last_command_ns = self.get_clock().now().nanoseconds

@@ -72,9 +72,9 @@ class NavigationFeature(PageFeature):
                 self._watch = _Watch(self.context, self._publish)
             page.send(self._watch.state)
         else:
-            self.page_closed(page)
+            self.remove_page(page)
 
-    def page_closed(self, page: Page) -> None:
+    def remove_page(self, page: Page) -> None:
         """Stop sending nav2's state to the page."""
         self._pages.discard(page)
         if not self._pages and self._watch is not None:
@@ -84,7 +84,7 @@ class NavigationFeature(PageFeature):
     def close(self) -> None:
         """Stop monitoring nav2."""
         for page in tuple(self._pages):
-            self.page_closed(page)
+            self.remove_page(page)
 
     def _publish(self, state: NavigationState) -> None:
         for page in self._pages:

@@ -39,7 +39,7 @@ class GoalOutcomeFeature(PageFeature):
         self._outcome: GoalOutcome = NO_GOAL_FAILED
         self._publish_timer: asyncio.TimerHandle | None = None
 
-    def opening(self) -> list[ServerMessage]:
+    def opening_messages(self) -> list[ServerMessage]:
         """Subscribe for the first page, and return the outcome of the last goal."""
         if not self._subscriptions:
             latched = QoSProfile(depth=_STATUS_DEPTH, durability=DurabilityPolicy.TRANSIENT_LOCAL)
@@ -49,7 +49,7 @@ class GoalOutcomeFeature(PageFeature):
             ]
         return [self._outcome]
 
-    def page_closed(self, page: Page) -> None:
+    def remove_page(self, page: Page) -> None:
         """Unsubscribe after the last page is closed."""
         if len(self.context.pages) == 0:
             self.close()

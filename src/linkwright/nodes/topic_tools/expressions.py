@@ -239,13 +239,13 @@ def _compile_value(value: Any) -> Callable[[Any], Any]:
     except LinkwrightError:
         return lambda message: value  # noqa: ARG005  # the value is the same for all messages
 
-    def worked_out(message: Any) -> Any:
+    def evaluate(message: Any) -> Any:
         try:
             return expression(message)
         except NameError:
             return value
 
-    return worked_out
+    return evaluate
 
 
 def _compile_expression(text: str, names: Mapping[str, Any]) -> Callable[[Any], Any]:

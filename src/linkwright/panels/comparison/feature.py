@@ -67,7 +67,7 @@ class ComparisonFeature(PageFeature):
         self._pair, self._old_robot = pair, OldRobot(node, self.context.node)
         return self._old_robot.publish
 
-    def configured(self, manager: VisualizationManager) -> list[ServerMessage]:
+    def configuration_messages(self, manager: VisualizationManager) -> list[ServerMessage]:
         """Return the differences that were last sent to pages."""
         message = self._message(manager)
         if message is None:
@@ -75,7 +75,7 @@ class ComparisonFeature(PageFeature):
         self._sent_messages[manager] = message
         return [message]
 
-    def robot_changed(self) -> None:
+    def on_robot_changed(self) -> None:
         """Compare the robots that the displays show now."""
         if self._pair is None or self._old_robot is None:
             return
@@ -91,14 +91,14 @@ class ComparisonFeature(PageFeature):
         for manager in self.managers.all():
             self._publish(manager)
 
-    def edited(self, manager: VisualizationManager) -> None:
+    def on_edit(self, manager: VisualizationManager) -> None:
         """Send the differences again if they changed.
 
         Displays may have been added or removed.
         """
         self._publish(manager)
 
-    def manager_closed(self, manager: VisualizationManager) -> None:
+    def remove_manager(self, manager: VisualizationManager) -> None:
         """Discard the differences that were sent to the pages of the manager."""
         self._sent_messages.pop(manager, None)
 

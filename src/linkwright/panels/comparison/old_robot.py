@@ -66,7 +66,7 @@ class OldRobot:
         self._transforms = RobotTransforms(old, f"{PREFIX}/")
         self._followed_joints = followed_joints(old, new, comparison.joints)
         self._zero_positions = _initial_positions(old, self._followed_joints)
-        fixed_batch = self._transforms.fixed(now_ns)
+        fixed_batch = self._transforms.fixed_transforms(now_ns)
         parent, pose = _attach_root(old, new, comparison.links)
         batch = TransformBatch(
             (*fixed_batch.parents, parent),
@@ -86,7 +86,7 @@ class OldRobot:
             return
         joint_positions, leaders = self._positions, self._followed_joints
         positions = [joint_positions.get(leaders.get(name, ""), zero) for name, zero in self._zero_positions.items()]
-        batch = self._transforms.recipe(tuple(self._zero_positions)).batch(positions, stamp_ns)
+        batch = self._transforms.conversion_for(tuple(self._zero_positions)).batch(positions, stamp_ns)
         self._tf_publisher.publish(TFMessage(batch=batch))
 
 

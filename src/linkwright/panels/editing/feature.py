@@ -55,7 +55,7 @@ class EditingFeature(PageFeature):
         if self._worker is None:
             self._worker = asyncio.get_running_loop().create_task(self._work())
 
-    def page_closed(self, page: Page) -> None:
+    def remove_page(self, page: Page) -> None:
         """Discard the preview of a page."""
         self._editing_pages.discard(page)
         self._previewed_plans.pop(page, None)

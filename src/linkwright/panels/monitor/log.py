@@ -67,7 +67,7 @@ class LogFeature(PageFeature):
         self._tap: TopicTap | None = None
         self._sender = Paced(self._send, _SEND_PERIOD)
 
-    def opening(self) -> list[ServerMessage]:
+    def opening_messages(self) -> list[ServerMessage]:
         """Subscribe if this is the first page, and return no messages."""
         if self._tap is None:
             self._tap = TopicTap(self.context, _TOPIC, self._receive)
@@ -86,7 +86,7 @@ class LogFeature(PageFeature):
             self._queues[page] = _PageQueue(self._past_lines)
         self._sender.request()
 
-    def page_closed(self, page: Page) -> None:
+    def remove_page(self, page: Page) -> None:
         """Discard the page's records, and unsubscribe after the last page has closed."""
         self._watching_pages.discard(page)
         self._queues.pop(page, None)

@@ -23,13 +23,13 @@ class NodeGraphFeature(PageFeature):
     def receive(self, page: Page, message: WatchNodeGraph) -> None:
         """Start or stop sending the graph to a page."""
         if not message.watched:
-            self.page_closed(page)
+            self.remove_page(page)
             return
         self._sent_graphs[page] = graph = node_graph(self.context.node.graph)
         page.send(graph)
         self.context.graph_changes.watch(self._publish)
 
-    def page_closed(self, page: Page) -> None:
+    def remove_page(self, page: Page) -> None:
         """Stop sending the graph to the page."""
         self._sent_graphs.pop(page, None)
         if not self._sent_graphs:

@@ -261,7 +261,7 @@ class ParametersFeature(PageFeature):
         else:
             self._nodes[message.node].dump(page.send)
 
-    def page_closed(self, page: Page) -> None:
+    def remove_page(self, page: Page) -> None:
         """Discard the page's requests, and close the clients that no other page needs."""
         if self._requests.pop(page, None) is not None:
             self._update_subscriptions()

@@ -192,7 +192,7 @@ class _PlottedTopic:
         if cls is None or not valid_series:
             return
         longest_duration = max(map(seconds, valid_series))
-        messages = timeline.before({self.tap.topic}, longest_duration, _MAX_PAST_BYTES)
+        messages = timeline.messages_before({self.tap.topic}, longest_duration, _MAX_PAST_BYTES)
         for series in valid_series:
             assert series.path is not None
             samples = past_samples(series.path, cls, messages)
@@ -252,7 +252,7 @@ class PlotsFeature(PageFeature):
             if message.topic is not None:
                 self._send_fields(page, message.topic)
 
-    def page_closed(self, page: Page) -> None:
+    def remove_page(self, page: Page) -> None:
         """Discard the page's series."""
         self._close_field_tap(page)
         self._watch(page, [], 0.0)
@@ -261,7 +261,7 @@ class PlotsFeature(PageFeature):
     def close(self) -> None:
         """End all subscriptions."""
         for page in {*self._pages, *self._field_taps}:
-            self.page_closed(page)
+            self.remove_page(page)
         self._sender.cancel()
         self._timeline.on_jump.remove(self._on_jump)
         if self._read_timer is not None:

@@ -33,12 +33,12 @@ class TeleopFeature(PageFeature):
             if pad is not None:
                 pad.drive(message)
             return
-        self.page_closed(page)
+        self.remove_page(page)
         if message.target is not None:
             self._pads[page] = _Pad(self.context.node, message.target, page.send)
             self.context.graph_changes.watch(self._update_types)
 
-    def page_closed(self, page: Page) -> None:
+    def remove_page(self, page: Page) -> None:
         """Stop the robot that the page drives, and close its pad."""
         pad = self._pads.pop(page, None)
         if pad is not None:
@@ -49,11 +49,11 @@ class TeleopFeature(PageFeature):
     def close(self) -> None:
         """Stop all robots."""
         for page in tuple(self._pads):
-            self.page_closed(page)
+            self.remove_page(page)
 
     def _update_types(self) -> None:
         for pad in self._pads.values():
-            pad.review()
+            pad.update_message_type()
 
 
 class _Pad:
@@ -66,7 +66,7 @@ class _Pad:
         self._topic: VelocityTopic | None = None
         self._sent_state: TeleopState | None = None
         self._stop_timer: asyncio.TimerHandle | None = None
-        self.review()
+        self.update_message_type()
 
     def drive(self, velocity: Drive) -> None:
         """Publish a velocity.
@@ -86,7 +86,7 @@ class _Pad:
         if self._topic is not None:
             self._topic.close()
 
-    def review(self) -> None:
+    def update_message_type(self) -> None:
         """Adopt the message type of the topic's subscriptions, and send their number to the page.
 
         While the robot is moving, the type is not changed.
@@ -96,7 +96,7 @@ class _Pad:
             if self._topic is None:
                 is_stamped = None if target.kind == "auto" else target.kind == "TwistStamped"
                 self._topic = VelocityTopic(self._node, target.topic, is_stamped, target.frame_id)
-            subscription_count = self._topic.review(may_change=self._stop_timer is None)
+            subscription_count = self._topic.update_type(may_change=self._stop_timer is None)
         except LinkwrightError as error:
             self._set_state(TeleopState(target.topic, "", 0, error.diagnostics[0].message))
             return

@@ -179,7 +179,7 @@ class TopicsFeature(PageFeature):
         if message.listed:
             self._send_topic_lists()
 
-    def page_closed(self, page: Page) -> None:
+    def remove_page(self, page: Page) -> None:
         """Discard the page's requests, and end the subscriptions that no other page needs."""
         if self._requests.pop(page, None) is not None:
             self._update_subscriptions()

@@ -82,7 +82,7 @@ class SourceEditorFeature(PageFeature):
             loop = asyncio.get_running_loop()
             self._tasks = [loop.create_task(self._work()), loop.create_task(self._watch())]
 
-    def page_closed(self, page: Page) -> None:
+    def remove_page(self, page: Page) -> None:
         """End the language server of a page."""
         editor = self._editors.pop(page, None)
         if editor is not None:
@@ -92,7 +92,7 @@ class SourceEditorFeature(PageFeature):
     def close(self) -> None:
         """End all language servers, and stop handling requests."""
         for page in list(self._editors):
-            self.page_closed(page)
+            self.remove_page(page)
         for task in (*self._tasks, *self._shown):
             task.cancel()
 
@@ -151,7 +151,7 @@ class SourceEditorFeature(PageFeature):
         known = self._description_files(page)
         why_not = _refusal_reason(page, file, known)
         if why_not is not None:
-            self.page_closed(page)
+            self.remove_page(page)
             return messages.EditorOpened("", "", why_not)
         files = SourceFiles(Path(file), known)
         editor = self._editors.get(page)
@@ -168,7 +168,7 @@ class SourceEditorFeature(PageFeature):
         numbers = count(1)
 
         def ended() -> None:
-            self.page_closed(page)
+            self.remove_page(page)
             page.send(messages.LanguageServerEnded())
 
         return LanguageProcess(

@@ -7,9 +7,9 @@ from linkwright.rviz.clouds.points import (
     Points,
     ScanProjector,
     decimated,
+    deskew,
     points_of_cloud,
     points_of_legacy_cloud,
-    swept,
 )
 
 __all__ = [
@@ -23,8 +23,8 @@ __all__ = [
     "ScanProjector",
     "coloured",
     "decimated",
+    "deskew",
     "points_of_cloud",
     "points_of_legacy_cloud",
     "supported_transformers",
-    "swept",
 ]

@@ -221,8 +221,8 @@ class ScanProjector:
         return self._directions
 
 
-def swept(
-    points: Points, fractions: NDArray[Any], first: NDArray[np.float64], last_pose: NDArray[np.float64]
+def deskew(
+    points: Points, fractions: NDArray[Any], first_pose: NDArray[np.float64], last_pose: NDArray[np.float64]
 ) -> Points:
     """Transform points of a moving sensor, each with the sensor's pose at its measurement.
 
@@ -231,9 +231,9 @@ def swept(
     Args:
         points: points in the moving frame.
         fractions: the fraction of the motion, from 0 to 1, after which each point was measured; shape (N,).
-        first: the pose at the beginning, x y z qx qy qz qw.
+        first_pose: the pose at the beginning, x y z qx qy qz qw.
         last_pose: the pose at the end.
     """
-    rotated = rotate(slerp(first[3:], last_pose[3:], fractions), points.positions)
-    positions = rotated + first[:3] + fractions[:, np.newaxis] * (last_pose[:3] - first[:3])
+    rotated = rotate(slerp(first_pose[3:], last_pose[3:], fractions), points.positions)
+    positions = rotated + first_pose[:3] + fractions[:, np.newaxis] * (last_pose[:3] - first_pose[:3])
     return Points(positions.astype(np.float32), points.channels)

@@ -10,7 +10,7 @@ from linkwright.graph import DurabilityPolicy, HistoryPolicy, QoSProfile, Reliab
 from linkwright.page.protocol.configuration import Property, PropertyChanged, PropertyValue, TopicOffer
 from linkwright.rviz.config.former_names import FormerKey
 from linkwright.rviz.config.schema import Path, PropertySpec, Schema, accept, fallback_value, from_text, to_text
-from linkwright.rviz.config.yaml_tree import Memory, NewSection, Scalar, Section, make_section, remove_unchanged
+from linkwright.rviz.config.yaml_tree import NewSection, SavedEntry, Scalar, Section, make_section, remove_unchanged
 
 _MIN_INDEXED_PROPERTIES = 30
 """The number of sibling properties from which a lookup by name uses an index."""
@@ -55,7 +55,7 @@ class PropertyStore:
         self._base = base
         self._get_frames = frames
         self._former_keys = former or {}
-        self._recorded_memories: list[Memory] | None = None
+        self._recorded_entries: list[SavedEntry] | None = None
         self._new_sections: list[NewSection] = []
         self._values: dict[Path, PropertyValue] = {}
 
@@ -114,25 +114,25 @@ class PropertyStore:
         return True
 
     @contextmanager
-    def recording(self) -> Iterator[list[Memory]]:
-        """Collect the previous entries of the keys that are set inside the block, for `recall`."""
-        memories: list[Memory] = []
-        self._recorded_memories = memories
+    def recording(self) -> Iterator[list[SavedEntry]]:
+        """Collect the previous entries of the keys that are set inside the block, for `restore`."""
+        saved_entries: list[SavedEntry] = []
+        self._recorded_entries = saved_entries
         try:
-            yield memories
+            yield saved_entries
         finally:
-            self._recorded_memories = None
+            self._recorded_entries = None
 
-    def memories(self, memories: Iterable[Memory]) -> list[Memory]:
-        """Return the current entries of the keys that the given memories refer to, for `recall`."""
-        return [self._values_section().memory(memory.key) for memory in memories]
+    def current_entries(self, saved_entries: Iterable[SavedEntry]) -> list[SavedEntry]:
+        """Return the current entries of the keys that the given entries have, for `restore`."""
+        return [self._values_section().copy_entry(saved_entry.key) for saved_entry in saved_entries]
 
-    def recall(self, memories: Iterable[Memory]) -> list[Path]:
+    def restore(self, saved_entries: Iterable[SavedEntry]) -> list[Path]:
         """Restore previous entries of the file, and return the paths of changed properties."""
-        keys = {memory.key for memory in memories}
+        keys = {saved_entry.key for saved_entry in saved_entries}
         section = self._values_section()
-        for memory in memories:
-            section.recall(memory)
+        for saved_entry in saved_entries:
+            section.restore(saved_entry)
         self._new_sections = remove_unchanged(self._new_sections)
         previous_values = {
             path: value for path, value in self._values.items() if self._key(path) in keys and self._is_stored(path)
@@ -250,8 +250,10 @@ class PropertyStore:
                 "true",
                 "false",
             )  # `Unreliable` is a boolean in RViz 1, a policy in RViz 2
-        if self._recorded_memories is not None and path[0] not in (memory.key for memory in self._recorded_memories):
-            self._recorded_memories.append(self._values_section().memory(path[0]))
+        if self._recorded_entries is not None and path[0] not in (
+            saved_entry.key for saved_entry in self._recorded_entries
+        ):
+            self._recorded_entries.append(self._values_section().copy_entry(path[0]))
         self._values_section().put(path, text, string=is_string, nested=is_nested)
 
     def _former_key(self, path: Path) -> FormerKey | None:

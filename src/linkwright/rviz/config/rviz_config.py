@@ -20,7 +20,7 @@ from linkwright.rviz.config.schema import Path as PropertyPath
 from linkwright.rviz.config.schema import PropertySpec, is_on
 from linkwright.rviz.config.tools import ToolsConfig
 from linkwright.rviz.config.views import ModelSize, ViewsConfig
-from linkwright.rviz.config.yaml_tree import Memory, NewSection, Section, SequenceMemory
+from linkwright.rviz.config.yaml_tree import NewSection, SavedEntry, SavedSequence, Section
 
 __all__ = ["GLOBAL_OPTIONS", "Arrangement", "DisplayConfig", "RvizConfig"]
 
@@ -182,14 +182,14 @@ class DisplayConfig:
             self.section.put((key,), "true" if value else "false")
 
     @property
-    def box(self) -> list[Memory]:
+    def box(self) -> list[SavedEntry]:
         """The current entries of the check box in the file, to restore the check box later."""
-        return [self.section.memory(key) for key in _CHECK_BOX_KEYS]
+        return [self.section.copy_entry(key) for key in _CHECK_BOX_KEYS]
 
     @box.setter
-    def box(self, memories: list[Memory]) -> None:
-        for memory in memories:
-            self.section.recall(memory)
+    def box(self, saved_entries: list[SavedEntry]) -> None:
+        for saved_entry in saved_entries:
+            self.section.restore(saved_entry)
 
     @property
     def enabled(self) -> bool:
@@ -250,11 +250,11 @@ class Arrangement:
 
     Attributes:
         displays: the displays in each group, and at the top level under the key None.
-        memories: the ``Displays`` sequences of the file, by the same keys.
+        sequences: the ``Displays`` sequences of the file, by the same keys.
     """
 
     displays: dict[DisplayConfig | None, list[DisplayConfig]]
-    memories: dict[DisplayConfig | None, SequenceMemory]
+    sequences: dict[DisplayConfig | None, SavedSequence]
 
 
 class RvizConfig:
@@ -483,7 +483,7 @@ class RvizConfig:
         groups = [None, *(display for display in self.walk() if display.is_group)]
         return Arrangement(
             {group: list(self.siblings(group)) for group in groups},
-            {group: self._sequence_memory(group) for group in groups},
+            {group: self._copy_sequence(group) for group in groups},
         )
 
     def arrange(self, arrangement: Arrangement) -> None:
@@ -492,16 +492,16 @@ class RvizConfig:
             self.siblings(group)[:] = displays
             for display in displays:
                 display.group = group
-            yaml_tree.recall_sequence(self._parent(group), "Displays", arrangement.memories[group])
+            yaml_tree.restore_sequence(self._parent(group), "Displays", arrangement.sequences[group])
         self._new_sections = yaml_tree.remove_unchanged(self._new_sections)
 
     def siblings(self, group: DisplayConfig | None) -> list[DisplayConfig]:
         """Return the displays in a group, or the top-level displays if `group` is None."""
         return self.displays if group is None else group.displays
 
-    def _sequence_memory(self, group: DisplayConfig | None) -> SequenceMemory:
+    def _copy_sequence(self, group: DisplayConfig | None) -> SavedSequence:
         section = group.section if group is not None else self.document.section(_MANAGER)
-        return yaml_tree.remember_sequence(section, "Displays") if section is not None else SequenceMemory(None, None)
+        return yaml_tree.copy_sequence(section, "Displays") if section is not None else SavedSequence(None, None)
 
     def _parent(self, group: DisplayConfig | None) -> Section:
         """Return the section that contains the ``Displays`` of a group or of the top level.

@@ -18,7 +18,7 @@ from linkwright.rviz.config.former_names import modern_class
 from linkwright.rviz.config.property_store import PropertyStore
 from linkwright.rviz.config.schema import FIXED_FRAME, MAX_TEXT_LENGTH, Path, PropertySpec, Schema, vector
 from linkwright.rviz.config.yaml_tree import (
-    Memory,
+    SavedEntry,
     Section,
     ensure_section,
     insert_section,
@@ -282,7 +282,7 @@ class ViewEntry:
         new_keys = {spec.name for spec in VIEW_SCHEMAS[cls]}
         for spec in VIEW_SCHEMAS[self._cls]:
             if spec.name not in new_keys:
-                section.recall(Memory(spec.name, None))
+                section.restore(SavedEntry(spec.name, None))
         section.put(("Class",), cls, string=True)
         section.put(("Name",), self._name(), string=True)
         package, _, name = cls.partition("/")

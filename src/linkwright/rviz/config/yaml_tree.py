@@ -41,7 +41,7 @@ class Scalar:
 
 
 @dataclass(frozen=True, slots=True)
-class Memory:
+class SavedEntry:
     """A key of a mapping and its previous value, or None if the mapping did not have the key."""
 
     key: str
@@ -117,17 +117,17 @@ class Section:
             last_key = path[-1]
         _set_value(parent, last_key, yaml.ScalarNode(tag, text))
 
-    def memory(self, key: str) -> Memory:
-        """Return the current value of a key, for `recall`."""
+    def copy_entry(self, key: str) -> SavedEntry:
+        """Return a copy of a key and its value, for `restore`."""
         node = _child(self.node, key)
-        return Memory(key, None if node is None else _copy(node))
+        return SavedEntry(key, None if node is None else _copy(node))
 
-    def recall(self, memory: Memory) -> None:
+    def restore(self, saved_entry: SavedEntry) -> None:
         """Restore the previous value of a key, or remove the key if it had no value."""
-        if memory.value is not None:
-            _set_value(self.node, memory.key, _copy(memory.value))
+        if saved_entry.value is not None:
+            _set_value(self.node, saved_entry.key, _copy(saved_entry.value))
             return
-        self.node.value[:] = [pair for pair in self.node.value if pair[0].value != memory.key]
+        self.node.value[:] = [pair for pair in self.node.value if pair[0].value != saved_entry.key]
 
     def span(self, node: yaml.Node | None = None) -> Span:
         """Return the range of a node in the file, by default the range of this mapping."""
@@ -234,26 +234,26 @@ def entries(parent: Section, key: str) -> list[yaml.Node] | None:
 
 
 @dataclass(frozen=True, slots=True)
-class SequenceMemory:
+class SavedSequence:
     """The previous node of a key, without a copy, and its items if the node was a sequence."""
 
     node: yaml.Node | None
     items: list[yaml.Node] | None
 
 
-def remember_sequence(parent: Section, key: str) -> SequenceMemory:
-    """Return the current node of a key and the items of its sequence, for `recall_sequence`."""
-    return SequenceMemory(_child(parent.node, key), entries(parent, key))
+def copy_sequence(parent: Section, key: str) -> SavedSequence:
+    """Return the current node of a key and the items of its sequence, for `restore_sequence`."""
+    return SavedSequence(_child(parent.node, key), entries(parent, key))
 
 
-def recall_sequence(parent: Section, key: str, memory: SequenceMemory) -> None:
-    """Restore the node of a key, and the items of its sequence, from `remember_sequence`."""
-    if memory.node is None:
-        parent.recall(Memory(key, None))
+def restore_sequence(parent: Section, key: str, saved_sequence: SavedSequence) -> None:
+    """Restore the node of a key, and the items of its sequence, from `copy_sequence`."""
+    if saved_sequence.node is None:
+        parent.restore(SavedEntry(key, None))
         return
-    if isinstance(memory.node, yaml.SequenceNode):
-        memory.node.value[:] = memory.items or []
-    _set_value(parent.node, key, memory.node)
+    if isinstance(saved_sequence.node, yaml.SequenceNode):
+        saved_sequence.node.value[:] = saved_sequence.items or []
+    _set_value(parent.node, key, saved_sequence.node)
 
 
 @dataclass(frozen=True, slots=True)
@@ -262,13 +262,13 @@ class NewSection:
 
     Attributes:
         holder: the mapping that contains the new mapping.
-        memory: the previous value of the holder's key.
+        saved_entry: the previous value of the holder's key.
         section: the new mapping.
         keys: the keys that the new mapping had when it was created.
     """
 
     holder: Section
-    memory: Memory
+    saved_entry: SavedEntry
     section: Section
     keys: list[str]
 
@@ -279,9 +279,9 @@ def make_section(section: Section, *path: str) -> tuple[Section, list[NewSection
     for key in path:
         child_section = section.section(key)
         if child_section is None:
-            memory = section.memory(key)
+            saved_entry = section.copy_entry(key)
             child_section = ensure_section(section, key)
-            new_sections.append(NewSection(section, memory, child_section, child_section.keys()))
+            new_sections.append(NewSection(section, saved_entry, child_section, child_section.keys()))
         section = child_section
     return section, new_sections
 
@@ -294,7 +294,7 @@ def remove_unchanged(new_sections: list[NewSection]) -> list[NewSection]:
     remaining_sections = list(new_sections)
     while remaining_sections and remaining_sections[-1].section.keys() == remaining_sections[-1].keys:
         removed_section = remaining_sections.pop()
-        removed_section.holder.recall(removed_section.memory)
+        removed_section.holder.restore(removed_section.saved_entry)
     return remaining_sections
 
 

@@ -34,9 +34,9 @@ class UnsupportedDisplay(ViewerDisplay):
 
     def start(self) -> None:
         """Show in the status that displays of this class are not drawn."""
-        self.enabled_changed()
+        self.on_enabled_changed()
 
-    def enabled_changed(self) -> None:
+    def on_enabled_changed(self) -> None:
         """Show in the status that displays of this class are not drawn, if the display is enabled."""
         text = phrase(
             "Displays of class '{name}' are not supported: they stay in the file but are not drawn",

@@ -181,7 +181,7 @@ class DepthCloudDisplay(CloudDisplay):
         """
         return DEPTH_SCHEMA if self._is_filtered else DEPTH_SCHEMA_UNFILTERED
 
-    def changed(self, path: Path) -> None:
+    def on_property_changed(self, path: Path) -> None:
         """Subscribe to other topics, apply the topic filter, or redraw the last depth image."""
         if path[0] in SOURCES:
             self._restart()
@@ -189,16 +189,16 @@ class DepthCloudDisplay(CloudDisplay):
         if path == (TOPIC_FILTER,):
             self._is_filtered = self.properties.flag(TOPIC_FILTER)
             self.publish_properties()
-        super().changed(path)
+        super().on_property_changed(path)
         if path[0] in (AUTO_SIZE, OCCLUSION):
             self.show_again()
 
-    def time_changed(self) -> None:
+    def on_time_changed(self) -> None:
         """Show the messages that were queued while time was paused."""
         self._info_topic.resume()
         if self._colour_topic is not None:
             self._colour_topic.resume()
-        super().time_changed()
+        super().on_time_changed()
 
     def reset(self) -> None:
         """Discard all points, including the points stored for occlusion compensation."""

@@ -67,9 +67,9 @@ class DetectionImageDisplay(ImageDisplay):
         """Return the properties of an image display and of the boxes."""
         return (*super().schema(), *self.SCHEMA[len(ImageDisplay.SCHEMA) :])
 
-    def changed(self, path: Path) -> None:
+    def on_property_changed(self, path: Path) -> None:
         """Subscribe to other detections, or apply a new threshold."""
-        super().changed(path)
+        super().on_property_changed(path)
         if path[0] == DETECTIONS:
             self._threshold.close()
             self.delete_status_row(THRESHOLD)
@@ -87,10 +87,10 @@ class DetectionImageDisplay(ImageDisplay):
         self.forget(_BOXES_KEY)
         super().process_image(message, pose)
 
-    def time_changed(self) -> None:
+    def on_time_changed(self) -> None:
         """Show the messages that were queued while time was paused."""
         self._detections_topic.resume()
-        super().time_changed()
+        super().on_time_changed()
 
     def reset(self) -> None:
         """Discard the image and the boxes."""

@@ -138,9 +138,9 @@ class Detection3DArrayDisplay(_BoxDisplay):
         self._cancel_end()
         super().stop()
 
-    def changed(self, path: Path) -> None:
+    def on_property_changed(self, path: Path) -> None:
         """Apply new colours or a new lifetime."""
-        super().changed(path)
+        super().on_property_changed(path)
         if path == (CONFIG_PATH,):
             self._read_colors()
         if path in ((CONFIG_PATH,), (LIFETIME,)):

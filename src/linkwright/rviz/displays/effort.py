@@ -88,18 +88,18 @@ class EffortDisplay(RecentDisplay):
         self._unsubscribe_description()
         super().stop()
 
-    def changed(self, path: Path) -> None:
+    def on_property_changed(self, path: Path) -> None:
         """Subscribe to another robot description, or redraw the rings with a new frame prefix."""
-        super().changed(path)
+        super().on_property_changed(path)
         if path == (_DESCRIPTION,):
             self._subscribe_description()
         elif path == (_PREFIX,):
             self.reset()
-            self.frames_changed()
+            self.on_frames_changed()
 
-    def enabled_changed(self) -> None:
+    def on_enabled_changed(self) -> None:
         """Subscribe to the joint states and the robot's description, or unsubscribe from both."""
-        super().enabled_changed()
+        super().on_enabled_changed()
         self._subscribe_description()
 
     def frame_of(self, message: Any) -> tuple[str, int]:

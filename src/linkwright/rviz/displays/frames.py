@@ -43,14 +43,14 @@ class AxesDisplay(ViewerDisplay):
 
     def start(self) -> None:
         """Show in the status whether the frame's pose is known."""
-        self.frames_changed()
+        self.on_frames_changed()
 
-    def changed(self, path: Path) -> None:
+    def on_property_changed(self, path: Path) -> None:
         """Update the status for the newly selected frame."""
         if path == (_REFERENCE,):
-            self.frames_changed()
+            self.on_frames_changed()
 
-    def frames_changed(self) -> None:
+    def on_frames_changed(self) -> None:
         """Show in the status whether the frame's pose is known."""
         self.set_status([transform_status(self.host.frames, self.properties.text(_REFERENCE))])
 
@@ -80,14 +80,14 @@ class GridDisplay(ViewerDisplay):
 
     def start(self) -> None:
         """Show in the status whether the reference frame's pose is known."""
-        self.frames_changed()
+        self.on_frames_changed()
 
-    def changed(self, path: Path) -> None:
+    def on_property_changed(self, path: Path) -> None:
         """Update the status for the newly selected reference frame."""
         if path == (_REFERENCE,):
-            self.frames_changed()
+            self.on_frames_changed()
 
-    def frames_changed(self) -> None:
+    def on_frames_changed(self) -> None:
         """Show in the status whether the reference frame's pose is known."""
         self.set_status([transform_status(self.host.frames, self.properties.text(_REFERENCE))])
 
@@ -188,14 +188,14 @@ class TfDisplay(ViewerDisplay):
 
     def start(self) -> None:
         """Show the current frames."""
-        self.frames_changed()
+        self.on_frames_changed()
 
-    def changed(self, path: Path) -> None:
+    def on_property_changed(self, path: Path) -> None:
         """Apply a new filter, a new frame timeout, or the check box of one frame or of all frames."""
         if path in _FILTERS:
-            self.frames_changed()
+            self.on_frames_changed()
         elif path == (FRAME_TIMEOUT,):
-            self.host.fading_changed()
+            self.host.on_fading_changed()
         elif path == _ALL_ENABLED:
             value = self.properties.flag(*_ALL_ENABLED)
             for name in self._check_box_names():
@@ -205,12 +205,12 @@ class TfDisplay(ViewerDisplay):
             self.properties.set(_ALL_ENABLED, False)
             self.pages.publish(PropertyChanged(self.property_id(_ALL_ENABLED), False))
 
-    def enabled_changed(self) -> None:
+    def on_enabled_changed(self) -> None:
         """Update the status of the frames, and notify the host, which fades frames only for enabled displays."""
-        self.host.fading_changed()
-        super().enabled_changed()
+        self.host.on_fading_changed()
+        super().on_enabled_changed()
 
-    def frames_changed(self) -> None:
+    def on_frames_changed(self) -> None:
         """Update the rows of the frames if they have changed, and the status of each frame."""
         frames = self.host.frames
         shown = tuple(sorted(self._filtered(set(frames.names))))

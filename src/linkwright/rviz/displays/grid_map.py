@@ -120,9 +120,9 @@ class GridMapDisplay(RecentDisplay):
         self.accept()
         return surface
 
-    def changed(self, path: Path) -> None:
+    def on_property_changed(self, path: Path) -> None:
         """Redraw the last map, unless the page applies the changed property itself."""
-        super().changed(path)
+        super().on_property_changed(path)
         if path[0] not in ("Topic", "Alpha", "Show Grid Lines", "History Length"):
             self.reset()
             self.show_again()

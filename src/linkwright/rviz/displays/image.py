@@ -274,9 +274,9 @@ class ImageDisplay(ImageTopicDisplay):
             self.ranges.fixed = Range(self.properties.number("Min Value"), self.properties.number("Max Value"))
         self.show_image(message)
 
-    def changed(self, path: Path) -> None:
+    def on_property_changed(self, path: Path) -> None:
         """Subscribe again, or show the last image with a new value range."""
-        super().changed(path)
+        super().on_property_changed(path)
         if any(spec.name == path[0] for spec in _RANGE_SPECS):
             self.show_again()
 
@@ -340,7 +340,7 @@ class CameraDisplay(ImageTopicDisplay):
         )
         return (*_CAMERA_SPECS, check_box)
 
-    def arranged(self, displays: Sequence[ViewerDisplay]) -> None:
+    def on_displays_rearranged(self, displays: Sequence[ViewerDisplay]) -> None:
         """Update the check boxes of the other displays."""
         check_boxes = self._make_check_boxes(displays, None)
         if check_boxes != self._check_boxes:
@@ -373,10 +373,10 @@ class CameraDisplay(ImageTopicDisplay):
         camera = self._camera_model(message)
         self.show_image(message, camera, pose)
 
-    def time_changed(self) -> None:
+    def on_time_changed(self) -> None:
         """Show the messages that were queued while time was paused."""
         self._info_topic.resume()
-        super().time_changed()
+        super().on_time_changed()
 
     def reset(self) -> None:
         """Discard the image and the camera parameters."""

@@ -71,12 +71,12 @@ class InteractiveMarkersDisplay(DataDisplay):
         self._disconnect()
         self.context.meshes.replace(self.id, {})
 
-    def changed(self, path: Path) -> None:
+    def on_property_changed(self, path: Path) -> None:
         """Connect again and recreate the markers if the namespace or the transparency changed."""
         if path in ((_NAMESPACE_PROPERTY,), (_TRANSPARENCY_PROPERTY,)):
             self.reset()
 
-    def enabled_changed(self) -> None:
+    def on_enabled_changed(self) -> None:
         """Connect to the server if the display is enabled, or disconnect."""
         self.reset()
 
@@ -86,12 +86,12 @@ class InteractiveMarkersDisplay(DataDisplay):
         if self.enabled:
             self._connect()
 
-    def frames_changed(self) -> None:
+    def on_frames_changed(self) -> None:
         """Place the markers in the new Fixed Frame."""
         for name in list(self._markers):
             self._show(name)
 
-    def time_changed(self) -> None:
+    def on_time_changed(self) -> None:
         """Apply the updates from the server that were queued while time was paused."""
         if not self.host.time.paused:
             queued_updates, self._queued_updates = self._queued_updates, []

@@ -108,34 +108,34 @@ class MapDisplay(TopicDisplay):
             return
         self._send()
 
-    def changed(self, path: Path) -> None:
+    def on_property_changed(self, path: Path) -> None:
         """Subscribe to another topic or to other updates, or apply the timestamp setting."""
         if path == (TOPIC,):
             self._follow_topic(replace_in_file=True)
             self.pages.publish(PropertyChanged(self.property_id((_UPDATE_TOPIC,)), self.properties.text(_UPDATE_TOPIC)))
-        super().changed(path)
+        super().on_property_changed(path)
         if path[0] == _UPDATE_TOPIC:
             self._restart()
         elif path == (_USE_TIMESTAMP,):
             self.show_again()
 
-    def recalled(self) -> None:
+    def on_properties_restored(self) -> None:
         """Derive the update topic from the map's topic if the file does not contain an update topic."""
-        super().recalled()
+        super().on_properties_restored()
         self._follow_topic(replace_in_file=False)
 
-    def frames_changed(self) -> None:
+    def on_frames_changed(self) -> None:
         """Place the map in a new Fixed Frame, and show whether the map's pose is known."""
-        super().frames_changed()
+        super().on_frames_changed()
         if self._map is None or self.properties.flag(_USE_TIMESTAMP):
             return
         frame = self.frame_of(self._map)[0].removeprefix("/")
         problem = self.host.frames.problem(frame)
         self.set_status_row(TRANSFORM, "error" if problem else "ok", problem or phrase("Transform OK"))
 
-    def time_changed(self) -> None:
+    def on_time_changed(self) -> None:
         """Show the map and the updates that were queued while time was paused."""
-        super().time_changed()
+        super().on_time_changed()
         self._updates.resume()
 
     def reset(self) -> None:

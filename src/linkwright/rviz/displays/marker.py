@@ -80,9 +80,9 @@ class MarkerDisplay(StoredMarkersDisplay):
             self._remove(next(iter(self._pending_ids)))
         self._show()
 
-    def changed(self, path: Path) -> None:
+    def on_property_changed(self, path: Path) -> None:
         """Subscribe again if necessary, or enable or disable all namespaces."""
-        super().changed(path)
+        super().on_property_changed(path)
         if path == (_NAMESPACES,):
             value = self.properties.flag(_NAMESPACES)
             for name in self._namespaces:
@@ -105,14 +105,14 @@ class MarkerDisplay(StoredMarkersDisplay):
             self._expiry_timer.cancel()
             self._expiry_timer = None
 
-    def frames_changed(self) -> None:
+    def on_frames_changed(self) -> None:
         """Place the markers in the new Fixed Frame."""
-        if self.fixed_frame_changed():
+        if self._check_fixed_frame_change():
             for identity, marker in self._markers.items():
                 self._place_marker(identity, marker)
             self._show()
 
-    def transforms_received(self) -> None:
+    def on_transforms_received(self) -> None:
         """Place the markers whose transforms were not available until now."""
         if self._unplaced_ids:
             for identity in list(self._unplaced_ids):
@@ -299,8 +299,8 @@ class MessageMarkersDisplay(MarkerArrayDisplay, ABC):
             self._apply_marker(marker)
         self._show()
 
-    def changed(self, path: Path) -> None:
+    def on_property_changed(self, path: Path) -> None:
         """Apply a changed property, and draw the last message again."""
-        super().changed(path)
+        super().on_property_changed(path)
         if path[0] not in (TOPIC, _NAMESPACES):
             self.show_again()

@@ -66,14 +66,14 @@ class OctomapDisplay(StoredMarkersDisplay):
         """Return the message type, topic and QoS to subscribe with."""
         return self.MESSAGE, self.properties.text(_TOPIC).strip(), qos_of(self.properties, _TOPIC)
 
-    def changed(self, path: Path) -> None:
+    def on_property_changed(self, path: Path) -> None:
         """Subscribe to another topic, or redraw the last map."""
         if path[0] == _TOPIC:
             self._restart()
         else:
             self.show_again()
 
-    def frames_changed(self) -> None:
+    def on_frames_changed(self) -> None:
         """Show in the status whether the pose of the map's frame is known."""
         problem = self.host.frames.problem(self._frame) if self._frame else None
         if problem:
@@ -113,7 +113,7 @@ class OctomapDisplay(StoredMarkersDisplay):
         for marker in markers:
             self._store.put(marker)
         self.show_markers()
-        self.frames_changed()
+        self.on_frames_changed()
 
     def _cells_to_draw(self, cells: Cells, resolution: float) -> Cells:
         """Return the cells of the selected kind and height, at the selected maximum depth.

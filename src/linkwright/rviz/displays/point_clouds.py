@@ -23,10 +23,10 @@ from linkwright.rviz.clouds import (
     ScanProjector,
     coloured,
     decimated,
+    deskew,
     points_of_cloud,
     points_of_legacy_cloud,
     supported_transformers,
-    swept,
 )
 from linkwright.rviz.config.rviz_config import DisplayConfig
 from linkwright.rviz.config.schema import Path, Schema, topic_spec
@@ -125,9 +125,9 @@ class CloudDisplay(TopicDisplay):
         self._remove_expired()
         self._count_points()
 
-    def changed(self, path: Path) -> None:
+    def on_property_changed(self, path: Path) -> None:
         """Subscribe again if necessary, colour the points again, or apply the Decay Time."""
-        super().changed(path)
+        super().on_property_changed(path)
         if path == (AUTO_INTENSITY,):
             self._store_computed_bounds(AUTO_INTENSITY, *((name,) for name in INTENSITY_BOUNDS))
         elif path == (AUTO_VALUES,):
@@ -363,7 +363,7 @@ class LaserScanDisplay(PointsDisplay):
             return points, pose
         if np.allclose(end_pose, pose, rtol=0.0, atol=1e-9):
             return points, pose
-        return swept(points, points.channels["index"] / interval_count, pose, end_pose), _IDENTITY
+        return deskew(points, points.channels["index"] / interval_count, pose, end_pose), _IDENTITY
 
 
 class PointCloudDisplay(PointsDisplay):

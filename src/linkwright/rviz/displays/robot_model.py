@@ -223,7 +223,7 @@ class RobotModelDisplay(ViewerDisplay):
         self._description_source.close()
         self.context.meshes.replace(self.id, {})
 
-    def changed(self, path: Path) -> None:
+    def on_property_changed(self, path: Path) -> None:
         """Apply a new source, a new frame prefix, or the check boxes of links and joints."""
         if path[0] in _SOURCE_NAMES:
             self.start()
@@ -232,11 +232,11 @@ class RobotModelDisplay(ViewerDisplay):
         elif self._rows is not None and path[0] in (LINKS, JOINTS):
             self._box_changed(self._rows, path)
 
-    def frames_changed(self) -> None:
+    def on_frames_changed(self) -> None:
         """Show in the status which links have a known pose."""
         self._show_status()
 
-    def time_changed(self) -> None:
+    def on_time_changed(self) -> None:
         """Read the description that was received while time was paused."""
         if self._queued_text is not None and not self.host.time.paused:
             self._on_description(self._queued_text)
@@ -355,10 +355,10 @@ class RobotModelDisplay(ViewerDisplay):
             self.scene = RobotScene(self.id, self.scene.revision + 1, robot.name, links, joints)
             self.pages.publish(self.scene)
         self._update_rows(robot)
-        self.host.robot_changed(previous_frames - {link.frame for link in links})
+        self.host.on_robot_changed(previous_frames - {link.frame for link in links})
         self._show_status()
 
-    def recalled(self) -> None:
+    def on_properties_restored(self) -> None:
         """Update the rows for a restored Link Tree Style, and the check boxes of the joints."""
         if self._rows is not None:
             self._robot_specs = self._rows.specs(self.properties.text(*STYLE))

@@ -133,27 +133,27 @@ class WorldDisplay(TopicDisplay):
         self.context.transforms.set_placed_frame(self.id, None)
         self.context.meshes.replace(self.id, {})
 
-    def changed(self, path: Path) -> None:
+    def on_property_changed(self, path: Path) -> None:
         """Subscribe to other topics, or to the rays of other lidars."""
-        super().changed(path)
+        super().on_property_changed(path)
         if path == (_POSES_PROPERTY,):
             self._subscribe_poses()
         elif path in ((_RAYS_PROPERTY,), (_RAYS_TOPIC_PROPERTY,)):
             self._follow_rays()
 
-    def enabled_changed(self) -> None:
+    def on_enabled_changed(self) -> None:
         """Subscribe if the display is enabled, or unsubscribe."""
-        super().enabled_changed()
+        super().on_enabled_changed()
         self._subscribe_poses()
         self._follow_rays()
 
-    def time_changed(self) -> None:
+    def on_time_changed(self) -> None:
         """Process the messages that were queued while time was paused."""
-        super().time_changed()
+        super().on_time_changed()
         self._poses_topic.resume()
         self._rays.resume()
 
-    def time_reset(self) -> None:
+    def on_time_reset(self) -> None:
         """Hide the lidar rays until new measurements arrive.
 
         The world stays visible, because its description is not published again.
@@ -172,11 +172,11 @@ class WorldDisplay(TopicDisplay):
         self.context.meshes.replace(self.id, {})
         self.forget()
 
-    def frames_changed(self) -> None:
+    def on_frames_changed(self) -> None:
         """Compute the pose of the world again, and send the poses."""
         self._show_poses()
 
-    def transforms_received(self) -> None:
+    def on_transforms_received(self) -> None:
         """Place the world, if it has not been placed yet.
 
         Once it is placed, each message with poses updates its pose.

@@ -272,7 +272,7 @@ class FrameStream:
             self._release()
             self._release = None
 
-    def time_changed(self) -> None:
+    def on_time_changed(self) -> None:
         """Update the frames after time was paused or resumed, or its synchronization was changed."""
         if self._time.paused:
             self._paused_ns = self._paused_ns or self._clock.now_ns()
@@ -294,9 +294,9 @@ class FrameStream:
         """Schedule an update as soon as the rate allows."""
         self._schedule_read()
 
-    def robot_changed(self, gone: set[str]) -> None:
+    def on_robot_changed(self, removed_frames: set[str]) -> None:
         """Remove the frames that only the previous robot had, and schedule an update."""
-        known_frames = gone.intersection(self._buffer.frames())
+        known_frames = removed_frames.intersection(self._buffer.frames())
         if known_frames:
             self._buffer.remove(known_frames)
         self._schedule_read()
@@ -311,7 +311,7 @@ class FrameStream:
         self._update()
 
     @property
-    def opening(self) -> tuple[FrameTable, bytes]:
+    def current_frames(self) -> tuple[FrameTable, bytes]:
         """The frame table and the last binary frame, for a page that opens.
 
         Both are empty at first.

@@ -9,7 +9,7 @@ from typing import Any, Generic, TypeVar
 
 from linkwright.page.protocol.configuration import EditKind, EditName
 from linkwright.rviz.config.rviz_config import Arrangement, DisplayConfig, RvizConfig
-from linkwright.rviz.config.yaml_tree import Memory
+from linkwright.rviz.config.yaml_tree import SavedEntry
 from linkwright.rviz.displays.base.display import DisplayHost, ViewerDisplay
 from linkwright.rviz.displays.catalogue import make_display
 
@@ -41,7 +41,7 @@ class Edit(Generic[State]):
         self._swap = swap
         self._other_state = before
 
-    def turn(self) -> None:
+    def undo_or_redo(self) -> None:
         """Undo the edit, or redo it if it was undone."""
         self._other_state = self._swap(self._other_state)
 
@@ -50,7 +50,7 @@ class History:
     """The undo history: the edits to undo and redo, and the state that was last saved.
 
     Args:
-        changed: called whenever `undoable`, `redoable` or `unsaved` may have changed.
+        changed: called whenever `undo_name`, `redo_name` or `has_unsaved_edits` may have changed.
         clock: returns the time in seconds.
     """
 
@@ -64,17 +64,17 @@ class History:
         self._last_edit_time = float("-inf")
 
     @property
-    def undoable(self) -> EditName | None:
+    def undo_name(self) -> EditName | None:
         """The name of the edit that `undo` would revert, or None."""
         return self._done_edits[-1].name if self._done_edits else None
 
     @property
-    def redoable(self) -> EditName | None:
+    def redo_name(self) -> EditName | None:
         """The name of the edit that `redo` would repeat, or None."""
         return self._undone_edits[-1].name if self._undone_edits else None
 
     @property
-    def unsaved(self) -> bool:
+    def has_unsaved_edits(self) -> bool:
         """Whether the current state differs from the saved file."""
         return self._has_permanent_edit or self._saved_count != len(self._done_edits)
 
@@ -106,7 +106,7 @@ class History:
             self._saved_count = self._saved_count - 1 if self._saved_count else None
         self._changed()
 
-    def touch(self) -> None:
+    def add_permanent_edit(self) -> None:
         """Record an edit that cannot be undone."""
         if not self._has_permanent_edit:
             self._has_permanent_edit = True
@@ -116,7 +116,7 @@ class History:
         """Undo the last edit, if there is one."""
         if self._done_edits:
             edit = self._done_edits.pop()
-            edit.turn()
+            edit.undo_or_redo()
             self._undone_edits.append(edit)
             self._end_drag()
 
@@ -124,11 +124,11 @@ class History:
         """Redo the most recently undone edit, if there is one."""
         if self._undone_edits:
             edit = self._undone_edits.pop()
-            edit.turn()
+            edit.undo_or_redo()
             self._done_edits.append(edit)
             self._end_drag()
 
-    def saved(self) -> None:
+    def mark_saved(self) -> None:
         """Mark all edits as saved."""
         self._saved_count, self._has_permanent_edit = len(self._done_edits), False
         self._changed()
@@ -138,7 +138,7 @@ class History:
         self._done_edits.clear()
         self._undone_edits.clear()
         self._end_drag()
-        self.saved()
+        self.mark_saved()
 
     def _end_drag(self) -> None:
         self._last_edit_time = float("-inf")
@@ -263,11 +263,11 @@ class DisplayTree:
     def remove(self, displays: Sequence[ViewerDisplay]) -> None:
         """Remove displays, including the contents of groups."""
 
-        def take_away() -> None:
+        def remove_all() -> None:
             for entry in _outermost(displays):
                 self._config.remove(entry)
 
-        self._rearrange(_edit_name("remove", displays), take_away)
+        self._rearrange(_edit_name("remove", displays), remove_all)
 
     def move(
         self, displays: Sequence[ViewerDisplay], group: DisplayConfig | None, before: DisplayConfig | None
@@ -288,7 +288,7 @@ class DisplayTree:
             raise ValueError(f"displays cannot be put into '{group.name}'")
         _check_nesting(group, entries)
 
-        def shift() -> None:
+        def move_all() -> None:
             siblings = self._config.siblings(group)
             later_siblings = siblings[siblings.index(before) :] if before in siblings else []
             target = next((entry for entry in later_siblings if entry not in entries), None)
@@ -296,9 +296,9 @@ class DisplayTree:
                 self._config.remove(entry)
                 self._config.insert(entry, group, siblings.index(target) if target else None)
 
-        self._rearrange(_edit_name("move", displays), shift)
+        self._rearrange(_edit_name("move", displays), move_all)
 
-    def gather(self, displays: Sequence[ViewerDisplay], name: str) -> None:
+    def group(self, displays: Sequence[ViewerDisplay], name: str) -> None:
         """Move displays into a new group at the position of the first of them.
 
         Raises:
@@ -310,24 +310,24 @@ class DisplayTree:
         self._check_count([group])
         _check_nesting(enclosing_group, entries, extra_groups=1)
 
-        def put_together() -> None:
+        def insert_group() -> None:
             self._config.insert(group, enclosing_group, index)
             for entry in entries:
                 self._config.remove(entry)
                 self._config.insert(entry, group)
 
-        self._rearrange(EditName("group", name), put_together)
+        self._rearrange(EditName("group", name), insert_group)
 
     def rename(self, display: ViewerDisplay, name: str) -> None:
         """Rename a display."""
         if name == display.config.name:
             return
         section = display.config.section
-        before = section.memory("Name")
+        before = section.copy_entry("Name")
 
-        def swap(memory: Memory) -> Memory:
-            replaced = section.memory("Name")
-            section.recall(memory)
+        def swap(saved_entry: SavedEntry) -> SavedEntry:
+            replaced = section.copy_entry("Name")
+            section.restore(saved_entry)
             self._notify_arrangement()
             self._rearranged()
             return replaced
@@ -339,13 +339,13 @@ class DisplayTree:
 
     # --- applying and reverting edits --------------------------------------------------------------------------
 
-    def _swap_check_box(self, identity: str, memories: list[Memory]) -> list[Memory]:
+    def _swap_check_box(self, identity: str, saved_entries: list[SavedEntry]) -> list[SavedEntry]:
         """Restore the entries of a check box in the file, and return the replaced entries."""
         display = self.find(identity)
         if display is None:
-            return memories
+            return saved_entries
         replaced, enabled = display.config.box, self._enabled_states()
-        display.config.box = memories
+        display.config.box = saved_entries
         self._notify_check_box(display, enabled)
         return replaced
 
@@ -357,7 +357,7 @@ class DisplayTree:
         display.set_checked(display.config.checked)
         for other in self.displays:
             if other.enabled != enabled[other.config]:
-                other.enabled_changed()
+                other.on_enabled_changed()
 
     def arrange(self, arrangement: Arrangement) -> Arrangement:
         """Restore an arrangement, and return the arrangement that it replaced."""
@@ -398,16 +398,16 @@ class DisplayTree:
             if display.config not in displays_by_entry:
                 self._begin(display)
             elif display.enabled != enabled[display.config]:
-                display.enabled_changed()
+                display.on_enabled_changed()
 
     def _notify_arrangement(self) -> None:
         for display in self.displays:
-            display.arranged(self.displays)
+            display.on_displays_rearranged(self.displays)
 
     def _begin(self, display: ViewerDisplay) -> None:
         if self._running:
             display.start()
-            display.frames_changed()
+            display.on_frames_changed()
         for message in display.messages():
             self._host.pages.publish(message)
 

@@ -28,7 +28,7 @@ from linkwright.rviz.visualization.display_tree import DisplayTree, Edit, Histor
 
 if TYPE_CHECKING:
     from linkwright.page.outbox import Payload
-    from linkwright.rviz.config.yaml_tree import Memory
+    from linkwright.rviz.config.yaml_tree import SavedEntry
 
 
 GLOBAL = "global"
@@ -41,16 +41,16 @@ _FRAME_RATE = "Frame Rate"
 class ManagerOwner(Protocol):
     """The owner of visualization managers, to be notified of their events."""
 
-    def edited(self, manager: VisualizationManager) -> None:
+    def on_edit(self, manager: VisualizationManager) -> None:
         """Handle a change to the undo history or the unsaved state."""
 
-    def robot_changed(self) -> None:
+    def on_robot_changed(self) -> None:
         """Handle a change of the robot that a display shows."""
 
-    def fixed_frame_changed(self, manager: VisualizationManager) -> None:
+    def on_fixed_frame_changed(self, manager: VisualizationManager) -> None:
         """Handle a change of the Fixed Frame."""
 
-    def manager_closed(self, manager: VisualizationManager) -> None:
+    def remove_manager(self, manager: VisualizationManager) -> None:
         """Handle the closing of a manager."""
 
 
@@ -81,7 +81,7 @@ class VisualizationManager:
         self.config = config
         self.view, self.shows_whole_robot = config.views.current, config.shows_whole_robot
         self.opened = 1
-        self.history = History(lambda: owner.edited(self))
+        self.history = History(lambda: owner.on_edit(self))
         self._owner = owner
         self._global_status: list[StatusRow] = []
         self.time = TimeControl(context.node.get_clock(), self._time_changed, self._on_time_signal)
@@ -96,7 +96,7 @@ class VisualizationManager:
         self._read_options()
         self.frames = FrameView(fixed_frame=self.fixed_frame)
         self.tree = DisplayTree(config, self, self.history, rearranged=self._rearranged)
-        self.fading_changed()
+        self.on_fading_changed()
 
     # --- lifecycle ---------------------------------------------------------------------------------------------
 
@@ -122,12 +122,12 @@ class VisualizationManager:
         self._read_options()
         self._report_warnings()
         self.tree.fill(config)
-        self.fading_changed()
+        self.on_fading_changed()
         self.publish(self.tree_message())
         self.tree.start()
         self._stream.refresh()
         self._synchronize()
-        self._owner.fixed_frame_changed(self)
+        self._owner.on_fixed_frame_changed(self)
         self.history.clear()
 
     def _report_warnings(self) -> None:
@@ -146,10 +146,10 @@ class VisualizationManager:
         """Send a message to the pages that show this configuration."""
         self.pages.publish(message)
 
-    def opening(self) -> tuple[list[ServerMessage], FrameTable, list[Payload]]:
+    def opening_state(self) -> tuple[list[ServerMessage], FrameTable, list[Payload]]:
         """Return the messages, frame table and binary frames for a new page, to send in this order."""
         self._stream.refresh()
-        table, transforms = self._stream.opening
+        table, transforms = self._stream.current_frames
         messages: list[ServerMessage] = [self.tree_message()]
         for display in self.displays:
             messages += display.messages()
@@ -247,21 +247,21 @@ class VisualizationManager:
         path = (_FIXED_FRAME,)
         self._edit_property(self.config.options.identity(path), path, lambda: self._set_option(_FIXED_FRAME, frame))
 
-    def _swap_values(self, owner: str, memories: list[Memory]) -> list[Memory]:
+    def _swap_values(self, owner: str, saved_entries: list[SavedEntry]) -> list[SavedEntry]:
         """Restore previous entries of properties in the file, and return the replaced entries."""
-        replaced = self.store(owner).memories(memories)
-        self._restore_entries(owner, memories)
+        replaced = self.store(owner).current_entries(saved_entries)
+        self._restore_entries(owner, saved_entries)
         return replaced
 
-    def _restore_entries(self, owner: str, memories: list[Memory]) -> None:
+    def _restore_entries(self, owner: str, saved_entries: list[SavedEntry]) -> None:
         display = self.display(owner)
         if display is not None:
-            display.recall(memories)
+            display.restore(saved_entries)
         elif owner == GLOBAL:
-            for path in self.config.options.recall(memories):
+            for path in self.config.options.restore(saved_entries):
                 self._option_changed(path[0])
 
-    def measured(self, diagonal: float, ground: float) -> None:
+    def fit_to_robot(self, diagonal: float, ground: float) -> None:
         """Fit grid and axes to a measured robot, except sizes that the user has changed.
 
         Args:
@@ -273,9 +273,9 @@ class VisualizationManager:
                 if display.config is config:
                     display.set_property(path, value)
 
-    def edited(self) -> None:
+    def record_permanent_edit(self) -> None:
         """Record a change to the file that cannot be undone."""
-        self.history.touch()
+        self.history.add_permanent_edit()
 
     # --- time --------------------------------------------------------------------------------------------------
 
@@ -283,10 +283,10 @@ class VisualizationManager:
         """Pause or resume, and set the synchronization mode and the source display."""
         self.time.set(paused=paused, mode=mode, source=source)
         if write_synchronization(self.config.document, Synchronization(mode, source)):
-            self.edited()
-        self._stream.time_changed()
+            self.record_permanent_edit()
+        self._stream.on_time_changed()
         for display in self.displays:
-            display.time_changed()
+            display.on_time_changed()
 
     def reset_time(self) -> None:
         """Reset time: discard displayed messages, and all transforms except static ones."""
@@ -294,7 +294,7 @@ class VisualizationManager:
         self.context.transforms.forget()
         self._stream.forget()
         for display in self.displays:
-            display.time_reset()
+            display.on_time_reset()
 
     def _synchronize(self) -> None:
         """Apply the time synchronization of the file, and resume time."""
@@ -330,17 +330,17 @@ class VisualizationManager:
         elif name == _FIXED_FRAME:
             self._stream.fixed_frame = options.text(_FIXED_FRAME)
             self._stream.refresh()
-            self._owner.fixed_frame_changed(self)
+            self._owner.on_fixed_frame_changed(self)
 
     def _rearranged(self) -> None:
-        self.fading_changed()
+        self.on_fading_changed()
         self.publish(self.tree_message())
 
     def _frames_changed(self, frames: FrameView) -> None:
         has_new_names = frames.names != self.frames.names
         self.frames = frames
         for display in self.displays:
-            display.frames_changed()
+            display.on_frames_changed()
         if has_new_names:
             stores = [self.config.options, *(display.properties for display in self.displays)]
             for change in (change for store in stores for change in store.frame_changes()):
@@ -360,18 +360,18 @@ class VisualizationManager:
             self._global_status = [row]
             self.publish(DisplayStatus(GLOBAL, row.level, [row]))
 
-    def robot_changed(self, gone: set[str]) -> None:
+    def on_robot_changed(self, removed_frames: set[str]) -> None:
         """Handle a display's new robot.
 
-        `gone` contains the frames that only the previous robot had.
+        `removed_frames` contains the frames that only the previous robot had.
         """
-        self._stream.robot_changed(gone - self._robot_frames())
-        self._owner.robot_changed()
+        self._stream.on_robot_changed(removed_frames - self._robot_frames())
+        self._owner.on_robot_changed()
 
     def _robot_frames(self) -> frozenset[str]:
         return frozenset(link.frame for robot in self.robot_models() for link in robot.scene.links)
 
-    def fading_changed(self) -> None:
+    def on_fading_changed(self) -> None:
         """Apply the shortest Frame Timeout of the TF displays that are enabled."""
         tf_displays = (display for display in self.displays if isinstance(display, TfDisplay) and display.enabled)
         self._stream.fade_time = min(
@@ -448,4 +448,4 @@ class Managers:
             timer.cancel()
         manager = self._own_managers.pop(key)
         manager.close()
-        self._owner.manager_closed(manager)
+        self._owner.remove_manager(manager)

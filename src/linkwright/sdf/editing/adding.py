@@ -10,7 +10,7 @@ from linkwright.diagnostics import phrase
 from linkwright.sdf.editing import writing
 from linkwright.sdf.editing.changing import pose_in_world
 from linkwright.sdf.editing.errors import EditError
-from linkwright.sdf.editing.shapes import ShapeKind, geometry, inertial, is_size, lengths, new_element
+from linkwright.sdf.editing.shapes import ShapeKind, format_lengths, geometry, inertial, is_size, new_element
 from linkwright.sdf.editing.text import WorldText
 from linkwright.sdf.includes import resolve_includes
 from linkwright.sdf.lights import Light
@@ -24,13 +24,13 @@ LightKind = Literal["point", "directional", "spot"]
 
 @dataclass(frozen=True, slots=True)
 class NewShape:
-    """The defaults of a new shape: its size in m, its colour and its mass in kg.
+    """The defaults of a new shape: its size in m, its color and its mass in kg.
 
-    The colour is red, green and blue from 0 to 1. A mass of None makes the shape static.
+    The color is red, green and blue from 0 to 1. A mass of None makes the shape static.
     """
 
     size: tuple[float, ...]
-    colour: tuple[float, float, float]
+    color: tuple[float, float, float]
     mass: float | None = 1.0
 
 
@@ -80,7 +80,7 @@ def add_shape(
     Args:
         world: the world.
         kind: the kind of shape; walls and ramps are static, the others have a mass of 1 kg.
-        pose: the pose of the shape's centre in the world: x, y, z in m, roll, pitch, yaw in rad.
+        pose: the pose of the shape's center in the world: x, y, z in m, roll, pitch, yaw in rad.
         size: the size as in `SimpleShape`; empty for the default size.
 
     Returns:
@@ -96,13 +96,13 @@ def add_shape(
             phrase("'{numbers}' is not a valid size for a {kind}", numbers=" ".join(map(str, size)), kind=kind)
         )
     name = world.free_name(kind)
-    colour = lengths((*defaults.colour, 1.0))
+    color = format_lengths((*defaults.color, 1.0))
     children = [
         new_element("collision", *geometry(kind, shape_size), name="collision"),
         new_element(
             "visual",
             *geometry(kind, shape_size),
-            new_element("material", new_element("ambient", colour), new_element("diffuse", colour)),
+            new_element("material", new_element("ambient", color), new_element("diffuse", color)),
             name="visual",
         ),
     ]
@@ -166,4 +166,4 @@ def add_include(world: WorldText, address: str, pose: Sequence[float]) -> tuple[
 
 
 def _insert(world: WorldText, element: Element) -> WorldText:
-    return world.edited([writing.inserted_in(world.element, [element], after=_ENTITY_TAGS)])
+    return world.apply_edits([writing.insertion_edit(world.element, [element], after=_ENTITY_TAGS)])

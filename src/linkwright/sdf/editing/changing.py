@@ -15,14 +15,14 @@ from linkwright.geometry.single import IDENTITY, Pose, Transform, compose, inver
 from linkwright.sdf.editing import writing
 from linkwright.sdf.editing.errors import EditError
 from linkwright.sdf.editing.shapes import (
+    format_lengths,
+    format_number,
     geometry,
     inertial,
     is_size,
-    lengths,
     new_element,
-    number,
-    solid,
-    tensor,
+    solid_properties,
+    tensor_texts,
 )
 from linkwright.sdf.editing.text import Entity, WorldText
 from linkwright.sdf.frames import FrameError, transform_of
@@ -51,7 +51,7 @@ class Change:
         size: the size of a model that consists of one simple shape, as in `SimpleShape`.
         new_name: the new name.
         static: whether the model is fixed and never moves.
-        colour: the colour of a simple shape or a light: red, green, blue and alpha, from 0 to 1.
+        color: the color of a simple shape or a light: red, green, blue and alpha, from 0 to 1.
     """
 
     name: str
@@ -59,7 +59,7 @@ class Change:
     size: tuple[float, ...] | None = None
     new_name: str | None = None
     static: bool | None = None
-    colour: tuple[float, ...] | None = None
+    color: tuple[float, ...] | None = None
 
 
 def change(world: WorldText, changes: Iterable[Change]) -> WorldText:
@@ -76,12 +76,12 @@ def change(world: WorldText, changes: Iterable[Change]) -> WorldText:
     values: list[Replacement] = []
     poses: dict[str, Pose] = {}
     for edit in changes:
-        values += _values(world.entity(edit.name), edit)
+        values += _property_edits(world.entity(edit.name), edit)
         if edit.pose is not None:
             poses[edit.name] = pose_in_world(edit.pose)
-    world = _with_poses(world, poses, values)
+    world = _apply_poses(world, poses, values)
     names = {change.name: change.new_name for change in changes if change.new_name not in (None, change.name)}
-    return _with_names(world, {old: new for old, new in names.items() if new is not None})
+    return _rename_entities(world, {old: new for old, new in names.items() if new is not None})
 
 
 def copy(world: WorldText, names: Sequence[str], offset: Sequence[float]) -> tuple[WorldText, list[str]]:
@@ -109,8 +109,8 @@ def copy(world: WorldText, names: Sequence[str], offset: Sequence[float]) -> tup
         used_names.add(free_name)
         x, y, z = (a + b for a, b in zip(entity.world_pose[:3], offset, strict=True))
         poses[free_name] = Pose((x, y, z), pose_of_entity(entity).rpy)
-        edits.append(_copied(entity, free_name))
-    return _with_poses(world.edited(edits), poses), list(poses)
+        edits.append(_copy_edit(entity, free_name))
+    return _apply_poses(world.apply_edits(edits), poses), list(poses)
 
 
 def delete(world: WorldText, names: Iterable[str]) -> WorldText:
@@ -129,9 +129,9 @@ def delete(world: WorldText, names: Iterable[str]) -> WorldText:
             if model_name in deleted:
                 user = child.attributes.get("name") or child.tag
                 raise EditError(phrase("'{name}' cannot be deleted: '{user}' refers to it", name=model_name, user=user))
-    edits = [writing.removed(entity.element) for entity in deleted.values()]
-    edits += [writing.removed(entry) for name in deleted for entry in state_of(world, name)]
-    return world.edited(edits)
+    edits = [writing.removal_edit(entity.element) for entity in deleted.values()]
+    edits += [writing.removal_edit(entry) for name in deleted for entry in state_entries(world, name)]
+    return world.apply_edits(edits)
 
 
 def pose_in_world(numbers: Sequence[float]) -> Pose:
@@ -160,10 +160,10 @@ def pose_of_entity(entity: Entity) -> Pose:
         and transform_of(written_pose.pose) == entity.world_pose
     ):
         return written_pose.pose
-    return writing.pose_from(entity.world_pose)
+    return writing.pose_from_transform(entity.world_pose)
 
 
-def moved(world: WorldText, entity: Entity, pose: Pose) -> list[Replacement]:
+def move_edits(world: WorldText, entity: Entity, pose: Pose) -> list[Replacement]:
     """Return the edits that move an entity to a pose in the world.
 
     The entity's own pose may be given in any frame. Its poses in a saved state are also changed.
@@ -172,22 +172,22 @@ def moved(world: WorldText, entity: Entity, pose: Pose) -> list[Replacement]:
         EditError: the frame of the entity's pose does not exist.
     """
     new_transform = transform_of(pose)
-    edits = set_pose(entity, _local(world, entity, pose))
-    for entry in state_of(world, entity.name):
-        edits += _move_state_edits(entry, entity.world_pose, new_transform, pose)
+    edits = pose_edits(entity, _pose_in_written_frame(world, entity, pose))
+    for entry in state_entries(world, entity.name):
+        edits += _state_move_edits(entry, entity.world_pose, new_transform, pose)
     return edits
 
 
-def set_pose(entity: Entity, pose: Pose) -> list[Replacement]:
+def pose_edits(entity: Entity, pose: Pose) -> list[Replacement]:
     """Return the edits that write the ``<pose>`` of an entity, in its declared frame."""
     element = entity.element.first("pose")
     if element is not None:
-        return writing.set_pose(element, pose)
+        return writing.pose_edits(element, pose)
     after = _INCLUDE_HEAD if isinstance(entity.written, Include) else ()
-    return [writing.inserted_in(entity.element, [writing.pose_element(pose)], after=after, first=not after)]
+    return [writing.insertion_edit(entity.element, [writing.pose_element(pose)], after=after, first=not after)]
 
 
-def state_of(world: WorldText, name: str) -> list[Element]:
+def state_entries(world: WorldText, name: str) -> list[Element]:
     """Return the entries of the last saved state for an entity."""
     state = world.state
     entries = () if state is None else (*state.elements("model"), *state.elements("light"))
@@ -202,7 +202,7 @@ def referenced_name(element: Element, attribute: str | None) -> str:
     return element.text().strip() if attribute is None else element.attributes[attribute]
 
 
-def rename_references(world: WorldText, names: dict[str, str]) -> list[Replacement]:
+def reference_renaming_edits(world: WorldText, names: dict[str, str]) -> list[Replacement]:
     """Return the edits that update references to renamed entities and to their parts.
 
     `names` maps old names to new ones.
@@ -216,7 +216,9 @@ def rename_references(world: WorldText, names: dict[str, str]) -> list[Replaceme
             continue
         text = f"{new}{colon}{tail}"
         edits += (
-            writing.set_text(element, text) if attribute is None else writing.set_attribute(element, attribute, text)
+            writing.text_edits(element, text)
+            if attribute is None
+            else writing.attribute_edits(element, attribute, text)
         )
     return edits
 
@@ -224,14 +226,14 @@ def rename_references(world: WorldText, names: dict[str, str]) -> list[Replaceme
 # --- simple properties ---------------------------------------------------------------------------------------------
 
 
-def _values(entity: Entity, wanted: Change) -> list[Replacement]:
+def _property_edits(entity: Entity, change: Change) -> list[Replacement]:
     edits: list[Replacement] = []
-    if wanted.size is not None and (entity.shape is None or tuple(wanted.size) != entity.shape.size):
-        edits += _size_edits(entity, tuple(wanted.size))
-    if wanted.colour is not None:
-        edits += _coloured(entity, wanted.colour)
-    if wanted.static is not None and wanted.static != entity.static:
-        edits += _static(entity, wanted.static, wanted.size)
+    if change.size is not None and (entity.shape is None or tuple(change.size) != entity.shape.size):
+        edits += _size_edits(entity, tuple(change.size))
+    if change.color is not None:
+        edits += _color_edits(entity, change.color)
+    if change.static is not None and change.static != entity.is_static:
+        edits += _static_edits(entity, change.static, change.size)
     return edits
 
 
@@ -251,25 +253,30 @@ def _size_edits(entity: Entity, size: tuple[float, ...]) -> list[Replacement]:
         assert part.element is not None, "it was read from the text"
         for new in geometry(shape.kind, size):
             edits += _copy_values(part.element, new)
-    before, after = solid(shape.kind, shape.size), solid(shape.kind, size)
-    found = link.inertial
-    if found is not None and found.element is not None and not found.auto and before.mass > 0:
-        properties = after.with_mass(found.mass * after.mass / before.mass)
-        edits += writing.set_child(found.element, "mass", number(properties.mass))
-        old = found.element.first("pose")
-        if old is not None and properties.center.any():
+    old_properties, new_properties = solid_properties(shape.kind, shape.size), solid_properties(shape.kind, size)
+    inertial_element = link.inertial
+    if (
+        inertial_element is not None
+        and inertial_element.element is not None
+        and not inertial_element.auto
+        and old_properties.mass > 0
+    ):
+        properties = new_properties.with_mass(inertial_element.mass * new_properties.mass / old_properties.mass)
+        edits += writing.child_edits(inertial_element.element, "mass", format_number(properties.mass))
+        old_pose = inertial_element.element.first("pose")
+        if old_pose is not None and properties.center.any():
             x, y, z = properties.center.tolist()
-            edits += writing.set_pose(old, Pose((x, y, z)))
-        inertia = found.element.first("inertia")
+            edits += writing.pose_edits(old_pose, Pose((x, y, z)))
+        inertia = inertial_element.element.first("inertia")
         if inertia is None:
             new = new_element(
-                "inertia", *(new_element(tag, text) for tag, text in tensor(properties).items() if text != "0")
+                "inertia", *(new_element(tag, text) for tag, text in tensor_texts(properties).items() if text != "0")
             )
-            edits.append(writing.inserted_in(found.element, [new]))
+            edits.append(writing.insertion_edit(inertial_element.element, [new]))
         else:
-            for tag, text in tensor(properties).items():
+            for tag, text in tensor_texts(properties).items():
                 if inertia.first(tag) is not None or text != "0":
-                    edits += writing.set_child(inertia, tag, text)
+                    edits += writing.child_edits(inertia, tag, text)
     return edits
 
 
@@ -279,106 +286,106 @@ def _copy_values(owner: Element, new: Element) -> list[Replacement]:
     If there is no child with the same tag, the new element is inserted.
     """
     edits: list[Replacement] = []
-    found = list(owner.elements(new.tag))
-    if not found:
-        return [writing.inserted_in(owner, [new])]
+    existing_elements = list(owner.elements(new.tag))
+    if not existing_elements:
+        return [writing.insertion_edit(owner, [new])]
     children = list(new.elements())
     if new.tag == "pose":
         x, y, z, roll, pitch, yaw = (float(word) for word in new.text().split())
-        return writing.set_pose(found[0], Pose((x, y, z), (roll, pitch, yaw)))
+        return writing.pose_edits(existing_elements[0], Pose((x, y, z), (roll, pitch, yaw)))
     if not children:
         numbers = [float(word) for word in new.text().split()]
-        return writing.set_numbers(found[0], numbers)
-    several: dict[str, int] = {}
+        return writing.number_edits(existing_elements[0], numbers)
+    counts_by_tag: dict[str, int] = {}
     for child in children:
-        index = several.get(child.tag, 0)
-        several[child.tag] = index + 1
-        theirs = list(found[0].elements(child.tag))
-        if index < len(theirs) and not any(True for _ in child.elements()):
-            edits += writing.set_numbers(theirs[index], [float(word) for word in child.text().split()])
+        index = counts_by_tag.get(child.tag, 0)
+        counts_by_tag[child.tag] = index + 1
+        existing_children = list(existing_elements[0].elements(child.tag))
+        if index < len(existing_children) and not any(True for _ in child.elements()):
+            edits += writing.number_edits(existing_children[index], [float(word) for word in child.text().split()])
         else:
-            edits += _copy_values(found[0], child)
+            edits += _copy_values(existing_elements[0], child)
     return edits
 
 
-def _coloured(entity: Entity, colour: Sequence[float]) -> list[Replacement]:
-    if len(colour) != 4 or not all(isfinite(value) and 0 <= value <= 1 for value in colour):
-        raise EditError(phrase("a colour has four numbers from 0 to 1: red green blue alpha"))
+def _color_edits(entity: Entity, color: Sequence[float]) -> list[Replacement]:
+    if len(color) != 4 or not all(isfinite(value) and 0 <= value <= 1 for value in color):
+        raise EditError(phrase("a color has four numbers from 0 to 1: red green blue alpha"))
     if entity.kind == "light" and not isinstance(entity.written, Include):
-        return writing.set_child(entity.element, "diffuse", colour)
+        return writing.child_edits(entity.element, "diffuse", color)
     if entity.shape is None or not isinstance(entity.written, Model):
-        raise EditError(phrase("the colour of '{name}' cannot be changed: it is not a simple shape", name=entity.name))
+        raise EditError(phrase("the color of '{name}' cannot be changed: it is not a simple shape", name=entity.name))
     edits: list[Replacement] = []
     for visual in entity.written.links[0].visuals:
         assert visual.element is not None, "it was read from the text"
         material = visual.element.first("material")
         if material is None:
-            text = lengths(tuple(colour))
+            text = format_lengths(tuple(color))
             parts = (new_element("ambient", text), new_element("diffuse", text))
-            edits.append(writing.inserted_in(visual.element, [new_element("material", *parts)]))
+            edits.append(writing.insertion_edit(visual.element, [new_element("material", *parts)]))
             continue
-        script = material.first("script")  # the script would override the colours
+        script = material.first("script")  # the script would override the colors
         missing = [tag for tag in ("ambient", "diffuse") if material.first(tag) is None]
         for tag in ("ambient", "diffuse"):
             if tag not in missing:
-                edits += writing.set_child(material, tag, colour)
-        new = [new_element(tag, lengths(tuple(colour))) for tag in missing]
+                edits += writing.child_edits(material, tag, color)
+        new = [new_element(tag, format_lengths(tuple(color))) for tag in missing]
         if script is not None:
-            edits.append(writing.replace_element(script, new))
+            edits.append(writing.replacement_edit(script, new))
         elif new:
-            edits.append(writing.inserted_in(material, new))
+            edits.append(writing.insertion_edit(material, new))
     return edits
 
 
-def _static(entity: Entity, static: bool, size: Sequence[float] | None) -> list[Replacement]:
+def _static_edits(entity: Entity, static: bool, size: Sequence[float] | None) -> list[Replacement]:
     if entity.kind != "model":
         raise EditError(phrase("'{name}' is a light, which never moves", name=entity.name))
     text = "true" if static else "false"
     child = entity.element.first("static")
     if child is not None:
-        edits = writing.set_text(child, text)
+        edits = writing.text_edits(child, text)
     else:
         after = ("uri", "name", "pose") if isinstance(entity.written, Include) else ("pose",)
         first = entity.element.first("pose") is None and not isinstance(entity.written, Include)
-        edits = [writing.inserted_in(entity.element, [new_element("static", text)], after=after, first=first)]
+        edits = [writing.insertion_edit(entity.element, [new_element("static", text)], after=after, first=first)]
     if not static and entity.shape is not None and isinstance(entity.written, Model):
         link = entity.written.links[0]
         if link.inertial is None and link.element is not None:
             new = inertial(entity.shape.kind, tuple(size or entity.shape.size), _NEW_MASS)
-            edits.append(writing.inserted_in(link.element, [new], first=True))
+            edits.append(writing.insertion_edit(link.element, [new], first=True))
     return edits
 
 
 # --- names ---------------------------------------------------------------------------------------------------------
 
 
-def _with_names(world: WorldText, names: dict[str, str]) -> WorldText:
+def _rename_entities(world: WorldText, names: dict[str, str]) -> WorldText:
     edits: list[Replacement] = []
     for old, new in names.items():
         entity = world.entity(old)
         world.check_name(new)
-        edits += _set_name(entity, new)
-        for entry in state_of(world, old):
-            edits += writing.set_attribute(entry, "name", new)
+        edits += _name_edits(entity, new)
+        for entry in state_entries(world, old):
+            edits += writing.attribute_edits(entry, "name", new)
     if len(set(names.values())) < len(names):
         raise EditError(phrase("two entities cannot have the same name"))
-    return world.edited([*edits, *rename_references(world, names)])
+    return world.apply_edits([*edits, *reference_renaming_edits(world, names)])
 
 
-def _set_name(entity: Entity, name: str) -> list[Replacement]:
+def _name_edits(entity: Entity, name: str) -> list[Replacement]:
     if isinstance(entity.written, Include):
-        return writing.set_child(entity.element, "name", name, after=("uri",))
-    return writing.set_attribute(entity.element, "name", name)
+        return writing.child_edits(entity.element, "name", name, after=("uri",))
+    return writing.attribute_edits(entity.element, "name", name)
 
 
-def _copied(entity: Entity, name: str) -> Replacement:
+def _copy_edit(entity: Entity, name: str) -> Replacement:
     """Return the edit that inserts a copy of an entity after it, under another name.
 
     The copy is on separate lines if the entity is on separate lines.
     """
-    text, (start, end) = writing.text_of(entity.element), writing.range_of(entity.element)
+    text, (start, end) = writing.source_text(entity.element), writing.element_offsets(entity.element)
     copy = text[start:end]
-    for edit in sorted(_set_name(entity, name), key=lambda edit: edit.start, reverse=True):
+    for edit in sorted(_name_edits(entity, name), key=lambda edit: edit.start, reverse=True):
         copy = copy[: edit.start - start] + edit.text + copy[edit.end - start :]
     indent = indentation(text, start)
     between = "" if indent is None else f"{line_ending(text)}{indent}"
@@ -388,20 +395,23 @@ def _copied(entity: Entity, name: str) -> Replacement:
 # --- poses ---------------------------------------------------------------------------------------------------------
 
 
-def _with_poses(world: WorldText, poses: dict[str, Pose], edits: Sequence[Replacement] = ()) -> WorldText:
+def _apply_poses(world: WorldText, poses: dict[str, Pose], edits: Sequence[Replacement] = ()) -> WorldText:
     """Return the world with `edits` applied and entities at new poses.
 
     An entity whose pose is relative to another entity is moved after that entity.
     """
-    alone = [name for name in poses if not world.entity(name).pose.relative_to]
-    edits = [*edits, *(edit for name in alone for edit in moved(world, world.entity(name), poses[name]))]
-    world = world.edited(edits)
-    for name in sorted(poses.keys() - set(alone), key=lambda name: (_depth(world, name), name)):
-        world = world.edited(moved(world, world.entity(name), poses[name]))
+    unattached_names = [name for name in poses if not world.entity(name).pose.relative_to]
+    edits = [
+        *edits,
+        *(edit for name in unattached_names for edit in move_edits(world, world.entity(name), poses[name])),
+    ]
+    world = world.apply_edits(edits)
+    for name in sorted(poses.keys() - set(unattached_names), key=lambda name: (_pose_chain_length(world, name), name)):
+        world = world.apply_edits(move_edits(world, world.entity(name), poses[name]))
     return world
 
 
-def _local(world: WorldText, entity: Entity, pose: Pose) -> Pose:
+def _pose_in_written_frame(world: WorldText, entity: Entity, pose: Pose) -> Pose:
     """Return a pose in the world, expressed in the frame in which an entity's pose is given.
 
     Raises:
@@ -420,44 +430,44 @@ def _local(world: WorldText, entity: Entity, pose: Pose) -> Pose:
     except FrameError as error:
         reason = phrase("'{name}' is relative to '{frame}', which cannot be placed", name=entity.name, frame=error.name)
         raise EditError(reason) from None
-    return writing.pose_from(local)
+    return writing.pose_from_transform(local)
 
 
-def _move_state_edits(entry: Element, old: Transform, new: Transform, pose: Pose) -> list[Replacement]:
+def _state_move_edits(entry: Element, old: Transform, new: Transform, pose: Pose) -> list[Replacement]:
     """Return the edits that move an entity and its parts in a saved state.
 
     All poses in a saved state are in the frame of the world.
     """
-    by = compose(new, invert(old))
+    displacement = compose(new, invert(old))
     edits: list[Replacement] = []
     for element in entry.walk():
         written = element.first("pose") if element.tag in ("model", "link", "light") else None
         if written is None:
             continue
         if element is entry:
-            edits += writing.set_pose(written, pose)
+            edits += writing.pose_edits(written, pose)
             continue
         try:
             numbers = POSE_NUMBERS.read(written.text())
-            there = transform_of(pose_of(numbers, degrees=False, rotation_format="euler_rpy"))
+            old_pose = transform_of(pose_of(numbers, degrees=False, rotation_format="euler_rpy"))
         except ValueError:
             continue
-        edits += writing.set_pose(written, writing.pose_from(compose(by, there)))
+        edits += writing.pose_edits(written, writing.pose_from_transform(compose(displacement, old_pose)))
     return edits
 
 
-def _depth(world: WorldText, name: str) -> int:
+def _pose_chain_length(world: WorldText, name: str) -> int:
     """Return the number of entities in the chain of relative poses that ends with an entity."""
-    depth, seen = 0, set[str]()
+    depth, visited_names = 0, set[str]()
     entity = world.entities.get(name)
-    while entity is not None and entity.name not in seen:
-        seen.add(entity.name)
+    while entity is not None and entity.name not in visited_names:
+        visited_names.add(entity.name)
         entity = world.entities.get(entity.pose.relative_to.partition(SEPARATOR)[0])
         depth += 1
     return depth
 
 
 def _references_in(child: Element) -> list[tuple[Element, str | None]]:
-    holder = Element("world")
-    holder.children.append(child)
-    return list(writing.references(holder))
+    container = Element("world")
+    container.children.append(child)
+    return list(writing.references(container))

@@ -8,9 +8,15 @@ from collections.abc import Callable, Sequence
 from linkwright.diagnostics import phrase
 from linkwright.geometry.single import Pose, Transform, compose
 from linkwright.sdf.editing import writing
-from linkwright.sdf.editing.changing import pose_of_entity, referenced_name, rename_references, set_pose, state_of
+from linkwright.sdf.editing.changing import (
+    pose_edits,
+    pose_of_entity,
+    reference_renaming_edits,
+    referenced_name,
+    state_entries,
+)
 from linkwright.sdf.editing.errors import EditError
-from linkwright.sdf.editing.shapes import lengths, new_element
+from linkwright.sdf.editing.shapes import format_lengths, new_element
 from linkwright.sdf.editing.text import Entity, WorldText
 from linkwright.sdf.frames import transform_of
 from linkwright.sdf.models import Include, Model
@@ -20,7 +26,7 @@ from linkwright.xmltree.patches import Replacement, apply, escaped, indentation,
 
 _INDENT_STEP = "  "
 _POSITION_DIGITS = 3
-"""Decimal digits of a group's position in metres."""
+"""Decimal digits of a group's position in meters."""
 _LINE_START = re.compile(r"(?<=\n)(?=[^\r\n])")
 _CDATA = re.compile(r"<!\[CDATA\[.*?\]\]>", re.DOTALL)
 
@@ -51,23 +57,23 @@ def group(world: WorldText, names: Sequence[str], name: str) -> WorldText:
     origin: Transform = (x, y, z, 0.0, 0.0, 0.0, 1.0)
     edits: list[Replacement] = []
     for entity in entities:
-        edits += [writing.removed(entry) for entry in state_of(world, entity.name)]
+        edits += [writing.removal_edit(entry) for entry in state_entries(world, entity.name)]
         reference_frame = entity.pose.relative_to
-        if reference_frame.partition(SEPARATOR)[0] in member_names and not state_of(world, entity.name):
+        if reference_frame.partition(SEPARATOR)[0] in member_names and not state_entries(world, entity.name):
             continue  # The pose remains relative to another model in the group.
         edits += _relative_pose_edits(world, entity, origin)
-    edits += rename_outside_references(world, member_names, name)
+    edits += outside_reference_edits(world, member_names, name)
     text = world.text
     first_entity = min(entities, key=lambda entity: entity.element.offset)
-    start = writing.range_of(first_entity.element)[0]
+    start = writing.element_offsets(first_entity.element)[0]
     outer_indent, newline = indentation(text, start) or "", line_ending(text)
     inner_indent = outer_indent + _INDENT_STEP
-    static_element = f"{newline}{inner_indent}<static>true</static>" if entities[0].static else ""
-    pose_element = f"<pose>{lengths((x, y, z, 0.0, 0.0, 0.0))}</pose>"
+    static_element = f"{newline}{inner_indent}<static>true</static>" if entities[0].is_static else ""
+    pose_element = f"<pose>{format_lengths((x, y, z, 0.0, 0.0, 0.0))}</pose>"
     group_start = f'<model name="{escaped(name)}">{newline}{inner_indent}{pose_element}{static_element}'
     member_texts = []
     for entity in sorted(entities, key=lambda entity: entity.element.offset):
-        begin, end = writing.range_of(entity.element)
+        begin, end = writing.element_offsets(entity.element)
         member_edits = [edit for edit in edits if begin <= edit.start and edit.end <= end]
         edits = [edit for edit in edits if edit not in member_edits]
         local_edits = [
@@ -76,10 +82,10 @@ def group(world: WorldText, names: Sequence[str], name: str) -> WorldText:
         ]
         member_texts.append(inner_indent + _indent(apply(text[begin:end], local_edits), _INDENT_STEP))
     group_text = newline.join([group_start, *member_texts, f"{outer_indent}</model>"])
-    begin, end = writing.range_of(first_entity.element)
+    begin, end = writing.element_offsets(first_entity.element)
     edits.append(Replacement(begin, end, group_text))
-    edits += [writing.removed(entity.element) for entity in entities if entity is not first_entity]
-    return world.edited(edits)
+    edits += [writing.removal_edit(entity.element) for entity in entities if entity is not first_entity]
+    return world.apply_edits(edits)
 
 
 def ungroup(world: WorldText, name: str) -> tuple[WorldText, list[str]]:
@@ -103,7 +109,7 @@ def ungroup(world: WorldText, name: str) -> tuple[WorldText, list[str]]:
     if len(member_elements) != len(entity.member_names):
         raise EditError(phrase("'{name}' cannot be ungrouped: one of its includes does not exist", name=name))
     new_names = _free_member_names(world, entity, member_elements)
-    edits: list[Replacement] = [writing.removed(entry) for entry in state_of(world, name)]
+    edits: list[Replacement] = [writing.removal_edit(entry) for entry in state_entries(world, name)]
     frames = world.frames.inside(name)
     for element, old in zip(member_elements, _old_names(entity, member_elements), strict=True):
         edits += _release_edits(world, entity, element, old, new_names, compose(entity.world_pose, frames.pose(old)))
@@ -115,10 +121,10 @@ def ungroup(world: WorldText, name: str) -> tuple[WorldText, list[str]]:
         if not colon or member_name not in new_names:
             raise EditError(phrase("'{name}' cannot be ungrouped: another element refers to it", name=name))
         new_reference = f"{new_names[member_name]}{separator}{nested_name}"
-        edits += writing.set_reference(element, attribute, new_reference)
-    edits += [writing.removed(element) for tag in ("pose", "static") for element in entity.element.elements(tag)]
-    begin, end = writing.range_of(entity.element)
-    content_start, content_end = writing.content_of(entity.element)
+        edits += writing.reference_edits(element, attribute, new_reference)
+    edits += [writing.removal_edit(element) for tag in ("pose", "static") for element in entity.element.elements(tag)]
+    begin, end = writing.element_offsets(entity.element)
+    content_start, content_end = writing.content_offsets(entity.element)
     content_edits = [
         Replacement(e.start - content_start, e.end - content_start, e.text)
         for e in edits
@@ -129,16 +135,16 @@ def ungroup(world: WorldText, name: str) -> tuple[WorldText, list[str]]:
     content = apply(world.text[content_start:content_end], content_edits).strip()
     inner_step = (indentation(world.text, member_elements[0].offset) or "").removeprefix(outer_indent or "")
     edits.append(Replacement(begin, end, _unindent(content, inner_step)))
-    return world.edited(edits), list(new_names.values())
+    return world.apply_edits(edits), list(new_names.values())
 
 
-def rename_outside_references(world: WorldText, member_names: frozenset[str], group_name: str) -> list[Replacement]:
+def outside_reference_edits(world: WorldText, member_names: frozenset[str], group_name: str) -> list[Replacement]:
     """Return the edits that update references to the members of a group from outside the group."""
     names = {name: f"{group_name}{SEPARATOR}{name}" for name in member_names}
-    ranges = [writing.range_of(world.entity(name).element) for name in member_names]
+    ranges = [writing.element_offsets(world.entity(name).element) for name in member_names]
     return [
         renamed_reference
-        for renamed_reference in rename_references(world, names)
+        for renamed_reference in reference_renaming_edits(world, names)
         if not any(start <= renamed_reference.start and renamed_reference.end <= end for start, end in ranges)
     ]
 
@@ -149,9 +155,9 @@ def _check_group(entities: Sequence[Entity]) -> None:
     light = next((entity for entity in entities if entity.kind == "light"), None)
     if light is not None:
         raise EditError(phrase("'{name}' is a light: only models can be grouped", name=light.name))
-    mismatch = next((entity for entity in entities if entity.static != entities[0].static), None)
+    mismatch = next((entity for entity in entities if entity.is_static != entities[0].is_static), None)
     if mismatch is not None:
-        static_entity, moving_entity = (mismatch, entities[0]) if mismatch.static else (entities[0], mismatch)
+        static_entity, moving_entity = (mismatch, entities[0]) if mismatch.is_static else (entities[0], mismatch)
         raise EditError(
             phrase(
                 "'{static}' is static and '{moving}' is not: make both static, or neither",
@@ -172,11 +178,11 @@ def _relative_pose_edits(world: WorldText, entity: Entity, origin: Transform) ->
     placement_frame = entity.model.placement_frame if entity.model is not None else ""
     if placement_frame:
         placement_transform = compose(transform_of(local_pose), world.frames.inside(entity.name).pose(placement_frame))
-        local_pose = writing.pose_from(placement_transform)
-    edits = set_pose(entity, local_pose)
+        local_pose = writing.pose_from_transform(placement_transform)
+    edits = pose_edits(entity, local_pose)
     pose = entity.element.first("pose")
     if pose is not None:
-        edits += [edit for name in ("relative_to", "frame") for edit in writing.remove_attribute(pose, name)]
+        edits += [edit for name in ("relative_to", "frame") for edit in writing.attribute_removal_edits(pose, name)]
     return edits
 
 
@@ -215,24 +221,24 @@ def _release_edits(
     edits: list[Replacement] = []
     if names[old_name] != old_name:
         edits += (
-            writing.set_child(element, "name", names[old_name], after=("uri",))
+            writing.child_edits(element, "name", names[old_name], after=("uri",))
             if element.tag == "include"
-            else writing.set_attribute(element, "name", names[old_name])
+            else writing.attribute_edits(element, "name", names[old_name])
         )
-    if entity.static and not model.static:
+    if entity.is_static and not model.static:
         preceding_tags = ("uri", "name", "pose")
         child = element.first("static")
         edits += (
-            writing.set_text(child, "true")
+            writing.text_edits(child, "true")
             if child is not None
-            else [writing.inserted_in(element, [new_element("static", "true")], after=preceding_tags, first=True)]
+            else [writing.insertion_edit(element, [new_element("static", "true")], after=preceding_tags, first=True)]
         )
     pose = element.first("pose")
     reference_frame = model.pose.relative_to
     head, colon, tail = reference_frame.partition(SEPARATOR)
     if pose is not None and head in names:
         attribute = "relative_to" if "relative_to" in pose.attributes else "frame"
-        return [*edits, *writing.set_attribute(pose, attribute, f"{names[head]}{colon}{tail}")]
+        return [*edits, *writing.attribute_edits(pose, attribute, f"{names[head]}{colon}{tail}")]
     if reference_frame not in ("", MODEL):
         raise EditError(
             phrase(
@@ -243,13 +249,13 @@ def _release_edits(
         )
     if model.placement_frame:
         world_pose = compose(world_pose, world.frames.inside(entity.name).inside(old_name).pose(model.placement_frame))
-    member_pose = writing.pose_from(world_pose)
+    member_pose = writing.pose_from_transform(world_pose)
     member = Entity(
         old_name, "model", element, Include("") if element.tag == "include" else model, model, None, world_pose, None
     )
-    edits += set_pose(member, member_pose)
+    edits += pose_edits(member, member_pose)
     if pose is not None:
-        edits += [edit for name in ("relative_to", "frame") for edit in writing.remove_attribute(pose, name)]
+        edits += [edit for name in ("relative_to", "frame") for edit in writing.attribute_removal_edits(pose, name)]
     return edits
 
 
@@ -265,7 +271,7 @@ def _unindent(text: str, step: str) -> str:
 
 
 def _outside_cdata(text: str, edit: Callable[[str], str]) -> str:
-    cdata_spans, chunks, position = [found.span() for found in _CDATA.finditer(text)], [], 0
+    cdata_spans, chunks, position = [match.span() for match in _CDATA.finditer(text)], [], 0
     for start, end in cdata_spans:
         chunks += [edit(text[position:start]), text[start:end]]
         position = end

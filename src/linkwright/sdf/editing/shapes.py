@@ -30,22 +30,22 @@ ShapeKind = Literal["box", "cylinder", "sphere", "wall", "ramp"]
 COUNTS = {"box": 3, "cylinder": 2, "sphere": 1, "wall": 3, "ramp": 3}
 """The number of dimensions of each kind of shape: x, y, z; radius and length; or radius."""
 DIGITS = 9
-"""Decimals of a written length in metres, or angle in radians."""
+"""Decimals of a written length in meters, or angle in radians."""
 
 
 @dataclass(frozen=True, slots=True)
 class SimpleShape:
-    """The kind, size and colour of a model of one simple shape.
+    """The kind, size and color of a model of one simple shape.
 
     Attributes:
         kind: the kind of shape; a wall is a box, and a ramp is a wedge.
-        size: in metres: x, y, z of a box, wall or ramp; radius and length of a cylinder; the radius of a sphere.
-        colour: red, green, blue, alpha from 0 to 1; None if the model does not specify a colour.
+        size: in meters: x, y, z of a box, wall or ramp; radius and length of a cylinder; the radius of a sphere.
+        color: red, green, blue, alpha from 0 to 1; None if the model does not specify a color.
     """
 
     kind: ShapeKind
     size: tuple[float, ...]
-    colour: Color | None = None
+    color: Color | None = None
 
 
 def simple_shape(model: Model) -> SimpleShape | None:
@@ -63,7 +63,7 @@ def simple_shape(model: Model) -> SimpleShape | None:
     if shape is None or any(not _is_at(part.pose, shape) for part in parts):
         return None
     kind, size = shape
-    return SimpleShape(kind, size, _display_colour(link.visuals[0].material) if link.visuals else None)
+    return SimpleShape(kind, size, _display_color(link.visuals[0].material) if link.visuals else None)
 
 
 def _shape_dimensions(geometry: Shape, link: str) -> tuple[ShapeKind, tuple[float, ...]] | None:
@@ -94,7 +94,7 @@ def _is_close(points: tuple[tuple[float, ...], ...], other_points: tuple[tuple[f
     )
 
 
-def _display_colour(material: Material | None) -> Color | None:
+def _display_color(material: Material | None) -> Color | None:
     if material is None:
         return None
     look = gazebo_look(material.script.name) if material.script else None
@@ -104,7 +104,7 @@ def _display_colour(material: Material | None) -> Color | None:
 
 
 def is_size(kind: str, size: tuple[float, ...]) -> bool:
-    """Return whether dimensions in metres are valid for a kind of shape."""
+    """Return whether dimensions in meters are valid for a kind of shape."""
     return len(size) == COUNTS[kind] and all(isfinite(value) and 1e-6 <= value <= 1e6 for value in size)
 
 
@@ -125,7 +125,7 @@ def ramp_pose(size: tuple[float, ...]) -> Pose:
     return Pose((0.0, size[1] / 2, 0.0), (pi / 2, 0.0, 0.0))
 
 
-def solid(kind: str, size: tuple[float, ...]) -> MassProperties:
+def solid_properties(kind: str, size: tuple[float, ...]) -> MassProperties:
     """Return the mass properties of a solid shape in the frame of its link.
 
     The density is 1 kg/m3.
@@ -144,26 +144,26 @@ def solid(kind: str, size: tuple[float, ...]) -> MassProperties:
     return MassProperties(mass, np.array([x / 6, 0.0, -z / 6]), inertia)
 
 
-def tensor(properties: MassProperties) -> dict[str, str]:
+def tensor_texts(properties: MassProperties) -> dict[str, str]:
     """Return the text of each child element of ``<inertia>``, by tag."""
     inertia = properties.inertia
     indices = {"ixx": (0, 0), "ixy": (0, 1), "ixz": (0, 2), "iyy": (1, 1), "iyz": (1, 2), "izz": (2, 2)}
-    return {tag: number(float(inertia[index])) for tag, index in indices.items()}
+    return {tag: format_number(float(inertia[index])) for tag, index in indices.items()}
 
 
-def number(value: float) -> str:
+def format_number(value: float) -> str:
     """Format a number with six significant digits, as used for masses and inertias."""
     return plain(float(f"{value:.6g}"))
 
 
-def length(value: float) -> str:
+def format_length(value: float) -> str:
     """Format a length or angle, rounded to nine decimals."""
     return plain(round(value, DIGITS))
 
 
-def lengths(values: tuple[float, ...]) -> str:
+def format_lengths(values: tuple[float, ...]) -> str:
     """Format lengths or angles, separated by spaces."""
-    return " ".join(map(length, values))
+    return " ".join(map(format_length, values))
 
 
 def new_element(tag: str, *children: Element | str, **attributes: str) -> Element:
@@ -175,12 +175,14 @@ def new_element(tag: str, *children: Element | str, **attributes: str) -> Elemen
 
 def inertial(kind: str, size: tuple[float, ...], mass: float) -> Element:
     """Return the ``<inertial>`` element of a solid shape with a mass in kg."""
-    properties = solid(kind, size).with_mass(mass)
-    children = [new_element("mass", number(mass))]
+    properties = solid_properties(kind, size).with_mass(mass)
+    children = [new_element("mass", format_number(mass))]
     if properties.center.any():
-        children.append(new_element("pose", f"{lengths(tuple(properties.center.tolist()))} 0 0 0"))
+        children.append(new_element("pose", f"{format_lengths(tuple(properties.center.tolist()))} 0 0 0"))
     children.append(
-        new_element("inertia", *(new_element(tag, text) for tag, text in tensor(properties).items() if text != "0"))
+        new_element(
+            "inertia", *(new_element(tag, text) for tag, text in tensor_texts(properties).items() if text != "0")
+        )
     )
     return new_element("inertial", *children)
 
@@ -189,18 +191,22 @@ def geometry(kind: str, size: tuple[float, ...]) -> list[Element]:
     """Return the ``<geometry>`` element of a shape, preceded by any required ``<pose>``."""
     if kind == "ramp":
         outline = wedge(size)
-        points = (new_element("point", lengths(point)) for point in outline.points)
-        shape = new_element("polyline", *points, new_element("height", length(outline.height)))
+        points = (new_element("point", format_lengths(point)) for point in outline.points)
+        shape = new_element("polyline", *points, new_element("height", format_length(outline.height)))
         pose = ramp_pose(size)
-        text = f"{lengths(pose.xyz)} {' '.join(map(plain, pose.rpy))}"
+        text = f"{format_lengths(pose.xyz)} {' '.join(map(plain, pose.rpy))}"
         return [new_element("pose", text), new_element("geometry", shape)]
     if kind == "cylinder":
         return [
             new_element(
                 "geometry",
-                new_element("cylinder", new_element("radius", length(size[0])), new_element("length", length(size[1]))),
+                new_element(
+                    "cylinder",
+                    new_element("radius", format_length(size[0])),
+                    new_element("length", format_length(size[1])),
+                ),
             )
         ]
     if kind == "sphere":
-        return [new_element("geometry", new_element("sphere", new_element("radius", length(size[0]))))]
-    return [new_element("geometry", new_element("box", new_element("size", lengths(size))))]
+        return [new_element("geometry", new_element("sphere", new_element("radius", format_length(size[0]))))]
+    return [new_element("geometry", new_element("box", new_element("size", format_lengths(size))))]

@@ -63,7 +63,7 @@ class Entity:
         return self.written.pose or AT_ORIGIN
 
     @property
-    def static(self) -> bool:
+    def is_static(self) -> bool:
         """Whether the entity is a static model."""
         if self.model is not None:
             return self.model.static
@@ -117,7 +117,7 @@ class WorldText:
         self.frames = Frames(self.world)
         self._models = {model.name: model for model in reversed(self.world.models)}
         self._lights = {light.name: light for light in reversed(self.world.lights)}
-        self.entities: Mapping[str, Entity] = dict(self._entities())
+        self.entities: Mapping[str, Entity] = dict(self._read_entities())
 
     @cached_property
     def used_names(self) -> frozenset[str]:
@@ -143,7 +143,7 @@ class WorldText:
         except KeyError:
             raise EditError(phrase("there is no model or light '{name}' in the world's file", name=name)) from None
 
-    def edited(self, edits: list[Replacement]) -> WorldText:
+    def apply_edits(self, edits: list[Replacement]) -> WorldText:
         """Return the world after applying edits to its text.
 
         Raises:
@@ -193,31 +193,35 @@ class WorldText:
         if name in self.used_names:
             raise EditError(phrase("an entity named '{name}' already exists", name=name))
 
-    def _entities(self) -> Iterator[tuple[str, Entity]]:
-        seen: set[str] = set()
+    def _read_entities(self) -> Iterator[tuple[str, Entity]]:
+        yielded_names: set[str] = set()
         state = self._written.states[-1] if self._written.states else None
-        gone = frozenset(state.deletions.names) if state is not None else frozenset[str]()
-        found: list[Model | Light | Include] = [*self._written.models, *self._written.lights, *self._written.includes]
+        deleted_names = frozenset(state.deletions.names) if state is not None else frozenset[str]()
+        written_entities: list[Model | Light | Include] = [
+            *self._written.models,
+            *self._written.lights,
+            *self._written.includes,
+        ]
         if state is not None:
-            found += [*state.insertions.models, *state.insertions.lights]
-        for item in sorted(found, key=lambda item: 0 if item.element is None else item.element.offset):
-            entity = self._entity(item)
-            if entity is not None and entity.name not in seen and entity.name not in gone:
-                seen.add(entity.name)
+            written_entities += [*state.insertions.models, *state.insertions.lights]
+        for item in sorted(written_entities, key=lambda item: 0 if item.element is None else item.element.offset):
+            entity = self._read_entity(item)
+            if entity is not None and entity.name not in yielded_names and entity.name not in deleted_names:
+                yielded_names.add(entity.name)
                 yield entity.name, entity
 
-    def _entity(self, written: Model | Light | Include) -> Entity | None:
+    def _read_entity(self, written: Model | Light | Include) -> Entity | None:
         element = written.element
         assert element is not None, "it was read from the text"
-        found = self._included.entities.get(id(element)) if isinstance(written, Include) else written
-        if isinstance(found, Model):
-            model = self._models.get(found.name, found)
+        resolved = self._included.entities.get(id(element)) if isinstance(written, Include) else written
+        if isinstance(resolved, Model):
+            model = self._models.get(resolved.name, resolved)
             shape = simple_shape(written) if isinstance(written, Model) else None
-            return Entity(found.name, "model", element, written, model, None, self._world_pose(model), shape)
-        if isinstance(found, Light):
-            light = self._lights.get(found.name, found)
-            return Entity(found.name, "light", element, written, None, light, self._world_pose(light), None)
-        if isinstance(written, Include) and found is None:
+            return Entity(resolved.name, "model", element, written, model, None, self._world_pose(model), shape)
+        if isinstance(resolved, Light):
+            light = self._lights.get(resolved.name, resolved)
+            return Entity(resolved.name, "light", element, written, None, light, self._world_pose(light), None)
+        if isinstance(written, Include) and resolved is None:
             name = written.name or written.uri.strip().rstrip("/").rpartition("/")[2]
             pose = written.pose or AT_ORIGIN
             return Entity(name, "model", element, written, None, None, transform_of(pose.pose), None)

@@ -9,7 +9,7 @@ from math import atan2, degrees, hypot
 from linkwright.diagnostics import phrase
 from linkwright.geometry.single import Pose, Quaternion, Transform, pose_quaternion
 from linkwright.sdf.editing.errors import EditError
-from linkwright.sdf.editing.shapes import length, lengths, new_element
+from linkwright.sdf.editing.shapes import format_length, format_lengths, new_element
 from linkwright.xmltree import Element
 from linkwright.xmltree.patches import (
     Replacement,
@@ -30,13 +30,13 @@ _GIMBAL_LOCK_TOLERANCE = 1e-9
 _TRUE = frozenset({"true", "1"})
 
 
-def text_of(element: Element) -> str:
+def source_text(element: Element) -> str:
     """Return the text of the file that contains an element."""
     assert element.source is not None, "it was read from a text"
     return element.source.text
 
 
-def range_of(element: Element) -> tuple[int, int]:
+def element_offsets(element: Element) -> tuple[int, int]:
     """Return the offsets of an element in its text: of its ``<``, and after its last ``>``.
 
     Raises:
@@ -48,20 +48,20 @@ def range_of(element: Element) -> tuple[int, int]:
     return element_span
 
 
-def content_of(element: Element) -> tuple[int, int]:
+def content_offsets(element: Element) -> tuple[int, int]:
     """Return the start and end offsets of an element's content.
 
     For ``<a/>``, the range is empty and after the tag.
     """
-    start, end = range_of(element)
+    start, end = element_offsets(element)
     tag = find_start_tag(element)
     assert tag is not None, "its range is known"
-    return (tag.end, tag.end) if tag.is_empty_element else (tag.end, text_of(element).rindex("</", start, end))
+    return (tag.end, tag.end) if tag.is_empty_element else (tag.end, source_text(element).rindex("</", start, end))
 
 
-def set_text(element: Element, value: str) -> list[Replacement]:
+def text_edits(element: Element, value: str) -> list[Replacement]:
     """Return the edits that set the text of an element, and keep surrounding whitespace."""
-    text, (start, end) = text_of(element), content_of(element)
+    text, (start, end) = source_text(element), content_offsets(element)
     tag = find_start_tag(element)
     assert tag is not None, "its content is known"
     if tag.is_empty_element:
@@ -72,18 +72,18 @@ def set_text(element: Element, value: str) -> list[Replacement]:
     return [] if text[start:end] == escaped(value) else [Replacement(start, end, escaped(value))]
 
 
-def set_numbers(element: Element, numbers: Sequence[float]) -> list[Replacement]:
+def number_edits(element: Element, numbers: Sequence[float]) -> list[Replacement]:
     """Return the edits that set the numbers of an element.
 
     Unchanged numbers are kept as written.
     """
-    text, (start, end) = text_of(element), content_of(element)
+    text, (start, end) = source_text(element), content_offsets(element)
     uncommented_text = _COMMENT.sub(lambda comment: " " * len(comment[0]), text[start:end])
     number_matches = list(re.finditer(r"\S+", uncommented_text))
     if len(number_matches) != len(numbers) or "<" in uncommented_text or "&" in uncommented_text:
-        return set_text(element, " ".join(map(length, numbers)))
+        return text_edits(element, " ".join(map(format_length, numbers)))
     return [
-        Replacement(start + number_match.start(), start + number_match.end(), length(number))
+        Replacement(start + number_match.start(), start + number_match.end(), format_length(number))
         for number_match, number in zip(number_matches, numbers, strict=True)
         if not _has_value(number_match[0], number)
     ]
@@ -96,7 +96,7 @@ def _has_value(text: str, number: float) -> bool:
         return False
 
 
-def set_child(
+def child_edits(
     owner: Element, tag: str, value: str | Sequence[float], *, after: tuple[str, ...] = ()
 ) -> list[Replacement]:
     """Return the edits that set the value of a child element.
@@ -111,12 +111,12 @@ def set_child(
     """
     child = owner.first(tag)
     if child is not None:
-        return set_text(child, value) if isinstance(value, str) else set_numbers(child, value)
-    child_element = new_element(tag, value if isinstance(value, str) else lengths(tuple(value)))
-    return [inserted_in(owner, [child_element], after=after)]
+        return text_edits(child, value) if isinstance(value, str) else number_edits(child, value)
+    child_element = new_element(tag, value if isinstance(value, str) else format_lengths(tuple(value)))
+    return [insertion_edit(owner, [child_element], after=after)]
 
 
-def inserted_in(
+def insertion_edit(
     owner: Element, new_elements: list[Element], *, after: tuple[str, ...] = (), first: bool = False
 ) -> Replacement:
     """Return the edit that inserts elements into a parent element.
@@ -134,15 +134,15 @@ def inserted_in(
     return edit
 
 
-def set_attribute(element: Element, name: str, value: str) -> list[Replacement]:
+def attribute_edits(element: Element, name: str, value: str) -> list[Replacement]:
     """Return the edits that set an attribute, and keep existing quote characters.
 
     A missing attribute is appended to the start tag.
     """
-    text = text_of(element)
+    text = source_text(element)
     value_range = attribute_value_range(text, element.offset, name)
     if value_range is None:
-        range_of(element)
+        element_offsets(element)
         tag = find_start_tag(element)
         assert tag is not None, "its range is known"
         return [Replacement(tag.insertion_offset, tag.insertion_offset, f' {name}="{escaped(value)}"')]
@@ -152,17 +152,17 @@ def set_attribute(element: Element, name: str, value: str) -> list[Replacement]:
     return [Replacement(*value_range, escaped_value)]
 
 
-def set_reference(element: Element, attribute: str | None, name: str) -> list[Replacement]:
+def reference_edits(element: Element, attribute: str | None, name: str) -> list[Replacement]:
     """Return the edits that set the name to which an element refers.
 
     The name is in an attribute, or in the text of the element if `attribute` is None.
     """
-    return set_text(element, name) if attribute is None else set_attribute(element, attribute, name)
+    return text_edits(element, name) if attribute is None else attribute_edits(element, attribute, name)
 
 
-def remove_attribute(element: Element, name: str) -> list[Replacement]:
+def attribute_removal_edits(element: Element, name: str) -> list[Replacement]:
     """Return the edits that remove an attribute and the whitespace before it."""
-    text = text_of(element)
+    text = source_text(element)
     name_range, value_range = (
         find_range(text, element.offset, name) for find_range in (attribute_name_range, attribute_value_range)
     )
@@ -172,36 +172,36 @@ def remove_attribute(element: Element, name: str) -> list[Replacement]:
     return [Replacement(name_range[0] - blank_count, value_range[1] + 1, "")]
 
 
-def removed(element: Element) -> Replacement:
+def removal_edit(element: Element) -> Replacement:
     """Return the edit that removes an element, and lines that would become empty."""
-    return Replacement(*whole_lines(text_of(element), *range_of(element)), "")
+    return Replacement(*whole_lines(source_text(element), *element_offsets(element)), "")
 
 
-def replace_element(element: Element, new_elements: list[Element]) -> Replacement:
+def replacement_edit(element: Element, new_elements: list[Element]) -> Replacement:
     """Return the edit that replaces an element with other elements.
 
     The element is removed if `new_elements` is empty.
     """
     if not new_elements:
-        return removed(element)
-    text, (start, end) = text_of(element), range_of(element)
+        return removal_edit(element)
+    text, (start, end) = source_text(element), element_offsets(element)
     indent = indentation(text, start)
     separator = "" if indent is None else f"{line_ending(text)}{indent}"
     return Replacement(start, end, separator.join(block(element) for element in new_elements))
 
 
-def set_pose(element: Element, pose: Pose) -> list[Replacement]:
+def pose_edits(element: Element, pose: Pose) -> list[Replacement]:
     """Return the edits that set a ``<pose>``, in the units and rotation format that it declares."""
     if element.attributes.get("rotation_format", "").strip() == "quat_xyzw":
-        numbers: tuple[float, ...] = (*pose.xyz, *_nearest(element, pose_quaternion(pose)))
+        numbers: tuple[float, ...] = (*pose.xyz, *_nearest_quaternion(element, pose_quaternion(pose)))
     elif element.attributes.get("degrees", "").strip().casefold() in _TRUE:
         numbers = (*pose.xyz, *map(degrees, pose.rpy))
     else:
         numbers = (*pose.xyz, *pose.rpy)
-    return set_numbers(element, numbers)
+    return number_edits(element, numbers)
 
 
-def _nearest(element: Element, quaternion: Quaternion) -> Quaternion:
+def _nearest_quaternion(element: Element, quaternion: Quaternion) -> Quaternion:
     """Return a quaternion or its negation, whichever is nearer to an element's quaternion."""
     try:
         written_quaternion = [float(word) for word in element.text().split()[3:]]
@@ -213,7 +213,7 @@ def _nearest(element: Element, quaternion: Quaternion) -> Quaternion:
     return quaternion
 
 
-def pose_from(transform: Transform) -> Pose:
+def pose_from_transform(transform: Transform) -> Pose:
     """Return a transform as a pose with roll, pitch and yaw.
 
     The result is exact even at a pitch of 90 degrees.
@@ -230,7 +230,7 @@ def pose_from(transform: Transform) -> Pose:
 
 def pose_element(pose: Pose) -> Element:
     """Return a new ``<pose>`` element."""
-    return new_element("pose", lengths((*pose.xyz, *pose.rpy)))
+    return new_element("pose", format_lengths((*pose.xyz, *pose.rpy)))
 
 
 def references(world: Element) -> Iterator[tuple[Element, str | None]]:

@@ -74,13 +74,13 @@ class _BridgeDirection:
     """
 
     def __init__(self, create_subscription: Callable[[], Subscription[Any]], *, lazy: bool) -> None:
-        self._listen = create_subscription
+        self._create_subscription = create_subscription
         self._subscription = None if lazy else create_subscription()
 
-    def matched(self, info: QoSMatchedInfo) -> None:
+    def on_matched(self, info: QoSMatchedInfo) -> None:
         """Subscribe when the output has a subscriber, and unsubscribe when it has none."""
         if info.current_count and self._subscription is None:
-            self._subscription = self._listen()
+            self._subscription = self._create_subscription()
         elif not info.current_count and self._subscription is not None:
             self._subscription.destroy()
             self._subscription = None
@@ -95,14 +95,14 @@ class _Bridge(SingleNode):
         self._gz_node = graph.create_node(f"_{self._node.get_name()}_gz", namespace=self._node.get_namespace())
         self._publishers: list[Publisher[Any]] = []
         for topic in topics:
-            self._join(topic)
+            self._bridge_topic(topic)
 
     def close(self) -> None:
         """Destroy both nodes of the bridge."""
         self._gz_node.destroy_node()
         super().close()
 
-    def _join(self, topic: BridgedTopic) -> None:
+    def _bridge_topic(self, topic: BridgedTopic) -> None:
         try:
             get_message(topic.ros_type)
         except LinkwrightError:
@@ -115,17 +115,17 @@ class _Bridge(SingleNode):
             return
         to_ros, to_gz = (topic.direction in (direction, "BIDIRECTIONAL") for direction in ("GZ_TO_ROS", "ROS_TO_GZ"))
         if same_name and topic.ros_type == gz_type:
-            self._announce(topic, to_ros=to_ros, to_gz=to_gz)
+            self._create_endpoints(topic, to_ros=to_ros, to_gz=to_gz)
             return
         if same_name and to_gz:  # The ROS topic owns the shared name, so the gz side uses its hidden name.
             gz_topic = hidden_gz_topic(gz_topic)
         ros, gz = (self._node, topic.ros_topic, topic.ros_type), (self._gz_node, gz_topic, gz_type)
         if to_ros and not (same_name and to_gz):
-            self._forward(topic, gz, ros)
+            self._forward_messages(topic, gz, ros)
         if to_gz:
-            self._forward(topic, ros, gz)
+            self._forward_messages(topic, ros, gz)
 
-    def _announce(self, topic: BridgedTopic, *, to_ros: bool, to_gz: bool) -> None:
+    def _create_endpoints(self, topic: BridgedTopic, *, to_ros: bool, to_gz: bool) -> None:
         """Create the endpoints of a topic before the simulation does, without forwarding messages."""
         if to_ros:
             self._node.create_publisher(topic.ros_type, topic.ros_topic, topic.publisher_queue)
@@ -140,7 +140,7 @@ class _Bridge(SingleNode):
         """
         return join(self._node.get_namespace(), name) if self._expands_gz_names and not name.startswith("/") else name
 
-    def _forward(self, topic: BridgedTopic, source: _Endpoint, target: _Endpoint) -> None:
+    def _forward_messages(self, topic: BridgedTopic, source: _Endpoint, target: _Endpoint) -> None:
         """Forward the messages of a topic in one direction."""
         (source_node, source_topic, source_type), (target_node, target_topic, target_type) = source, target
         convert = conversion(source_type, target_type)
@@ -163,7 +163,7 @@ class _Bridge(SingleNode):
                     driver_watch.note_command(message, info)
                 publishers[0].publish(convert(message))
 
-        def listen() -> Subscription[Any]:
+        def subscribe() -> Subscription[Any]:
             profile = QoSProfile(topic.subscriber_queue, reliability=ReliabilityPolicy.BEST_EFFORT)
             subscription: Subscription[Any] = source_node.create_subscription(
                 source_type, source_topic, forward, profile
@@ -172,8 +172,8 @@ class _Bridge(SingleNode):
                 commander.watch(subscription)
             return subscription
 
-        direction = _BridgeDirection(listen, lazy=lazy)
-        events = PublisherEventCallbacks(matched=direction.matched) if lazy else None
+        direction = _BridgeDirection(subscribe, lazy=lazy)
+        events = PublisherEventCallbacks(matched=direction.on_matched) if lazy else None
         publisher: Publisher[Any] = target_node.create_publisher(
             target_type,
             target_topic,
@@ -260,11 +260,11 @@ class ImageBridge(_Bridge):
             if message is not None:
                 publisher.publish(message)
 
-        def listen() -> Subscription[Any]:
+        def subscribe() -> Subscription[Any]:
             profile = QoSProfile(1, reliability=ReliabilityPolicy.BEST_EFFORT)
             return self._gz_node.create_subscription(_IMAGE[0], "/" + topic.lstrip("/"), forward, profile)
 
-        events = PublisherEventCallbacks(matched=_BridgeDirection(listen, lazy=True).matched)
+        events = PublisherEventCallbacks(matched=_BridgeDirection(subscribe, lazy=True).on_matched)
         publisher: Publisher[Any] = self._node.create_publisher(_COMPRESSED, name, _QUEUE_DEPTH, event_callbacks=events)
 
 

@@ -36,7 +36,7 @@ class Create(EntitySpawner):
             entity = Entity(name, (pose["x"], pose["y"], pose["z"]), (pose["R"], pose["P"], pose["Y"]))
             self._renames = str(options_by_name.get("allow_renaming", "false")).lower() in _TRUE_VALUES
             self._prepare(self._node, entity)
-            self._begin(
+            self._start_spawning(
                 {source: str(options_by_name[source]) for source in _TEXT_OPTIONS if options_by_name.get(source)},
                 options.environment,
             )
@@ -48,9 +48,9 @@ class Create(EntitySpawner):
             self._node.declare_parameter(name, parameters[name])
         return {name: self._node.get_parameter(name).value for name in option_names}
 
-    def _begin(self, sources: dict[str, str], environment: Mapping[str, str]) -> None:
+    def _start_spawning(self, sources: dict[str, str], environment: Mapping[str, str]) -> None:
         if "topic" in sources:
-            self._wait_for(sources["topic"])
+            self._spawn_from_topic(sources["topic"])
         elif "string" in sources:
             self._spawn(sources["string"])
         elif "file" in sources:
@@ -67,7 +67,7 @@ class Create(EntitySpawner):
         return str(parameter.value)
 
     def _spawn(self, text: str) -> None:
-        if not self._renames or self._described:
+        if not self._renames or self._has_description:
             super()._spawn(text)
             return
 
@@ -114,5 +114,5 @@ def _parse_number(name: str, value: Any) -> float:
     except ValueError:
         message = phrase("'{value}' for '{name}' is not a number", value=str(value), name=name)
         raise LinkwrightError(
-            Diagnostic("NODE812", message, hint=phrase("write a number in metres or radians"))
+            Diagnostic("NODE812", message, hint=phrase("write a number in meters or radians"))
         ) from None

@@ -55,7 +55,7 @@ class Remove(SimulatorClient):
         """Log the result of the request, and end with status 0 if it succeeded, else with 1."""
         if response.success:
             self._log("Result: true")
-            self._end(0)
+            self._finish(0)
         else:
             self._fail(f"Result: false, {getattr(response, 'status_message', '') or 'there is no such entity'}")
 

@@ -8,7 +8,7 @@ from functools import partial
 from linkwright.diagnostics import Diagnostic, Severity, foreign, phrase
 from linkwright.graph import Node
 from linkwright.messages import get_service
-from linkwright.nodes.followed_files import FileFollower
+from linkwright.nodes.watched_files import FileWatcher
 from linkwright.simulation.server.server import SimulationServer
 from linkwright.simulation.server.services import Services
 from linkwright.simulation.server.worlds import load_world
@@ -16,7 +16,7 @@ from linkwright.simulation.server.worlds import load_world
 _LOAD_WORLD = "simulation_interfaces/srv/LoadWorld"
 
 
-def follow_files(node: Node, server: SimulationServer, services: Services, host: FileFollower) -> None:
+def watch_files(node: Node, server: SimulationServer, services: Services, host: FileWatcher) -> None:
     """Reload the world and the spawned robots when their files are saved.
 
     The viewers show the errors of the robots' models. A robot is reloaded only if this process expanded its
@@ -31,23 +31,23 @@ def follow_files(node: Node, server: SimulationServer, services: Services, host:
     loop, world = asyncio.get_running_loop(), services.worlds.loaded
     subject = f"simulation of {node.get_fully_qualified_name()}"
 
-    def show() -> None:
+    def show_findings() -> None:
         if not node.handle.is_destroyed:
             host.show(subject, server.findings)
 
-    def renew(name: str, text: str) -> None:
+    def replace_robot(name: str, text: str) -> None:
         """Replace a robot at its current pose, if it still exists."""
         if not node.handle.is_destroyed and name in server.simulation.scene.models:
-            services.renew(text, name)
+            services.replace_model(text, name)
 
-    def follow(name: str, text: str) -> None:
-        host.follow_text(text, name, partial(renew, name))
+    def watch_description(name: str, text: str) -> None:
+        host.watch_text(text, name, partial(replace_robot, name))
 
-    server.on_findings.append(lambda: loop.call_soon_threadsafe(show))
-    show()
+    server.on_findings.append(lambda: loop.call_soon_threadsafe(show_findings))
+    show_findings()
     if world.path.is_file():
-        host.follow_world(world, load_world, lambda path: _load_world(path, host.launcher_node, services))
-    services.on_spawned.append(lambda name, text: loop.call_soon_threadsafe(follow, name, text))
+        host.watch_world(world, load_world, lambda path: _load_world(path, host.launcher_node, services))
+    services.on_spawned.append(lambda name, text: loop.call_soon_threadsafe(watch_description, name, text))
 
 
 async def _load_world(path: str, launcher: Node, services: Services) -> list[Diagnostic]:

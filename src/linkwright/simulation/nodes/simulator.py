@@ -18,7 +18,7 @@ from linkwright.graph import Graph, Parameter, SetParametersResult
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
 
 if TYPE_CHECKING:
-    from linkwright.nodes.followed_files import FileFollower
+    from linkwright.nodes.watched_files import FileWatcher
     from linkwright.sdf.plugins import Plugin
 
 _EMPTY, _DESCRIPTION = "empty", "robot_description"
@@ -123,7 +123,7 @@ class Simulator(SingleNode):
                 factor=parameters["real_time_factor"] if parameters["real_time_factor"] >= 0 else inf,
                 paused=parameters["pause"],
                 seconds=parameters["seconds"] or None,
-                watch=lambda: self._reports.watch(lambda: self.runner.real_time_factor),
+                watch=lambda: self._reports.publish_due(lambda: self.runner.real_time_factor),
                 on_state=self._publish_state,
                 on_end=partial(_call_threadsafe, loop, self._finish),
             )
@@ -135,18 +135,18 @@ class Simulator(SingleNode):
                     parameters[_DESCRIPTION], parameters["robot_name"], pose, parameters["robot_namespace"]
                 )
                 self._node.add_on_set_parameters_callback(partial(self._on_parameters, robot))
-            self._reports.begin()
+            self._reports.start_description()
             self._publish_state()
             self.server.exchange.deliver()
             if parameters["pause"]:
                 self._node.get_logger().info(_PAUSED_NOTICE)
             self.runner.start()
 
-    def follow_files(self, host: FileFollower) -> None:
+    def watch_files(self, host: FileWatcher) -> None:
         """Reload the world and the spawned robots when their files are saved."""
-        from linkwright.simulation.nodes.saved_files import follow_files
+        from linkwright.simulation.nodes.saved_files import watch_files
 
-        follow_files(self._node, self.server, self.services, host)
+        watch_files(self._node, self.server, self.services, host)
 
     def close(self) -> None:
         """Stop the simulation, and destroy the node."""
@@ -168,7 +168,7 @@ class Simulator(SingleNode):
         for parameter in parameters:
             if parameter.name == _DESCRIPTION:
                 try:
-                    self.services.renew(parameter.value, robot)
+                    self.services.replace_model(parameter.value, robot)
                 except LinkwrightError as error:
                     return SetParametersResult(successful=False, reason=finding_line(error.diagnostics[0]))
         return SetParametersResult(successful=True)
@@ -178,7 +178,7 @@ class Simulator(SingleNode):
             self.finished.set_result(status)
 
     def _publish_state(self) -> None:
-        self._reports.publish_state(paused=self.runner.paused)
+        self._reports.publish_state(paused=self.runner.is_paused)
 
     def _log(self, findings: Iterable[Diagnostic]) -> None:
         """Log the findings as errors or warnings, without repeating a message."""

@@ -28,35 +28,35 @@ class SpawnEntity(EntitySpawner):
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         self._node, arguments = create_node(graph, options, self.DEFAULT_NAME)
         with handle_start_errors(self._node):
-            wanted = self._arguments = parse(arguments)
+            parsed = self._arguments = parse_arguments(arguments)
             self._environment = options.environment
-            namespace = self._node.get_namespace() if wanted.robot_namespace is None else wanted.robot_namespace
+            namespace = self._node.get_namespace() if parsed.robot_namespace is None else parsed.robot_namespace
             entity = Entity(
-                wanted.entity,
-                (wanted.x, wanted.y, wanted.z),
-                (wanted.R, wanted.P, wanted.Y),
+                parsed.entity,
+                (parsed.x, parsed.y, parsed.z),
+                (parsed.R, parsed.P, parsed.Y),
                 namespace,
-                wanted.reference_frame,
+                parsed.reference_frame,
             )
-            self._prepare(self._node, entity, service_namespace=wanted.gazebo_namespace or "", timeout=wanted.timeout)
-            if wanted.wait is None:
-                self._begin()
+            self._prepare(self._node, entity, service_namespace=parsed.gazebo_namespace or "", timeout=parsed.timeout)
+            if parsed.wait is None:
+                self._start_spawning()
             else:
-                self._log(f"Waiting for entity {wanted.wait} to exist")
-                self._wait_for_entity(wanted.wait)
+                self._log(f"Waiting for entity {parsed.wait} to exist")
+                self._wait_for_entity(parsed.wait)
 
     def close(self) -> None:
         """Close the node, and delete the entity if ``-b`` was given."""
-        if self._arguments.b and self._described and not self.finished.done():
+        if self._arguments.b and self._has_description and not self.finished.done():
             service_type = get_service("gazebo_msgs/srv/DeleteEntity")
             client = self._node.create_client(service_type, f"{self._service_namespace}/delete_entity")
             client.call_async(service_type.Request(name=self._entity.name))
         super().close()
 
-    def _begin(self) -> None:
+    def _start_spawning(self) -> None:
         arguments = self._arguments
         if arguments.topic is not None:
-            self._wait_for(arguments.topic)
+            self._spawn_from_topic(arguments.topic)
         elif arguments.file is not None:
             self._spawn(read_description(arguments.file, self._environment))
         elif arguments.database is not None:
@@ -68,34 +68,37 @@ class SpawnEntity(EntitySpawner):
         super()._spawn(text.replace("package://", "model://") if self._arguments.package_to_model else text)
 
     def _wait_for_entity(self, name: str) -> None:
-        def look(names: list[str]) -> None:
+        def on_names(names: list[str]) -> None:
             if name in names:
-                self._begin()
+                self._start_spawning()
                 return
 
-            def again() -> None:
+            def retry() -> None:
                 timer.cancel()
                 self._wait_for_entity(name)
 
-            timer = self._node.create_timer(0.5, again)
+            timer = self._node.create_timer(0.5, retry)
 
-        self._request_names(look)
+        self._request_names(on_names)
 
-    def _spawned(self) -> None:
+    def _on_spawned(self) -> None:
         if self._arguments.unpause:
             service_type = "std_srvs/srv/Empty"
             self._call_service(
-                service_type, "unpause_physics", get_service(service_type).Request(), lambda _: self._stay_or_end()
+                service_type,
+                "unpause_physics",
+                get_service(service_type).Request(),
+                lambda _: self._finish_unless_bound(),
             )
         else:
-            self._stay_or_end()
+            self._finish_unless_bound()
 
-    def _stay_or_end(self) -> None:
+    def _finish_unless_bound(self) -> None:
         if not self._arguments.b:
-            self._end(0)
+            self._finish(0)
 
 
-def parse(words: Sequence[str]) -> argparse.Namespace:
+def parse_arguments(words: Sequence[str]) -> argparse.Namespace:
     """Parse the command line, whose long options begin with a single dash.
 
     Raises:

@@ -28,7 +28,7 @@ class Entity:
 
     Attributes:
         name: the name of the model in the world.
-        xyz: the position in metres.
+        xyz: the position in meters.
         rpy: the roll, pitch and yaw in radians.
         namespace: the ROS namespace of the model's plugins.
         reference_frame: the frame of the pose; the world if empty.
@@ -96,22 +96,22 @@ class SimulatorClient(SingleNode):
             return
         steady_clock = Clock(clock_type=ClockType.STEADY_TIME, timebase=self._node.get_clock().timebase)
 
-        def look() -> None:
+        def check_availability() -> None:
             timer.cancel()
             if not future.done() and not client.service_is_ready():
                 client.remove_pending_request(future)
                 self._fail(f"Service {path} unavailable. Was the simulation started?")
 
-        timer = self._node.create_timer(self._timeout, look, clock=steady_clock)
+        timer = self._node.create_timer(self._timeout, check_availability, clock=steady_clock)
 
     def _log(self, text: str) -> None:
         self._node.get_logger().info(text)
 
     def _fail(self, text: str) -> None:
         self._node.get_logger().error(text)
-        self._end(1)
+        self._finish(1)
 
-    def _end(self, status: int) -> None:
+    def _finish(self, status: int) -> None:
         if not self.finished.done():
             self.finished.set_result(status)
 
@@ -119,7 +119,7 @@ class SimulatorClient(SingleNode):
 class EntitySpawner(SimulatorClient):
     """A node that spawns one entity and ends.
 
-    Derived classes create `_node`, call `_prepare`, and then `_wait_for` or `_spawn`.
+    Derived classes create `_node`, call `_prepare`, and then `_spawn_from_topic` or `_spawn`.
     """
 
     _entity: Entity
@@ -130,11 +130,11 @@ class EntitySpawner(SimulatorClient):
         """Set the entity to spawn, and connect to the simulator as `_connect` does."""
         self._connect(node, service_namespace=service_namespace, timeout=timeout)
         self._entity = entity
-        self._described = False
+        self._has_description = False
 
     # --- getting a description ------------------------------------------------------------------------------------
 
-    def _wait_for(self, topic: str) -> None:
+    def _spawn_from_topic(self, topic: str) -> None:
         """Spawn the first description that arrives on a topic.
 
         A latched description arrives at once.
@@ -149,10 +149,10 @@ class EntitySpawner(SimulatorClient):
 
         Later calls have no effect.
         """
-        if self._described:
+        if self._has_description:
             return
-        self._described = True
-        self._call_service(SPAWN_SERVICE, "spawn_entity", spawn_request(self._entity, text), self._answered)
+        self._has_description = True
+        self._call_service(SPAWN_SERVICE, "spawn_entity", spawn_request(self._entity, text), self._on_response)
 
     def _request_names(self, on_names: Callable[[list[str]], None]) -> None:
         """Request the names of the world's models, and pass them to a function."""
@@ -160,19 +160,19 @@ class EntitySpawner(SimulatorClient):
             _LIST_SERVICE,
             "get_model_list",
             get_service(_LIST_SERVICE).Request(),
-            lambda answer: on_names(list(answer.model_names)),
+            lambda response: on_names(list(response.model_names)),
         )
 
-    def _answered(self, response: Any) -> None:
+    def _on_response(self, response: Any) -> None:
         if not response.success:
             self._fail(f"Spawning '{self._entity.name}' failed: {response.status_message}")
             return
         self._log(f"Spawn status: {response.status_message}")
-        self._spawned()
+        self._on_spawned()
 
-    def _spawned(self) -> None:
+    def _on_spawned(self) -> None:
         """End with status 0, after the simulator has spawned the entity."""
-        self._end(0)
+        self._finish(0)
 
 
 def read_description(address: str, environment: Mapping[str, str]) -> str:

@@ -62,7 +62,7 @@ class _Drag:
     Attributes:
         model: the name of the model.
         initial_state: the state of the model when the drag began; None until the simulator has returned it.
-        pending_offset: the newest offset that was not sent yet, in metres; None if all were sent.
+        pending_offset: the newest offset that was not sent yet, in meters; None if all were sent.
         is_calling: whether a request to move the model is in progress.
     """
 
@@ -88,7 +88,7 @@ class SimulationFeature(PageFeature):
         self._drags: dict[Page, _Drag] = {}
         self._spawn_tasks: set[asyncio.Task[None]] = set()
 
-    def opening(self) -> list[ServerMessage]:
+    def opening_messages(self) -> list[ServerMessage]:
         """Return the state of the simulation for a new page.
 
         The method also begins to watch the graph for a simulator, unless a recording is shown.
@@ -99,12 +99,12 @@ class SimulationFeature(PageFeature):
             self._update_presence()
         return [self._status]
 
-    def recording_shown(self) -> None:
+    def on_recording_shown(self) -> None:
         """Hide the simulation bar, because a recorded simulation cannot be controlled."""
         self._shows_recording = True
         self._stop()
 
-    def page_closed(self, page: Page) -> None:
+    def remove_page(self, page: Page) -> None:
         """End the drag of the page, and unsubscribe after the last page has closed."""
         self._drags.pop(page, None)
         if self._is_listening and len(self.context.pages) == 0:
@@ -142,7 +142,7 @@ class SimulationFeature(PageFeature):
             node = self.context.node
             self._subscriptions = [
                 node.create_subscription(
-                    "simulation_interfaces/msg/SimulationState", _STATE_TOPIC, self._state, LATCHED_QOS
+                    "simulation_interfaces/msg/SimulationState", _STATE_TOPIC, self._on_state, LATCHED_QOS
                 ),
                 node.create_subscription(
                     "gazebo_msgs/msg/PerformanceMetrics", "/performance_metrics", self._on_metrics, 10
@@ -159,7 +159,7 @@ class SimulationFeature(PageFeature):
             endpoint.kind is EndpointKind.SUBSCRIPTION and endpoint.type_name in _VELOCITIES for endpoint in endpoints
         )
 
-    def _state(self, message: Any) -> None:
+    def _on_state(self, message: Any) -> None:
         self._publish(replace(self._status, present=True, paused=message.state == _PAUSED))
 
     def _on_metrics(self, message: Any) -> None:
@@ -203,7 +203,7 @@ class SimulationFeature(PageFeature):
         if _is_vector(position):
             fields["initial_pose"] = _pose(position)
 
-        def listed(response: Any) -> None:
+        def on_models_listed(response: Any) -> None:
             existing_names = () if response is None else response.model_names
             if name in existing_names:
                 free_name = next(
@@ -217,7 +217,7 @@ class SimulationFeature(PageFeature):
         request_spawn = partial(
             self._services.call_service, page, "gazebo_msgs/srv/SpawnEntity", "/spawn_entity", fields
         )
-        self._services.call_service(page, "gazebo_msgs/srv/GetModelList", "/get_model_list", {}, listed)
+        self._services.call_service(page, "gazebo_msgs/srv/GetModelList", "/get_model_list", {}, on_models_listed)
 
     def _model_at(self, address: str) -> tuple[str, str] | None:
         """Return the name and description of the model at an address.
@@ -251,10 +251,10 @@ class SimulationFeature(PageFeature):
                 fields,
                 partial(self._on_drag_state, page, drag),
             )
-        known = self._drags.get(page)
-        if known is not None and known.model == message.model and _is_vector(message.offset):
-            known.pending_offset = message.offset
-            self._send_pose(page, known)
+        active_drag = self._drags.get(page)
+        if active_drag is not None and active_drag.model == message.model and _is_vector(message.offset):
+            active_drag.pending_offset = message.offset
+            self._send_pose(page, active_drag)
 
     def _on_drag_state(self, page: Page, drag: _Drag, response: Any) -> None:
         if response is not None and response.success:
@@ -272,7 +272,7 @@ class SimulationFeature(PageFeature):
         state.pose = _pose([start.x + offset[0], start.y + offset[1], start.z + offset[2]])
         state.pose.orientation = drag.initial_state.pose.orientation
 
-        def put(_: Any) -> None:
+        def on_pose_set(_: Any) -> None:
             drag.is_calling = False
             self._send_pose(page, drag)
 
@@ -280,7 +280,7 @@ class SimulationFeature(PageFeature):
             "'{model}' cannot be moved: it is fixed to the world, or no longer exists", model=drag.model
         )
         self._services.call_service(
-            page, "gazebo_msgs/srv/SetEntityState", "/set_entity_state", {"state": state}, put, failure_message
+            page, "gazebo_msgs/srv/SetEntityState", "/set_entity_state", {"state": state}, on_pose_set, failure_message
         )
 
     def _push(self, page: Page, message: PushLink) -> None:
@@ -301,10 +301,10 @@ def _report_added(page: Page, name: str, actual_name: str, response: Any) -> Non
     page.send(ModelAdded(actual_name))
     if actual_name != name:
         notice = phrase(
-            "A model '{name}' already exists: the new one is named '{free}', and the topics of its "
-            "plugins begin with /{free}. The frames of both models have the same names.",
+            "A model '{name}' already exists: the new one is named '{free_name}', and the topics of its "
+            "plugins begin with /{free_name}. The frames of both models have the same names.",
             name=name,
-            free=actual_name,
+            free_name=actual_name,
         )
         page.send(SimulationNotice(notice))
 

@@ -53,7 +53,7 @@ class SimulationServices:
             return
         future = client.call_async(client.srv_type.Request(**fields))
 
-        def done(_: Any) -> None:
+        def on_done(_: Any) -> None:
             response = future.result()
             result = getattr(response, "result", None)
             if getattr(response, "success", True) is False:
@@ -63,7 +63,7 @@ class SimulationServices:
                 refuse(page, result.error_message)
             on_response(response)
 
-        future.add_done_callback(done)
+        future.add_done_callback(on_done)
 
     def close(self) -> None:
         """Destroy the clients.

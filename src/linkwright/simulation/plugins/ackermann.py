@@ -69,11 +69,11 @@ class ClassicAckermann(SimulatedPlugin[AckermannParameters]):
         rear = [self.joint(name) for name in (parameters.rear_left_joint, parameters.rear_right_joint)]
         steering = [self.joint(name) for name in (parameters.left_steering_joint, parameters.right_steering_joint)]
         for joint in (*front, *rear):
-            simulation.let_roll(joint)
-        self._radius = self._radius_of(rear[1])
-        self._measure_car(front, rear)
+            simulation.enable_rolling(joint)
+        self._radius = self._measure_radius(rear[1])
+        self._measure_geometry(front, rear)
         simulation.keep_awake(self.first_link)
-        torque = simulation.mass_of(self.place.path) * _GRAVITY * self._radius / 2.0
+        torque = simulation.mass_of(self.context.path) * _GRAVITY * self._radius / 2.0
         self._motors = [simulation.add_velocity_motor(joint, _MOTOR_GAIN, torque) for joint in rear]
         self._servos = [simulation.add_servo(joint) for joint in steering]
         odometry = node.publisher("nav_msgs/msg/Odometry", "odom", 1) if parameters.publish_odom else None
@@ -94,34 +94,34 @@ class ClassicAckermann(SimulatedPlugin[AckermannParameters]):
             commander=commander,
             stop_motion=self._stop_motion,
         )
-        self._begin()
+        self._reset_motion()
         self.every(parameters.update_rate, self._update)
 
-    def _begin(self) -> None:
+    def _reset_motion(self) -> None:
         self._speed = self._angle = self._distance = 0.0
-        self._place = self.simulation.model_pose(self.place.path)
+        self._pose = self.simulation.model_pose(self.context.path)
         self._time = self.simulation.time
 
     def reset(self) -> None:
-        """Stop the car, and reset its steering angle and the travelled distance."""
-        self._begin()
+        """Stop the car, and reset its steering angle and the traveled distance."""
+        self._reset_motion()
         for servo in self._servos:
             servo.restart()
         self._drive(0.0)
 
-    def _radius_of(self, joint: str) -> float:
+    def _measure_radius(self, joint: str) -> float:
         radius = self.simulation.wheel_radius(self.simulation.scene.joints[joint].child)
         if radius is None:
             raise self.parameter_error(
                 phrase(
                     "plugin '{plugin}': the wheel on '{joint}' needs a collision that is a cylinder or a sphere",
-                    plugin=self.place.name,
+                    plugin=self.context.name,
                     joint=self.parameters.rear_right_joint,
                 )
             )
         return radius
 
-    def _measure_car(self, front: list[str], rear: list[str]) -> None:
+    def _measure_geometry(self, front: list[str], rear: list[str]) -> None:
         """Measure the track of the front wheels and the wheelbase, in m.
 
         Raises an error if either is zero.
@@ -130,14 +130,16 @@ class ClassicAckermann(SimulatedPlugin[AckermannParameters]):
         left, right, rear_left, rear_right = (
             simulation.link_pose(simulation.scene.joints[joint].child)[:3] for joint in (*front, *rear)
         )
-        self._track = dist(left, right)
-        self._base = dist(
+        self._track_width = dist(left, right)
+        self._wheelbase = dist(
             [(a + b) / 2.0 for a, b in zip(left, right, strict=True)],
             [(a + b) / 2.0 for a, b in zip(rear_left, rear_right, strict=True)],
         )
-        if not (self._track > 0.0 and self._base > 0.0):
+        if not (self._track_width > 0.0 and self._wheelbase > 0.0):
             raise self.parameter_error(
-                phrase("plugin '{plugin}': its wheels have the same position; place them apart", plugin=self.place.name)
+                phrase(
+                    "plugin '{plugin}': its wheels have the same position; place them apart", plugin=self.context.name
+                )
             )
 
     def _on_command(self, twist: Any) -> None:
@@ -158,10 +160,10 @@ class ClassicAckermann(SimulatedPlugin[AckermannParameters]):
         now = self.simulation.time
         seconds, self._time = (now - self._time) / NANOSECONDS_PER_SECOND, now
         self._drive(seconds)
-        old_pose, self._place = self._place, self.simulation.model_pose(self.place.path)
-        self._distance += hypot(self._place[0] - old_pose[0], self._place[1] - old_pose[1])
-        velocity = planar_velocity(self._place, *self.simulation.link_velocity(self.first_link))
-        self._topics.publish(self.stamp(), self._place, *velocity)
+        old_pose, self._pose = self._pose, self.simulation.model_pose(self.context.path)
+        self._distance += hypot(self._pose[0] - old_pose[0], self._pose[1] - old_pose[1])
+        velocity = planar_velocity(self._pose, *self.simulation.link_velocity(self.first_link))
+        self._topics.publish(self.stamp(), self._pose, *velocity)
         if self._distance_topic is not None:
             self._distance_topic.publish(get_message("std_msgs/msg/Float32")(data=self._distance))
 
@@ -173,6 +175,6 @@ class ClassicAckermann(SimulatedPlugin[AckermannParameters]):
         for motor in self._motors:
             motor.target = self._speed / self._radius
         slope = tan(self._angle)
-        angles = ackermann_angles(slope, self._track / self._base * slope)
+        angles = ackermann_angles(slope, self._track_width / self._wheelbase * slope)
         for servo, angle in zip(self._servos, angles, strict=True):
             servo.move(angle, seconds)

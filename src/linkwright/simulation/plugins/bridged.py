@@ -36,26 +36,26 @@ class BridgedTopics:
         self._graph = node.graph
         self._exchange = exchange
         self._callbacks: dict[str, list[Callable[[], None]]] = {}
-        self._is_review_queued = False
+        self._is_check_queued = False
         self._graph.watch(self._on_graph_change)
 
     def close(self) -> None:
         """Stop watching the graph and notifying the plugins."""
         self._graph.unwatch(self._on_graph_change)
 
-    def has(self, topic: str) -> bool:
+    def is_bridged(self, topic: str) -> bool:
         """Return whether a bridge offers a topic under another type."""
         return topic in self._bridged_topics([topic])
 
-    def notify(self, topic: str, callback: Callable[[], None]) -> None:
+    def add_callback(self, topic: str, callback: Callable[[], None]) -> None:
         """Register a function that is called when a bridge offers a topic with another type.
 
         The function is called once.
         """
         self._callbacks.setdefault(topic, []).append(callback)
 
-    def forget(self, topic: str, callback: Callable[[], None]) -> None:
-        """Unregister a function that was registered with `notify`."""
+    def remove_callback(self, topic: str, callback: Callable[[], None]) -> None:
+        """Unregister a function that was registered with `add_callback`."""
         callbacks = self._callbacks.get(topic, [])
         if callback in callbacks:
             callbacks.remove(callback)
@@ -63,12 +63,12 @@ class BridgedTopics:
             self._callbacks.pop(topic, None)
 
     def _on_graph_change(self) -> None:
-        if self._callbacks and not self._is_review_queued:
-            self._is_review_queued = True
+        if self._callbacks and not self._is_check_queued:
+            self._is_check_queued = True
             self._exchange.post(self._call_callbacks)
 
     def _call_callbacks(self) -> None:
-        self._is_review_queued = False
+        self._is_check_queued = False
         for topic in self._bridged_topics(list(self._callbacks)):
             for callback in self._callbacks.pop(topic):
                 callback()

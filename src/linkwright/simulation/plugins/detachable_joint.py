@@ -49,7 +49,7 @@ class GzDetachableJoint(SimulatedPlugin[DetachableJointParameters]):
         Raises:
             LinkwrightError: SIM133, the model does not have this link.
         """
-        parameters, topic_prefix = self.parameters, f"/model/{self.place.path}/detachable_joint"
+        parameters, topic_prefix = self.parameters, f"/model/{self.context.path}/detachable_joint"
         self._is_attached, self._should_attach = False, parameters.initial_attach
         self._parent, self._child = self.link(parameters.parent_link), ""
         self._has_warned = parameters.suppress_child_warning
@@ -69,10 +69,10 @@ class GzDetachableJoint(SimulatedPlugin[DetachableJointParameters]):
         if self._should_attach and self._find_child():
             self._attach()
 
-    def resume(self, before: SimulatedPlugin[DetachableJointParameters]) -> None:
+    def resume(self, previous: SimulatedPlugin[DetachableJointParameters]) -> None:
         """Attach the child if the previous instance held or awaited it, and detach it otherwise."""
-        assert isinstance(before, GzDetachableJoint)
-        if before._is_attached or before._should_attach:
+        assert isinstance(previous, GzDetachableJoint)
+        if previous._is_attached or previous._should_attach:
             self._on_attach(None)
         else:
             self._detach()
@@ -103,7 +103,7 @@ class GzDetachableJoint(SimulatedPlugin[DetachableJointParameters]):
         elif not self._has_warned:
             self._has_warned = True
             name = f"{self.parameters.child_model}{SEPARATOR}{self.parameters.child_link}"
-            message = phrase("plugin '{plugin}': there is no link '{name}'", plugin=self.place.name, name=name)
+            message = phrase("plugin '{plugin}': there is no link '{name}'", plugin=self.context.name, name=name)
             self.node.logger.warning(message)
 
     def _find_child(self) -> bool:
@@ -112,9 +112,9 @@ class GzDetachableJoint(SimulatedPlugin[DetachableJointParameters]):
         The link may be in a nested model.
         """
         parameters, bodies = self.parameters, self.simulation.scene.bodies
-        model = self.place.path if parameters.child_model == _OWN_MODEL else parameters.child_model
+        model = self.context.path if parameters.child_model == _OWN_MODEL else parameters.child_model
         link = f"{model}{SEPARATOR}{parameters.child_link}"
-        candidates = (link, f"{self.place.path}{SEPARATOR}{link}")
+        candidates = (link, f"{self.context.path}{SEPARATOR}{link}")
         self._child = next(
             (candidate for candidate in candidates if candidate in bodies and candidate != self._parent), ""
         )
@@ -139,7 +139,7 @@ class GzDetachableJoint(SimulatedPlugin[DetachableJointParameters]):
             self._apply_change()
 
     def _apply_change(self) -> None:
-        self.simulation.set_altered()
+        self.simulation.mark_changed()
         self.simulation.refresh()
 
     def _publish_state(self, *, attached: bool) -> None:

@@ -99,13 +99,13 @@ class _WheelPair:
 class _DiffDrive(SimulatedPlugin[P], Generic[P]):
     """A differential drive that follows a commanded velocity, with wheel odometry."""
 
-    CARRIED: ClassVar[tuple[str, ...]] = ("_command", "_now", "_place")
+    CARRIED: ClassVar[tuple[str, ...]] = ("_command", "_limited_command", "_pose")
     _pairs: tuple[_WheelPair, ...]
     _topics: OdometryTopics
 
-    def _begin(self) -> None:
-        self._command = self._now = (0.0, 0.0)
-        self._place = PlanarPose()
+    def _reset_motion(self) -> None:
+        self._command = self._limited_command = (0.0, 0.0)
+        self._pose = PlanarPose()
         self._wheel_angles = self._read_angles()
 
     def _create_motors(
@@ -121,7 +121,7 @@ class _DiffDrive(SimulatedPlugin[P], Generic[P]):
         if len(left) != len(right):
             message = phrase(
                 "plugin '{plugin}' has {left} left wheels, but {right} right wheels; the numbers must be equal",
-                plugin=self.place.name,
+                plugin=self.context.name,
                 left=len(left),
                 right=len(right),
             )
@@ -130,7 +130,7 @@ class _DiffDrive(SimulatedPlugin[P], Generic[P]):
             raise self.parameter_error(
                 phrase(
                     "plugin '{plugin}': the separation and the diameter of the wheels must be positive",
-                    plugin=self.place.name,
+                    plugin=self.context.name,
                 )
             )
         pairs = []
@@ -139,7 +139,7 @@ class _DiffDrive(SimulatedPlugin[P], Generic[P]):
             motors = [self.simulation.add_velocity_motor(joint, MOTOR_GAIN, torque) for joint in joints]
             pairs.append(_WheelPair(motors[0], motors[1], joints, DifferentialDrive(separation, radius, radius)))
         self._pairs = tuple(pairs)
-        self._begin()
+        self._reset_motion()
 
     def _on_command(self, twist: Any) -> None:
         self._command = (float(twist.linear.x), float(twist.angular.z))
@@ -150,7 +150,7 @@ class _DiffDrive(SimulatedPlugin[P], Generic[P]):
         return old_command != self._command
 
     def _turn_wheels(self) -> None:
-        forward, angular = self._now
+        forward, angular = self._limited_command
         for pair in self._pairs:
             pair.left.target, pair.right.target = pair.drive.wheel_speeds(forward, angular)
 
@@ -176,11 +176,11 @@ class _DiffDrive(SimulatedPlugin[P], Generic[P]):
         pair, (left, right), self._wheel_angles = self._pairs[0], self._wheel_angles, self._read_angles()
         new_left, new_right = self._wheel_angles
         distance, yaw_change = pair.drive.motion(new_left - left, new_right - right)
-        self._place.advance(distance, 0.0, yaw_change)
+        self._pose.advance(distance, 0.0, yaw_change)
 
     def reset(self) -> None:
         """Stop the robot, and reset the odometry to its origin."""
-        self._begin()
+        self._reset_motion()
         self._turn_wheels()
 
 
@@ -245,12 +245,12 @@ class ClassicDiffDrive(_DiffDrive[ClassicParameters]):
             return
         stamp = self.stamp()
         if self._uses_true_pose:
-            pose = self.simulation.model_pose(self.place.path)
+            pose = self.simulation.model_pose(self.context.path)
             self._topics.publish(stamp, pose, *planar_velocity(pose, *self.simulation.link_velocity(self.first_link)))
         else:
             forward, angular = self._measured_velocity()
             published_forward = abs(forward) if self.gazebo_mistakes else forward
-            self._topics.publish(stamp, self._place.transform, published_forward, 0.0, angular)
+            self._topics.publish(stamp, self._pose.transform, published_forward, 0.0, angular)
 
     def _drive(self) -> None:
         """Accelerate the wheels towards the commanded velocity.
@@ -281,9 +281,9 @@ class ClassicDiffDrive(_DiffDrive[ClassicParameters]):
         self._wheel_speeds[index] = left, right
         pair.left.target, pair.right.target = left, right
 
-    def resume(self, before: SimulatedPlugin[ClassicParameters]) -> None:
+    def resume(self, previous: SimulatedPlugin[ClassicParameters]) -> None:
         """Take over velocity and odometry from the previous instance."""
-        super().resume(before)
+        super().resume(previous)
         for index, (left, right) in enumerate(self._wheel_speeds):
             self._set_wheel_speeds(index, left, right)
 
@@ -306,7 +306,7 @@ class GzDiffDrive(_DiffDrive[GzParameters]):
         self._create_motors(parameters.left_joint, parameters.right_joint, sizes, GZ_TORQUE)
         self._commands = DriveCommands(parameters)
         self._topics = connect_drive(self, parameters, self._commands)
-        self.node.subscribe("std_msgs/msg/Bool", f"/model/{self.place.path}/enable", self._commands.enable)
+        self.node.subscribe("std_msgs/msg/Bool", f"/model/{self.context.path}/enable", self._commands.enable)
         self.every(GZ_RATE, self._drive)
         self.every(parameters.odom_publish_frequency, self._publish)
 
@@ -315,16 +315,16 @@ class GzDiffDrive(_DiffDrive[GzParameters]):
         self._commands.restart()
         super().reset()
 
-    def resume(self, before: SimulatedPlugin[GzParameters]) -> None:
+    def resume(self, previous: SimulatedPlugin[GzParameters]) -> None:
         """Take over velocity and odometry from the previous instance."""
-        super().resume(before)
-        assert isinstance(before, GzDiffDrive)
-        self._commands.resume(before._commands)
+        super().resume(previous)
+        assert isinstance(previous, GzDiffDrive)
+        self._commands.resume(previous._commands)
 
     def _drive(self) -> None:
         self._update_odometry()
         forward, _, angular = self._commands.next_velocity()
-        self._now = (forward, angular)
+        self._limited_command = (forward, angular)
         self._turn_wheels()
 
     def _publish(self) -> None:
@@ -332,7 +332,7 @@ class GzDiffDrive(_DiffDrive[GzParameters]):
         if not self._topics.is_wanted:
             return
         forward, angular = self._measured_velocity()
-        self._topics.publish(self.stamp(), self._place.transform, forward, 0.0, angular)
+        self._topics.publish(self.stamp(), self._pose.transform, forward, 0.0, angular)
 
 
 def _step_towards(value: float, target: float, max_step: float) -> float:

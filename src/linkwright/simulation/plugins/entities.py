@@ -59,7 +59,7 @@ class Entities:
             raise _not_found_error(name, self._simulation.scene.models)
         return name
 
-    def frame(self, name: str) -> Transform:
+    def frame_pose(self, name: str) -> Transform:
         """Return the pose of a model or link in the world.
 
         For a name of the world's frame, this is the identity.
@@ -88,7 +88,7 @@ class Entities:
         link = simulation.scene.models[name].structure.links[0].link.name if is_model else self.link(name)
         pose = simulation.model_pose(name) if is_model else simulation.link_pose(link)
         linear, angular = simulation.link_velocity(link)
-        to_reference = invert(self.frame(reference))
+        to_reference = invert(self.frame_pose(reference))
         message = get_message("gazebo_msgs/msg/EntityState")(name=name, reference_frame=reference or WORLD)
         message.pose = pose_message(compose(to_reference, pose))
         message.twist.linear = Vector3(*rotate(to_reference[3:], tuple(linear.tolist())))
@@ -101,9 +101,11 @@ class Entities:
         Raises:
             LinkwrightError: SIM141, there is no such entity; SIM103, the model is fixed to the world.
         """
-        name, frame = self.model(state.name), self.frame(state.reference_frame)
-        self._simulation.set_model_pose(name, compose(frame, transform_in(state.pose)))
-        linear, angular = (rotate(frame[3:], numbers(vector)) for vector in (state.twist.linear, state.twist.angular))
+        name, frame_pose = self.model(state.name), self.frame_pose(state.reference_frame)
+        self._simulation.set_model_pose(name, compose(frame_pose, transform_from_message(state.pose)))
+        linear, angular = (
+            rotate(frame_pose[3:], vector_components(vector)) for vector in (state.twist.linear, state.twist.angular)
+        )
         self._simulation.set_model_velocity(name, linear, angular)
 
     def fill_get_response(self, service: str, request: Any, response: Any, log: Callable[[Phrase], object]) -> Any:
@@ -113,10 +115,10 @@ class Entities:
         """
         response.header = Header(Time.from_nanoseconds(self._simulation.time), request.reference_frame or WORLD)
 
-        def get() -> None:
+        def fill_state() -> None:
             response.state = self.state(request.name, request.reference_frame)
 
-        return _respond_without_message(response, get, service, log)
+        return _respond_without_message(response, fill_state, service, log)
 
     def fill_set_response(self, service: str, request: Any, response: Any, log: Callable[[Phrase], object]) -> Any:
         """Set the requested state, and fill in the response to ``gazebo_msgs/srv/SetEntityState``.
@@ -139,27 +141,27 @@ def _not_found_error(name: str, names: Collection[str]) -> LinkwrightError:
     return LinkwrightError(Diagnostic("SIM141", message, hint=did_you_mean(name, names)))
 
 
-def fill_response(response: Any, work: Callable[[], str]) -> Any:
-    """Call `work`, and return the response with `success` and `status_message`.
+def fill_response(response: Any, operation: Callable[[], str]) -> Any:
+    """Call `operation`, and return the response with `success` and `status_message`.
 
-    `status_message` is the text that `work` returns, or the reason for a failure.
+    `status_message` is the text that `operation` returns, or the reason for a failure.
     """
     try:
-        response.success, response.status_message = True, work()
+        response.success, response.status_message = True, operation()
     except LinkwrightError as error:
         response.success, response.status_message = False, finding_line(error.diagnostics[0])
     return response
 
 
 def _respond_without_message(
-    response: Any, work: Callable[[], object], service: str, log: Callable[[Phrase], object]
+    response: Any, operation: Callable[[], object], service: str, log: Callable[[Phrase], object]
 ) -> Any:
-    """Call `work`, and return the response with `success`.
+    """Call `operation`, and return the response with `success`.
 
     `log` receives the reason for a failure.
     """
     try:
-        work()
+        operation()
         response.success = True
     except LinkwrightError as error:
         response.success = False
@@ -188,7 +190,7 @@ def pose_message(pose: Transform) -> Any:
     return get_message("geometry_msgs/msg/Pose")(point, Quaternion(*pose[3:]))
 
 
-def transform_in(message: Any) -> Transform:
+def transform_from_message(message: Any) -> Transform:
     """Return the pose in a message as a transform.
 
     A quaternion of zeros means no rotation.
@@ -197,9 +199,9 @@ def transform_in(message: Any) -> Transform:
     quaternion = (orientation.x, orientation.y, orientation.z, orientation.w)
     if not any(quaternion):
         quaternion = (0.0, 0.0, 0.0, 1.0)
-    return (*numbers(message.position), *normalized(*quaternion))
+    return (*vector_components(message.position), *normalized(*quaternion))
 
 
-def numbers(vector: Any) -> tuple[float, float, float]:
+def vector_components(vector: Any) -> tuple[float, float, float]:
     """Return the x, y and z of a point or vector message as a tuple."""
     return vector.x, vector.y, vector.z

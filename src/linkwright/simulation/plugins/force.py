@@ -1,7 +1,7 @@
 """A force on a link, commanded on a topic: ``libgazebo_ros_force.so``.
 
 Source: gazebo_ros_pkgs for ROS 2 and ROS 1 (parameters, topic; before each step, the force of the last message acts at
-the centre of mass, in the axes of the world or of the link).
+the center of mass, in the axes of the world or of the link).
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from typing import Any
 
 from linkwright.diagnostics import phrase
 from linkwright.geometry.single import rotate
-from linkwright.simulation.plugins.entities import numbers
+from linkwright.simulation.plugins.entities import vector_components
 from linkwright.simulation.plugins.parameters import parameter
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
 
@@ -43,7 +43,7 @@ class ClassicForce(SimulatedPlugin[ForceParameters]):
         self._link = self.link(parameters.link_name)
         if parameters.force_frame not in ("world", "link"):
             raise self.parameter_error(
-                phrase("plugin '{plugin}': <force_frame> must be 'world' or 'link'", plugin=self.place.name)
+                phrase("plugin '{plugin}': <force_frame> must be 'world' or 'link'", plugin=self.context.name)
             )
         self.simulation.keep_awake(self._link)
         self._wrench = _NO_WRENCH
@@ -51,7 +51,7 @@ class ClassicForce(SimulatedPlugin[ForceParameters]):
         self.node.subscribe(
             "geometry_msgs/msg/Wrench",
             parameters.topic_name,
-            self._receive,
+            self._on_wrench,
             commander=commander,
             stop_motion=self._stop_motion,
         )
@@ -62,8 +62,8 @@ class ClassicForce(SimulatedPlugin[ForceParameters]):
         self._wrench = _NO_WRENCH
         self._apply_wrench()
 
-    def _receive(self, message: Any) -> None:
-        self._wrench = (numbers(message.force), numbers(message.torque))
+    def _on_wrench(self, message: Any) -> None:
+        self._wrench = (vector_components(message.force), vector_components(message.torque))
         self._apply_wrench()
 
     def _stop_motion(self) -> bool:

@@ -114,7 +114,7 @@ class GzOdometry(SimulatedPlugin[GzOdometryParameters]):
 
     def start(self) -> None:
         """Create the topics for odometry and transforms."""
-        parameters, model, node = self.parameters, self.place.path, self.node
+        parameters, model, node = self.parameters, self.context.path, self.node
         self._child_frame = parameters.robot_base_frame or f"{model}/base_footprint"
         self._frame = parameters.odom_frame or f"{model}/odom"
         self._offset: Transform = (*parameters.xyz_offset, *quaternion_from_rpy(parameters.rpy_offset))
@@ -136,7 +136,7 @@ class GzOdometry(SimulatedPlugin[GzOdometryParameters]):
         if not any(output.is_wanted for output in (self._odometry, self._covariance_odometry, self._transforms)):
             return
         parameters, simulation = self.parameters, self.simulation
-        pose = compose(simulation.model_pose(self.place.path), self._offset)
+        pose = compose(simulation.model_pose(self.context.path), self._offset)
         linear, angular = simulation.link_velocity(self.first_link)
         if parameters.dimensions == 3:
             linear, angular = _in_frame_axes(pose, linear), _in_frame_axes(pose, angular)

@@ -52,7 +52,7 @@ class GzAckermann(SimulatedPlugin[SteeringParameters]):
     """The substitute for ``gz-sim-ackermann-steering-system``: drives a car, or only steers it."""
 
     PARAMETERS = SteeringParameters
-    CARRIED = ("_angle", "_place")
+    CARRIED = ("_angle", "_pose")
     IGNORED = (
         *("steer_i_gain", "steer_d_gain", "steer_i_max", "steer_i_min", "steer_cmd_offset"),
         *("use_actuator_msg", "actuator_number"),
@@ -70,7 +70,7 @@ class GzAckermann(SimulatedPlugin[SteeringParameters]):
             raise self.parameter_error(
                 phrase(
                     "plugin '{plugin}' needs wheel joints on both sides, and positive dimensions",
-                    plugin=self.place.name,
+                    plugin=self.context.name,
                 )
             )
         joint_names = (parameters.left_joint, parameters.right_joint)
@@ -82,7 +82,7 @@ class GzAckermann(SimulatedPlugin[SteeringParameters]):
         steered_links = {simulation.scene.joints[joint].child for joints in steering for joint in joints}
         for name, scene_joint in simulation.scene.joints.items():
             if scene_joint.parent in steered_links:
-                simulation.let_roll(name)
+                simulation.enable_rolling(name)
         simulation.keep_awake(self.first_link)
         self._odometry_joints = [joints[0] for joints in wheels]
         self._steering_joints = [joints[0] for joints in steering]
@@ -93,7 +93,7 @@ class GzAckermann(SimulatedPlugin[SteeringParameters]):
         self._servos = [[simulation.add_servo(joint, max_steering_speed) for joint in joints] for joints in steering]
         self._commands, self._limiter = DriveCommands(parameters), parameters.limiter("angular")
         self._angle = 0.0
-        self._begin()
+        self._reset_motion()
         if parameters.steering_only:
             self._subscribe_to_angles()
             self.every(GZ_RATE, self._steer_only)
@@ -104,37 +104,37 @@ class GzAckermann(SimulatedPlugin[SteeringParameters]):
 
     def _drive_parameters(self) -> SteeringParameters:
         parameters = self.parameters
-        model_topic = f"/model/{self.place.path}/{parameters.sub_topic}" if parameters.sub_topic else ""
+        model_topic = f"/model/{self.context.path}/{parameters.sub_topic}" if parameters.sub_topic else ""
         return replace(parameters, topic=parameters.topic or model_topic)
 
     def _subscribe_to_angles(self) -> None:
         parameters = self.parameters
-        topic = parameters.topic or f"/model/{self.place.path}/{parameters.sub_topic or 'steer_angle'}"
+        topic = parameters.topic or f"/model/{self.context.path}/{parameters.sub_topic or 'steer_angle'}"
         self.node.subscribe("std_msgs/msg/Float64", topic, self._on_angle, stop_motion=lambda: None)
 
     def _on_angle(self, message: Any) -> None:
         self._angle = float(message.data)
 
-    def _begin(self) -> None:
+    def _reset_motion(self) -> None:
         self._angle = 0.0
-        self._place = PlanarPose()
+        self._pose = PlanarPose()
         self._angles = self._wheel_angles()
 
     def reset(self) -> None:
         """Stop the car, and reset its steering command and its odometry."""
-        self._begin()
+        self._reset_motion()
         self._commands.restart()
         self._limiter.restart()
         for servo in (servo for servos in self._servos for servo in servos):
             servo.restart()
         self._turn_wheels(0.0, 0.0)
 
-    def resume(self, before: SimulatedPlugin[SteeringParameters]) -> None:
+    def resume(self, previous: SimulatedPlugin[SteeringParameters]) -> None:
         """Take over velocity and odometry from the previous instance."""
-        super().resume(before)
-        assert isinstance(before, GzAckermann)
-        self._commands.resume(before._commands)
-        self._limiter = before._limiter
+        super().resume(previous)
+        assert isinstance(previous, GzAckermann)
+        self._commands.resume(previous._commands)
+        self._limiter = previous._limiter
 
     # --- the wheels ---------------------------------------------------------------------------------------------------
 
@@ -195,8 +195,8 @@ class GzAckermann(SimulatedPlugin[SteeringParameters]):
         return tuple(self.simulation.joint_state(joint)[0] for joint in self._odometry_joints)
 
     @property
-    def _yaw_per_metre(self) -> float:
-        """The change of yaw in rad per metre driven, at the measured steering angles."""
+    def _yaw_per_meter(self) -> float:
+        """The change of yaw in rad per meter driven, at the measured steering angles."""
         left, right = (self.simulation.joint_state(joint)[0] for joint in self._steering_joints)
         return tan((left + right) / 2.0) / self.parameters.wheel_base
 
@@ -208,10 +208,10 @@ class GzAckermann(SimulatedPlugin[SteeringParameters]):
             / 2.0
             * self.parameters.wheel_radius
         )
-        self._place.advance(distance, 0.0, distance * self._yaw_per_metre)
+        self._pose.advance(distance, 0.0, distance * self._yaw_per_meter)
 
     def _publish(self) -> None:
         self._update_odometry()
         speeds = [self.simulation.joint_state(joint)[1] for joint in self._odometry_joints]
         forward = sum(speeds) / 2.0 * self.parameters.wheel_radius
-        self._topics.publish(self.stamp(), self._place.transform, forward, 0.0, forward * self._yaw_per_metre)
+        self._topics.publish(self.stamp(), self._pose.transform, forward, 0.0, forward * self._yaw_per_meter)

@@ -93,7 +93,7 @@ def connect_drive(
     plugin: SimulatedPlugin[Any], parameters: GzDriveParameters, commands: DriveCommands
 ) -> OdometryTopics:
     """Subscribe to the commands of a drive, and create and return its odometry topics."""
-    model, node = plugin.place.path, plugin.node
+    model, node = plugin.context.path, plugin.node
     frame = parameters.frame_id or f"{model}/odom"
     child_frame = parameters.child_frame_id or f"{model}/{plugin.first_link.rpartition(SEPARATOR)[2]}"
     odometry = node.publisher(

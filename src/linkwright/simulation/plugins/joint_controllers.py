@@ -84,13 +84,13 @@ class _JointController(SimulatedPlugin[P], Generic[P]):
 
     _command: float
 
-    def _begin(self) -> None:
+    def _reset_motion(self) -> None:
         """Create a PID controller for each joint."""
         self._controllers = [Pid(self.parameters.gains) for _ in self._joints]
 
     def reset(self) -> None:
         """Restore the initial command, with new PID controllers."""
-        self._begin()
+        self._reset_motion()
 
     def _find_joints(self) -> None:
         """Find the joints, and prevent the bodies that they move from sleeping."""
@@ -105,17 +105,15 @@ class _JointController(SimulatedPlugin[P], Generic[P]):
         `topic_suffix` is the end of the default topic's name.
         """
         parameters = self.parameters
-        topic = (
-            parameters.topic
-            or f"/model/{self.place.path}/{parameters.sub_topic or f'joint/{parameters.joint_name[0]}/{topic_suffix}'}"
-        )
+        sub_topic = parameters.sub_topic or f"joint/{parameters.joint_name[0]}/{topic_suffix}"
+        topic = parameters.topic or f"/model/{self.context.path}/{sub_topic}"
         commander = self.node.commander(self._stop_motion)
         self.node.subscribe(
-            "std_msgs/msg/Float64", topic, self._commanded, commander=commander, stop_motion=self._stop_motion
+            "std_msgs/msg/Float64", topic, self._on_command, commander=commander, stop_motion=self._stop_motion
         )
-        self._begin()
+        self._reset_motion()
 
-    def _commanded(self, message: Any) -> None:
+    def _on_command(self, message: Any) -> None:
         self._command = float(message.data)
 
     def _stop_motion(self) -> bool:
@@ -153,7 +151,7 @@ class GzJointPosition(_JointController[PositionParameters]):
             raise self.parameter_error(
                 phrase(
                     "plugin '{plugin}': only the first axis of a joint is simulated; remove <joint_index>",
-                    plugin=self.place.name,
+                    plugin=self.context.name,
                 )
             )
         self._find_joints()
@@ -164,8 +162,8 @@ class GzJointPosition(_JointController[PositionParameters]):
         self._subscribe_to_commands("0/cmd_pos")
         self.every(0.0, self._move)
 
-    def _begin(self) -> None:
-        super()._begin()
+    def _reset_motion(self) -> None:
+        super()._reset_motion()
         self._command = self.parameters.initial_position
         for servo in self._servos:
             servo.restart()
@@ -195,16 +193,16 @@ class GzJointVelocity(_JointController[VelocityParameters]):
         if self.parameters.use_force_commands:
             self.every(0.0, lambda: self._apply_forces(1))
 
-    def _begin(self) -> None:
-        super()._begin()
+    def _reset_motion(self) -> None:
+        super()._reset_motion()
         self._set_velocity(self.parameters.initial_velocity)
 
-    def resume(self, before: SimulatedPlugin[VelocityParameters]) -> None:
+    def resume(self, previous: SimulatedPlugin[VelocityParameters]) -> None:
         """Take over the velocity of the previous instance."""
-        assert isinstance(before, GzJointVelocity)
-        self._set_velocity(before._command)
+        assert isinstance(previous, GzJointVelocity)
+        self._set_velocity(previous._command)
 
-    def _commanded(self, message: Any) -> None:
+    def _on_command(self, message: Any) -> None:
         self._set_velocity(float(message.data))
 
     def _stop_motion(self) -> bool:

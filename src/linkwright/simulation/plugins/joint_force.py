@@ -32,7 +32,7 @@ class GzJointForce(SimulatedPlugin[JointForceParameters]):
         self._joint = self.joint(name)
         simulation.keep_awake(simulation.scene.joints[self._joint].child)
         self._force = 0.0
-        topic = f"/model/{self.place.path}/joint/{name}/cmd_force"
+        topic = f"/model/{self.context.path}/joint/{name}/cmd_force"
         commander = self.node.commander(self._stop_motion)
         self.node.subscribe(
             "std_msgs/msg/Float64", topic, self._on_command, commander=commander, stop_motion=self._stop_motion

@@ -38,7 +38,7 @@ class ClassicJointPoses(SimulatedPlugin[JointPoseParameters]):
         self.node.subscribe(
             "trajectory_msgs/msg/JointTrajectory",
             self.parameters.topic_name,
-            self._receive,
+            self._on_trajectory,
             1,
             stop_motion=lambda: None,
         )
@@ -48,9 +48,9 @@ class ClassicJointPoses(SimulatedPlugin[JointPoseParameters]):
         """Drop the trajectory."""
         self._points = deque[Any]()
         self._joints: list[str] = []
-        self._due = 0
+        self._start_times = 0
 
-    def _receive(self, message: Any) -> None:
+    def _on_trajectory(self, message: Any) -> None:
         try:
             if message.header.frame_id not in (WORLD, "map", "/map"):
                 Entities(self.simulation).link(message.header.frame_id)
@@ -62,13 +62,15 @@ class ClassicJointPoses(SimulatedPlugin[JointPoseParameters]):
             self.simulation.keep_awake(self.simulation.scene.joints[joint].child)
         self._points = deque(message.points)
         stamp = message.header.stamp
-        self._due = max(int(stamp.sec) * NANOSECONDS_PER_SECOND + int(stamp.nanosec), self.simulation.time)
+        self._start_times = max(int(stamp.sec) * NANOSECONDS_PER_SECOND + int(stamp.nanosec), self.simulation.time)
 
     def _move(self) -> None:
         """Set the joints to the next point of the trajectory if the point is due."""
-        if not self._points or self.simulation.time < self._due:
+        if not self._points or self.simulation.time < self._start_times:
             return
         point = self._points.popleft()
         for joint, position in zip(self._joints, point.positions, strict=False):
             self.simulation.set_joint_position(joint, float(position))
-        self._due += int(point.time_from_start.sec) * NANOSECONDS_PER_SECOND + int(point.time_from_start.nanosec)
+        self._start_times += int(point.time_from_start.sec) * NANOSECONDS_PER_SECOND + int(
+            point.time_from_start.nanosec
+        )

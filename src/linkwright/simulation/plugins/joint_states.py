@@ -86,7 +86,7 @@ class GzJointStates(_JointStates[GzParameters]):
 
     def start(self) -> None:
         """Start to publish the joints named by the parameters, or all movable joints by default."""
-        prefix = f"{self.place.path}::"
+        prefix = f"{self.context.path}::"
         movable_joints = [
             name
             for name, scene_joint in self.simulation.scene.joints.items()
@@ -94,5 +94,5 @@ class GzJointStates(_JointStates[GzParameters]):
         ]
         joints = [self.joint(name) for name in self.parameters.joint_name] or movable_joints
         names = [joint.removeprefix(prefix) for joint in joints]
-        topic = self.parameters.topic or f"/world/{self.place.world.name}/model/{self.place.path}/joint_state"
+        topic = self.parameters.topic or f"/world/{self.context.world.name}/model/{self.context.path}/joint_state"
         self._publish_joints(names, joints, self.parameters.update_rate, topic, "/joint_states")

@@ -54,18 +54,18 @@ class TrajectoryParameters:
         Gains that are not set are zero, so the controller has no effect.
         """
 
-        def value(name: str, default: float) -> float:
+        def parameter_value(name: str, default: float) -> float:
             return _value_at(getattr(self, f"{kind}_{name}"), index, default)
 
         return Gains(
-            p=value("p_gain", 0.0),
-            i=value("i_gain", 0.0),
-            d=value("d_gain", 0.0),
-            i_min=value("i_min", 0.0),
-            i_max=value("i_max", -1.0),
-            cmd_min=value("cmd_min", 0.0),
-            cmd_max=value("cmd_max", -1.0),
-            cmd_offset=value("cmd_offset", 0.0),
+            p=parameter_value("p_gain", 0.0),
+            i=parameter_value("i_gain", 0.0),
+            d=parameter_value("d_gain", 0.0),
+            i_min=parameter_value("i_min", 0.0),
+            i_max=parameter_value("i_max", -1.0),
+            cmd_min=parameter_value("cmd_min", 0.0),
+            cmd_max=parameter_value("cmd_max", -1.0),
+            cmd_offset=parameter_value("cmd_offset", 0.0),
         )
 
 
@@ -82,7 +82,7 @@ class _Joint:
         self._position_controller = Pid(parameters.gains("position", index))
         self._velocity_controller = Pid(parameters.gains("velocity", index))
 
-    def aim(self, point: Any, index: int) -> None:
+    def set_targets(self, point: Any, index: int) -> None:
         """Set the targets from item `index` of the lists of a trajectory point.
 
         A target without a value in the point remains unchanged.
@@ -126,12 +126,12 @@ class _Trajectory:
     def _point(self) -> Any:
         return self.message.points[self.index]
 
-    def aim(self, find_joint: Callable[[str], _Joint | None]) -> None:
+    def set_targets(self, find_joint: Callable[[str], _Joint | None]) -> None:
         """Set the targets of the joints that the trajectory names to the current point."""
         for index, name in enumerate(self.message.joint_names):
             joint = find_joint(name)
             if joint is not None:
-                joint.aim(self._point, index)
+                joint.set_targets(self._point, index)
 
 
 class GzJointTrajectory(SimulatedPlugin[TrajectoryParameters]):
@@ -142,7 +142,7 @@ class GzJointTrajectory(SimulatedPlugin[TrajectoryParameters]):
     def start(self) -> None:
         """Find the joints, subscribe to the trajectories, and create the topic for the progress."""
         parameters, simulation = self.parameters, self.simulation
-        prefix = f"{self.place.path}::"
+        prefix = f"{self.context.path}::"
         self._names = parameters.joint_name or tuple(
             name.removeprefix(prefix)
             for name, scene_joint in simulation.scene.joints.items()
@@ -151,7 +151,7 @@ class GzJointTrajectory(SimulatedPlugin[TrajectoryParameters]):
         self._scene_names = [self.joint(name) for name in self._names]
         for joint in self._scene_names:
             simulation.keep_awake(simulation.scene.joints[joint].child)
-        topic = parameters.topic or f"/model/{self.place.path}/joint_trajectory"
+        topic = parameters.topic or f"/model/{self.context.path}/joint_trajectory"
         self._progress = self.node.publisher("std_msgs/msg/Float32", f"{topic}_progress")
         self.node.subscribe("trajectory_msgs/msg/JointTrajectory", topic, self._on_trajectory, stop_motion=lambda: None)
         self.reset()
@@ -168,7 +168,7 @@ class GzJointTrajectory(SimulatedPlugin[TrajectoryParameters]):
     def _on_trajectory(self, message: Any) -> None:
         unknown_names = [name for name in message.joint_names if name not in self._joints]
         if unknown_names:
-            names, plugin = joined(unknown_names), self.place.name
+            names, plugin = joined(unknown_names), self.context.name
             self.node.logger.warning(
                 phrase("plugin '{plugin}' does not control a joint named {names}", plugin=plugin, names=names)
             )
@@ -177,14 +177,14 @@ class GzJointTrajectory(SimulatedPlugin[TrajectoryParameters]):
             self._trajectory = None
             return
         self._trajectory = _Trajectory(message, start or self.simulation.time)
-        self._follow(self._trajectory)
+        self._apply_point(self._trajectory)
 
-    def _follow(self, trajectory: _Trajectory) -> None:
+    def _apply_point(self, trajectory: _Trajectory) -> None:
         """Set the targets to the current point, and publish the progress from 0 to 1.
 
         The trajectory is dropped when it reaches the last point.
         """
-        trajectory.aim(self._joints.get)
+        trajectory.set_targets(self._joints.get)
         progress = (trajectory.index + 1) / len(trajectory.message.points)
         self._progress.publish(get_message("std_msgs/msg/Float32")(data=progress))
         if trajectory.is_at_last_point:
@@ -192,7 +192,7 @@ class GzJointTrajectory(SimulatedPlugin[TrajectoryParameters]):
 
     def _move(self) -> None:
         if self._trajectory is not None and self._trajectory.advance(self.simulation.time):
-            self._follow(self._trajectory)
+            self._apply_point(self._trajectory)
         seconds = self.simulation.step / NANOSECONDS_PER_SECOND
         for joint in self._joints.values():
             force = joint.force(*self.simulation.joint_state(joint.name), seconds)

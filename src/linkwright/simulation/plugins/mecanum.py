@@ -42,7 +42,7 @@ class GzMecanum(PlanarDrive[MecanumParameters]):
     """The substitute for ``gz-sim-mecanum-drive-system``."""
 
     PARAMETERS = MecanumParameters
-    CARRIED = ("_place",)
+    CARRIED = ("_pose",)
 
     def start(self) -> None:
         """Create motors for the wheels and topics for the odometry, and subscribe to the commands.
@@ -55,7 +55,7 @@ class GzMecanum(PlanarDrive[MecanumParameters]):
             raise self.parameter_error(
                 phrase(
                     "plugin '{plugin}': the separation and the diameter of the wheels must be positive",
-                    plugin=self.place.name,
+                    plugin=self.context.name,
                 )
             )
         self.require_free_model()
@@ -67,7 +67,7 @@ class GzMecanum(PlanarDrive[MecanumParameters]):
         )
         joints_by_wheel = [[self.joint(name) for name in names] for names in joint_names]
         for joint in (joint for joints in joints_by_wheel for joint in joints):
-            simulation.let_slide(joint)
+            simulation.enable_sliding(joint)
         self._motors = [
             [simulation.add_velocity_motor(joint, MOTOR_GAIN, inf) for joint in joints] for joints in joints_by_wheel
         ]
@@ -77,26 +77,26 @@ class GzMecanum(PlanarDrive[MecanumParameters]):
         )
         self._commands = DriveCommands(parameters)
         self._topics = connect_drive(self, parameters, self._commands)
-        self._begin()
+        self._reset_motion()
         self.every(GZ_RATE, self._drive)
         self.every(0.0, self._move)
         self.every(parameters.odom_publish_frequency, self._publish)
 
-    def _begin(self) -> None:
-        self._place = PlanarPose()
+    def _reset_motion(self) -> None:
+        self._pose = PlanarPose()
         self._angles = self._wheel_states(0)
 
     def reset(self) -> None:
         """Stop the robot, and reset the odometry to its origin."""
         self._commands.restart()
-        self._begin()
+        self._reset_motion()
         self._turn_wheels((0.0, 0.0, 0.0))
 
-    def resume(self, before: SimulatedPlugin[MecanumParameters]) -> None:
+    def resume(self, previous: SimulatedPlugin[MecanumParameters]) -> None:
         """Take over velocity and odometry from the previous instance."""
-        super().resume(before)
-        assert isinstance(before, GzMecanum)
-        self._commands.resume(before._commands)
+        super().resume(previous)
+        assert isinstance(previous, GzMecanum)
+        self._commands.resume(previous._commands)
 
     def _drive(self) -> None:
         self._turn_wheels(self._commands.next_velocity())
@@ -119,7 +119,7 @@ class GzMecanum(PlanarDrive[MecanumParameters]):
 
     def _move(self) -> None:
         old_angles, self._angles = self._angles, self._wheel_states(0)
-        self._place.advance(
+        self._pose.advance(
             *self._robot_motion(
                 [new_angle - old_angle for new_angle, old_angle in zip(self._angles, old_angles, strict=True)]
             )
@@ -127,4 +127,4 @@ class GzMecanum(PlanarDrive[MecanumParameters]):
         self.hold(*self._robot_motion(self._wheel_states(1)))
 
     def _publish(self) -> None:
-        self._topics.publish(self.stamp(), self._place.transform, *self._robot_motion(self._wheel_states(1)))
+        self._topics.publish(self.stamp(), self._pose.transform, *self._robot_motion(self._wheel_states(1)))

@@ -24,7 +24,7 @@ from linkwright.geometry.arrays import rotation_matrix
 from linkwright.geometry.single import Vector3
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.sdf.poses import SEPARATOR
-from linkwright.simulation.plugins.entities import numbers
+from linkwright.simulation.plugins.entities import vector_components
 from linkwright.simulation.plugins.parameters import parameter
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
 from linkwright.xmltree import Element
@@ -71,7 +71,7 @@ class GzMulticopterMotor(SimulatedPlugin[MotorParameters]):
 
     PARAMETERS = MotorParameters
     IGNORED = ("motorSpeedPubTopic",)
-    CARRIED = ("wanted", "speed")
+    CARRIED = ("target_speed", "speed")
 
     def start(self) -> None:
         """Find the rotor, and subscribe to its speed commands.
@@ -83,7 +83,8 @@ class GzMulticopterMotor(SimulatedPlugin[MotorParameters]):
         if parameters.motor_type != "velocity":
             raise self.parameter_error(
                 phrase(
-                    "plugin '{plugin}': <motorType> must be 'velocity', the only supported type", plugin=self.place.name
+                    "plugin '{plugin}': <motorType> must be 'velocity', the only supported type",
+                    plugin=self.context.name,
                 )
             )
         self._link = self.link(parameters.link_name)
@@ -93,26 +94,28 @@ class GzMulticopterMotor(SimulatedPlugin[MotorParameters]):
         self._motor = self.simulation.add_velocity_motor(joint, _SPIN_GAIN, inf)
         self.simulation.keep_awake(self._link)
         self.reset()
-        namespace = _text(self.place.element, "robotNamespace").strip("/") or self.place.path
-        self.node.subscribe("actuator_msgs/msg/Actuators", f"/{namespace}/{parameters.command_topic}", self._receive)
+        namespace = _text(self.context.element, "robotNamespace").strip("/") or self.context.path
+        self.node.subscribe(
+            "actuator_msgs/msg/Actuators", f"/{namespace}/{parameters.command_topic}", self._on_actuators
+        )
         self.every(0.0, self._apply_thrust)
 
     def reset(self) -> None:
         """Stop the rotor."""
-        self.wanted = self.speed = 0.0
+        self.target_speed = self.speed = 0.0
 
-    def _receive(self, actuators: Any) -> None:
+    def _on_actuators(self, actuators: Any) -> None:
         number = self.parameters.actuator_number
         speeds = actuators.velocity
         if number < len(speeds) and isfinite(speeds[number]):
-            self.wanted = float(speeds[number])
+            self.target_speed = float(speeds[number])
 
     def _apply_thrust(self) -> None:
         parameters, simulation = self.parameters, self.simulation
-        wanted = min(max(self.wanted, 0.0), parameters.max_rot_velocity)
-        time_constant = parameters.time_constant_up if wanted > self.speed else parameters.time_constant_down
+        target_speed = min(max(self.target_speed, 0.0), parameters.max_rot_velocity)
+        time_constant = parameters.time_constant_up if target_speed > self.speed else parameters.time_constant_down
         old_weight = exp(-simulation.step / NANOSECONDS_PER_SECOND / time_constant) if time_constant > 0.0 else 0.0
-        self.speed = old_weight * self.speed + (1.0 - old_weight) * wanted
+        self.speed = old_weight * self.speed + (1.0 - old_weight) * target_speed
         thrust = parameters.motor_constant * self.speed**2
         axis = rotation_matrix(simulation.link_pose(self._link)[3:])[:, 2]
         velocity, _ = simulation.link_velocity(self._link)
@@ -122,7 +125,7 @@ class GzMulticopterMotor(SimulatedPlugin[MotorParameters]):
             -self._sign * thrust * parameters.moment_constant * axis
             - parameters.rolling_moment_coefficient * cross_velocity
         )
-        push_name = self.place.name + parameters.joint_name
+        push_name = self.context.name + parameters.joint_name
         simulation.push(self._link, force.tolist(), by=push_name)
         simulation.push(self._parent, (0.0, 0.0, 0.0), torque.tolist(), by=push_name)
         self._motor.target = self._sign * self.speed / parameters.slowdown
@@ -157,7 +160,7 @@ class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
         "angularVelocityNoiseMean",
         "angularVelocityNoiseStdDev",
     )
-    CARRIED = ("_wanted", "_is_enabled")
+    CARRIED = ("_command", "_is_enabled")
 
     def start(self) -> None:
         """Find the rotors, and subscribe to the commands.
@@ -165,7 +168,7 @@ class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
         Raises:
             LinkwrightError: SIM133, SIM134, there is no such link or joint; SIM160, the rotors cannot hold the model.
         """
-        parameters, element = self.parameters, self.place.element
+        parameters, element = self.parameters, self.context.element
         self._body = self.link(parameters.com_link_name)
         self._find_rotors(element)
         self._rotors: dict[str, GzMulticopterMotor] = {}
@@ -177,7 +180,7 @@ class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
         self.node.subscribe(
             twist_type,
             topic_prefix + parameters.command_topic,
-            self._receive,
+            self._on_twist,
             commander=commander,
             stop_motion=self._stop_motion,
         )
@@ -186,7 +189,7 @@ class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
 
     def reset(self) -> None:
         """Drop the command, and enable the controller."""
-        self._wanted: tuple[Array, float] | None = None
+        self._command: tuple[Array, float] | None = None
         self._is_enabled = True
 
     def _find_rotors(self, element: Element | None) -> None:
@@ -217,7 +220,7 @@ class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
             raise self.parameter_error(
                 phrase(
                     "plugin '{plugin}': its rotors cannot control thrust and all three torques",
-                    plugin=self.place.name,
+                    plugin=self.context.name,
                 )
             )
         self._mass, inertia = self._mass_and_inertia()
@@ -233,14 +236,14 @@ class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
             return float(_text(rotor, tag))
         except ValueError as error:
             message = phrase(
-                "plugin '{plugin}': each <rotor> needs a number in <{tag}>", plugin=self.place.name, tag=tag
+                "plugin '{plugin}': each <rotor> needs a number in <{tag}>", plugin=self.context.name, tag=tag
             )
             raise self.parameter_error(message) from error
 
     def _mass_and_inertia(self) -> tuple[float, Array]:
         """Return the model's mass in kg, and its inertia tensor in kg m2.
 
-        The tensor is about the centre of mass, in the axes of the body.
+        The tensor is about the center of mass, in the axes of the body.
         """
         simulation = self.simulation
         model, data = simulation.model, simulation.data
@@ -248,27 +251,27 @@ class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
         root = int(model.body_rootid[body])
         bodies = [index for index in range(model.nbody) if int(model.body_rootid[index]) == root]
         masses = model.body_mass[bodies]
-        centre = masses @ data.xipos[bodies] / masses.sum()
+        center = masses @ data.xipos[bodies] / masses.sum()
         total = np.zeros((3, 3))
         for part in bodies:
-            axes, offset = data.ximat[part].reshape(3, 3), data.xipos[part] - centre
+            axes, offset = data.ximat[part].reshape(3, 3), data.xipos[part] - center
             total += axes @ np.diag(model.body_inertia[part]) @ axes.T
             total += model.body_mass[part] * (offset @ offset * np.eye(3) - np.outer(offset, offset))
         rotation = data.xmat[body].reshape(3, 3)
         return float(masses.sum()), rotation.T @ total @ rotation
 
-    def _receive(self, twist: Any) -> None:
+    def _on_twist(self, twist: Any) -> None:
         max_linear = np.array(self.parameters.max_linear)
         max_yaw_rate = self.parameters.max_angular[2]
-        linear = np.clip(np.array(numbers(twist.linear)), -max_linear, max_linear)
-        self._wanted = (linear, min(max(float(twist.angular.z), -max_yaw_rate), max_yaw_rate))
+        linear = np.clip(np.array(vector_components(twist.linear)), -max_linear, max_linear)
+        self._command = (linear, min(max(float(twist.angular.z), -max_yaw_rate), max_yaw_rate))
 
     def _stop_motion(self) -> bool:
         """Command the model to hover, and return whether a motion was commanded before."""
-        old_command = self._wanted
+        old_command = self._command
         if old_command is None:
             return False
-        self._wanted = (np.zeros(3), 0.0)
+        self._command = (np.zeros(3), 0.0)
         return bool(old_command[0].any()) or old_command[1] != 0.0
 
     def _on_enable(self, message: Any) -> None:
@@ -278,16 +281,16 @@ class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
         motors = self._motors()
         if not self._is_enabled:
             for motor in motors.values():
-                motor.wanted = 0.0
-        elif self._wanted is not None:
-            for joint, speed in zip(self._joints, self._speeds(*self._wanted), strict=True):
+                motor.target_speed = 0.0
+        elif self._command is not None:
+            for joint, speed in zip(self._joints, self._speeds(*self._command), strict=True):
                 if joint in motors:
-                    motors[joint].wanted = float(speed)
+                    motors[joint].target_speed = float(speed)
 
     def _motors(self) -> dict[str, GzMulticopterMotor]:
         """Return the motors of the model that have started, by the names of their joints."""
         if len(self._rotors) < len(self._joints):  # the other motors have not started yet
-            plugins = self._environment.plugins(self.place.path.partition(SEPARATOR)[0])
+            plugins = self._environment.plugins(self.context.path.partition(SEPARATOR)[0])
             motors = [
                 simulated_plugin for simulated_plugin in plugins if isinstance(simulated_plugin, GzMulticopterMotor)
             ]

@@ -82,8 +82,8 @@ class PluginNode(SteppedNode):
 
         The arguments are those of `publisher` and of `SteppedNode.subscribe`.
         """
-        received = self._make_callback(topic, callback, stop_motion, commander)
-        self._subscribe_to(msg_type, self._topic_names(topic, usual), received, qos, commander)
+        handle_message = self._make_callback(topic, callback, stop_motion, commander)
+        self._subscribe_to(msg_type, self._topic_names(topic, usual), handle_message, qos, commander)
 
     def close(self) -> None:
         """Remove all endpoints of the plugin from the graph."""
@@ -96,18 +96,18 @@ class PluginNode(SteppedNode):
     def _listen(self, topic: str, create_subscription: Callable[[str], Endpoint]) -> None:
         """Subscribe to a topic, or to its hidden name while a bridge offers another type."""
         bridged = self._bridged
-        if bridged is None or bridged.has(topic):
+        if bridged is None or bridged.is_bridged(topic):
             create_subscription(topic if bridged is None else hidden_gz_topic(topic))
             return
         subscription = create_subscription(topic)
 
-        def move() -> None:
+        def move_to_hidden_topic() -> None:
             self._endpoints.remove(subscription)
             subscription.destroy()
             create_subscription(hidden_gz_topic(topic))
 
-        bridged.notify(topic, move)
-        self._unregister_functions.append(partial(bridged.forget, topic, move))
+        bridged.add_callback(topic, move_to_hidden_topic)
+        self._unregister_functions.append(partial(bridged.remove_callback, topic, move_to_hidden_topic))
 
     def _topic_names(self, topic: str, usual: str) -> list[str]:
         topic = _BEFORE_LEADING_DIGIT.sub("_", _INVALID_CHARACTERS.sub("_", topic))

@@ -54,13 +54,13 @@ def parts_of(simulation: Simulation, model: Model, path: str) -> Iterator[Part]:
         model: the model, with its includes resolved.
         path: the name of the model in the world; no part is yielded for a nested model such as ``robot::arm`` itself.
     """
-    frame_pose = _frame_of(simulation, model, path)
+    frame_pose = _frame_pose(simulation, model, path)
     if SEPARATOR not in path:
         yield Part(PartKind.MODEL, path, simulation.world.name, frame_pose)
     yield from _parts(simulation, model, path, Frames(model), frame_pose)
 
 
-def _frame_of(simulation: Simulation, model: Model, path: str) -> Pose:
+def _frame_pose(simulation: Simulation, model: Model, path: str) -> Pose:
     """Return a function that returns the current pose of a model's frame in the world."""
     top_name, _, nested_path = path.partition(SEPARATOR)
     top_model = simulation.scene.models[top_name]
@@ -72,23 +72,23 @@ def _frame_of(simulation: Simulation, model: Model, path: str) -> Pose:
     return _pose_on_link(simulation, f"{path}{SEPARATOR}{first_link}", Frames(model).pose(first_link))
 
 
-def _pose_on_link(simulation: Simulation, link: str, place: Transform) -> Pose:
+def _pose_on_link(simulation: Simulation, link: str, link_in_frame: Transform) -> Pose:
     """Return a function that returns the pose in the world of a frame fixed to a link.
 
-    `place` is the pose of the link in this frame.
+    `context` is the pose of the link in this frame.
     """
-    frame_in_link = invert(place)
+    frame_in_link = invert(link_in_frame)
     return lambda: compose(simulation.link_pose(link), frame_in_link)
 
 
-def _parts(simulation: Simulation, model: Model, path: str, frames: Frames, place: Pose) -> Iterator[Part]:
+def _parts(simulation: Simulation, model: Model, path: str, frames: Frames, frame_pose: Pose) -> Iterator[Part]:
     """Yield the parts of a model.
 
-    `place` returns the pose of the model's frame in the world.
+    `context` returns the pose of the model's frame in the world.
     """
     for link in model.links:
         name = f"{path}{SEPARATOR}{link.name}"
-        yield Part(PartKind.LINK, name, path, partial(_relative_pose, place, partial(simulation.link_pose, name)))
+        yield Part(PartKind.LINK, name, path, partial(_relative_pose, frame_pose, partial(simulation.link_pose, name)))
         for kind, items in (
             (PartKind.VISUAL, link.visuals),
             (PartKind.COLLISION, link.collisions),
@@ -103,7 +103,7 @@ def _parts(simulation: Simulation, model: Model, path: str, frames: Frames, plac
         if not first_link:
             continue
         nested_pose = _pose_on_link(simulation, f"{name}{SEPARATOR}{first_link}", nested_frames.pose(first_link))
-        yield Part(PartKind.NESTED_MODEL, name, path, partial(_relative_pose, place, nested_pose))
+        yield Part(PartKind.NESTED_MODEL, name, path, partial(_relative_pose, frame_pose, nested_pose))
         yield from _parts(simulation, nested_model, name, nested_frames, nested_pose)
 
 

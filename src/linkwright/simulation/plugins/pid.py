@@ -28,7 +28,7 @@ class Pid:
     def __init__(self, gains: Gains) -> None:
         self._gains = gains
         self._integral = 0.0
-        self._before: float | None = None
+        self._previous_error: float | None = None
 
     def force(self, error: float, seconds: float) -> float:
         """Update the controller with an error, and return the force in N m (or N).
@@ -37,8 +37,8 @@ class Pid:
         """
         gains = self._gains
         self._integral = _clip(self._integral + gains.i * error * seconds, gains.i_min, gains.i_max)
-        change = 0.0 if self._before is None else (error - self._before) / seconds
-        self._before = error
+        change = 0.0 if self._previous_error is None else (error - self._previous_error) / seconds
+        self._previous_error = error
         force = gains.cmd_offset + gains.p * error + self._integral + gains.d * change
         return _clip(force, gains.cmd_min, gains.cmd_max)
 

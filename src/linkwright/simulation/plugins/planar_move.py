@@ -49,9 +49,9 @@ class PlanarDrive(SimulatedPlugin[P], Generic[P]):
         Raises:
             LinkwrightError: SIM160, the model is fixed to the world.
         """
-        if not self.simulation.moves_freely(self.place.path):
+        if not self.simulation.moves_freely(self.context.path):
             raise self.parameter_error(
-                phrase("plugin '{plugin}' cannot move a model that is fixed to the world", plugin=self.place.name)
+                phrase("plugin '{plugin}' cannot move a model that is fixed to the world", plugin=self.context.name)
             )
         self.simulation.keep_awake(self.first_link)
 
@@ -60,11 +60,11 @@ class PlanarDrive(SimulatedPlugin[P], Generic[P]):
 
         The vertical velocity and the roll and pitch rates remain unchanged.
         """
-        yaw = yaw_of(self.simulation.model_pose(self.place.path))
+        yaw = yaw_of(self.simulation.model_pose(self.context.path))
         linear, angular = self.simulation.link_velocity(self.first_link)
         world_velocity = (forward * cos(yaw) - left * sin(yaw), forward * sin(yaw) + left * cos(yaw), float(linear[2]))
         self.simulation.set_model_velocity(
-            self.place.path, world_velocity, (float(angular[0]), float(angular[1]), yaw_rate)
+            self.context.path, world_velocity, (float(angular[0]), float(angular[1]), yaw_rate)
         )
 
 
@@ -73,7 +73,7 @@ class PlanarMove(PlanarDrive[PlanarMoveParameters]):
 
     PARAMETERS = PlanarMoveParameters
     IGNORED = ("update_rate",)
-    CARRIED = ("_wanted",)
+    CARRIED = ("_command",)
 
     def start(self) -> None:
         """Subscribe to the commands, and create the odometry topics.
@@ -83,7 +83,7 @@ class PlanarMove(PlanarDrive[PlanarMoveParameters]):
         """
         parameters, node = self.parameters, self.node
         self.require_free_model()
-        self._wanted = (0.0, 0.0, 0.0)
+        self._command = (0.0, 0.0, 0.0)
         odometry = (
             node.publisher("nav_msgs/msg/Odometry", parameters.odometry_topic, 1) if parameters.publish_odom else None
         )
@@ -106,17 +106,17 @@ class PlanarMove(PlanarDrive[PlanarMoveParameters]):
             self.every(parameters.publish_rate, self._publish)
 
     def _on_command(self, twist: Any) -> None:
-        self._wanted = (float(twist.linear.x), float(twist.linear.y), float(twist.angular.z))
+        self._command = (float(twist.linear.x), float(twist.linear.y), float(twist.angular.z))
 
     def _stop_motion(self) -> bool:
-        old_command, self._wanted = self._wanted, (0.0, 0.0, 0.0)
-        return old_command != self._wanted
+        old_command, self._command = self._command, (0.0, 0.0, 0.0)
+        return old_command != self._command
 
     def _move(self) -> None:
-        self.hold(*self._wanted)
+        self.hold(*self._command)
 
     def _publish(self) -> None:
-        pose = self.simulation.model_pose(self.place.path)
+        pose = self.simulation.model_pose(self.context.path)
         self._topics.publish(
             self.stamp(), pose, *planar_velocity(pose, *self.simulation.link_velocity(self.first_link))
         )

@@ -132,7 +132,7 @@ class SimulatedPlugin(Generic[P]):
         PARAMETERS: the dataclass with its parameters.
         IGNORED: the names of parameters that have no effect here and give no warning.
         CARRIED: the names of the attributes that `resume` copies from the previous instance.
-        place: the elements that contain the plugin, and its name.
+        context: the elements that contain the plugin, and its name.
         node: creates the plugin's topics and services.
         parameters: the values of the parameters, an instance of `PARAMETERS`.
         simulation: the simulation in which the plugin runs.
@@ -143,8 +143,8 @@ class SimulatedPlugin(Generic[P]):
     IGNORED: ClassVar[Collection[str]] = ()
     CARRIED: ClassVar[tuple[str, ...]] = ()
 
-    def __init__(self, place: PluginContext, node: PluginNode, parameters: P, environment: Environment) -> None:
-        self.place = place
+    def __init__(self, context: PluginContext, node: PluginNode, parameters: P, environment: Environment) -> None:
+        self.context = context
         self.node = node
         self.parameters = parameters
         self.simulation = environment.simulation
@@ -164,22 +164,22 @@ class SimulatedPlugin(Generic[P]):
     def reset(self) -> None:
         """Restore the initial state, because simulated time restarts."""
 
-    def resume(self, before: SimulatedPlugin[P]) -> None:
+    def resume(self, previous: SimulatedPlugin[P]) -> None:
         """Adopt the state of the previous instance with the same parameters.
 
         The simulation calls this after `start` when it has replaced a model.
 
         Args:
-            before: the previous instance, which has ended.
+            previous: the previous instance, which has ended.
         """
         for name in self.CARRIED:
-            setattr(self, name, getattr(before, name))
+            setattr(self, name, getattr(previous, name))
 
-    def is_like(self, other: SimulatedPlugin[Any]) -> bool:
+    def is_same_plugin(self, other: SimulatedPlugin[Any]) -> bool:
         """Return whether another plugin has the same class, position in its model, and parameters."""
-        own_place, other_place = self.place, other.place
-        same_place = (own_place.path, own_place.name) == (other_place.path, other_place.name)
-        return type(self) is type(other) and same_place and bool(self.parameters == other.parameters)
+        own_context, other_context = self.context, other.context
+        is_same_position = (own_context.path, own_context.name) == (other_context.path, other_context.name)
+        return type(self) is type(other) and is_same_position and bool(self.parameters == other.parameters)
 
     def stop(self) -> None:
         """Clean up resources other than the node and the functions registered with `every`."""
@@ -197,8 +197,8 @@ class SimulatedPlugin(Generic[P]):
 
         Use this only in sensors and their plugins.
         """
-        assert self.place.sensor is not None
-        return self.place.sensor
+        assert self.context.sensor is not None
+        return self.context.sensor
 
     @property
     def random(self) -> np.random.Generator:
@@ -206,7 +206,7 @@ class SimulatedPlugin(Generic[P]):
 
         Store the generator, and get a new one in `reset`, which repeats the same numbers.
         """
-        owner = self.sensor.name if self.place.sensor is not None else f"{self.place.path}::{self.place.name}"
+        owner = self.sensor.name if self.context.sensor is not None else f"{self.context.path}::{self.context.name}"
         return self._environment.random(owner)
 
     def every(self, rate: float, function: Callable[[], None]) -> None:
@@ -240,7 +240,7 @@ class SimulatedPlugin(Generic[P]):
     @property
     def first_link(self) -> str:
         """The full name of the first link of the top-level model that contains the plugin."""
-        top_model, _, _ = self.place.path.partition(SEPARATOR)
+        top_model, _, _ = self.context.path.partition(SEPARATOR)
         return self.simulation.scene.models[top_model].structure.links[0].link.name
 
     def parameter_error(self, message: Phrase) -> LinkwrightError:
@@ -248,7 +248,7 @@ class SimulatedPlugin(Generic[P]):
 
         Parameters may contradict each other or the model.
         """
-        element = self.place.element
+        element = self.context.element
         if element is None:
             return LinkwrightError(Diagnostic("SIM160", message))
         return LinkwrightError(Diagnostic("SIM160", message, element.span(), source=element.source))
@@ -269,7 +269,7 @@ class SimulatedPlugin(Generic[P]):
         Raises:
             LinkwrightError: the error `code`, there is no such name, or several nested models have it.
         """
-        prefix = f"{self.place.path}{SEPARATOR}" if self.place.path else ""
+        prefix = f"{self.context.path}{SEPARATOR}" if self.context.path else ""
         model_names = [name for name in known_names if name.startswith(prefix)]
         for candidate in (f"{prefix}{name}", name):
             if candidate in model_names:
@@ -277,12 +277,14 @@ class SimulatedPlugin(Generic[P]):
         matches = [full_name for full_name in model_names if full_name.endswith(f"{SEPARATOR}{name}")]
         if len(matches) == 1:
             return matches[0]
-        element = self.place.element
+        element = self.context.element
         names = [item.removeprefix(prefix) for item in model_names]
         if code == "SIM133":
-            message = phrase("plugin '{plugin}': there is no link '{name}'", plugin=self.place.name, name=name)
+            message = phrase("plugin '{plugin}': there is no link '{name}'", plugin=self.context.name, name=name)
         else:
-            message = phrase("plugin '{plugin}': there is no movable joint '{name}'", plugin=self.place.name, name=name)
+            message = phrase(
+                "plugin '{plugin}': there is no movable joint '{name}'", plugin=self.context.name, name=name
+            )
         span, source = (element.span(), element.source) if element is not None else (None, None)
         raise LinkwrightError(Diagnostic(code, message, span, hint=did_you_mean(name, names), source=source))
 

@@ -45,7 +45,7 @@ class GzPoses(SimulatedPlugin[PoseParameters]):
 
     def start(self) -> None:
         """Find the parts to publish, and create the topics of moving and static parts."""
-        parameters, model, path = self.parameters, self.place.model, self.place.path
+        parameters, model, path = self.parameters, self.context.model, self.context.path
         if model is None:
             return
         selected_kinds = self._selected_kinds()
@@ -98,7 +98,7 @@ class GzPoses(SimulatedPlugin[PoseParameters]):
 
     def _links_with_joints(self, model: Model) -> set[str]:
         """Return the links of the model's movable joints, except the link with the model's frame."""
-        prefix = f"{self.place.path}{SEPARATOR}"
+        prefix = f"{self.context.path}{SEPARATOR}"
         moving = {
             link
             for name, scene_joint in self.simulation.scene.joints.items()

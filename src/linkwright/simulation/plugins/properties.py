@@ -19,7 +19,7 @@ from linkwright.messages import Vector3
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.sdf.poses import SEPARATOR
 from linkwright.sdf.worlds import physics_of
-from linkwright.simulation.plugins.entities import Entities, fill_response, numbers, pose_message
+from linkwright.simulation.plugins.entities import Entities, fill_response, pose_message, vector_components
 from linkwright.simulation.plugins.parameters import NoParameters
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
 from linkwright.simulation.scene.bodies import set_coefficient
@@ -38,8 +38,8 @@ class ClassicProperties(SimulatedPlugin[NoParameters]):
         self._entities = Entities(self.simulation)
         for name, callback in (
             ("GetModelProperties", self._get_model),
-            ("GetLinkProperties", self._link),
-            ("GetJointProperties", self._joint),
+            ("GetLinkProperties", self._get_link),
+            ("GetJointProperties", self._get_joint),
             ("SetLinkProperties", self._set_link),
             ("SetJointProperties", self._set_joint),
             ("GetPhysicsProperties", self._get_physics),
@@ -49,7 +49,7 @@ class ClassicProperties(SimulatedPlugin[NoParameters]):
             self.node.service(f"gazebo_msgs/srv/{name}", f"{verb}_{kind}_properties", callback)
 
     def _get_model(self, request: Any, response: Any) -> Any:
-        def read() -> str:
+        def get_properties() -> str:
             scene_model = self.simulation.scene.models[self._entities.model(request.model_name)]
             model, prefix = scene_model.model, f"{scene_model.name}{SEPARATOR}"
             response.canonical_link_name = prefix + (
@@ -62,10 +62,10 @@ class ClassicProperties(SimulatedPlugin[NoParameters]):
             response.is_static = model.static
             return "GetModelProperties: got properties"
 
-        return fill_response(response, read)
+        return fill_response(response, get_properties)
 
-    def _link(self, request: Any, response: Any) -> Any:
-        def read() -> str:
+    def _get_link(self, request: Any, response: Any) -> Any:
+        def get_properties() -> str:
             simulation = self.simulation
             index = simulation.body(self._entities.link(request.link_name))
             body = simulation.model.body(index)
@@ -76,10 +76,10 @@ class ClassicProperties(SimulatedPlugin[NoParameters]):
             response.ixx, response.iyy, response.izz = body.inertia.tolist()
             return "GetLinkProperties: got properties"
 
-        return fill_response(response, read)
+        return fill_response(response, get_properties)
 
-    def _joint(self, request: Any, response: Any) -> Any:
-        def read() -> str:
+    def _get_joint(self, request: Any, response: Any) -> Any:
+        def get_properties() -> str:
             simulation = self.simulation
             scene_joint = simulation.scene.joints[self._entities.joint(request.joint_name)]
             response.type = _JOINT_TYPES.get(scene_joint.joint.type, 0)
@@ -89,10 +89,10 @@ class ClassicProperties(SimulatedPlugin[NoParameters]):
                 response.damping = [float(simulation.model.joint(scene_joint.name).damping[0])]
             return "GetJointProperties: got properties"
 
-        return fill_response(response, read)
+        return fill_response(response, get_properties)
 
     def _set_link(self, request: Any, response: Any) -> Any:
-        def put() -> str:
+        def set_properties() -> str:
             link = self._entities.link(request.link_name)
             moments = (request.ixx, request.iyy, request.izz, request.ixy, request.ixz, request.iyz)
             if not (0.0 < request.mass < inf and _is_possible(*moments)):
@@ -101,18 +101,18 @@ class ClassicProperties(SimulatedPlugin[NoParameters]):
                         "SIM111",
                         phrase(
                             "this mass or inertia is not physically possible; give a positive mass and moments that "
-                            "fulfil the triangle inequality"
+                            "fulfill the triangle inequality"
                         ),
                     )
                 )
-            centre = numbers(request.com.position)
+            center = vector_components(request.com.position)
             body = self.simulation.scene.spec.body(link)
-            body.explicitinertial, body.mass, body.ipos = True, request.mass, list(centre)
+            body.explicitinertial, body.mass, body.ipos = True, request.mass, list(center)
             body.fullinertia, body.gravcomp = list(moments), 0.0 if request.gravity_mode else 1.0
-            self.simulation.set_altered()
+            self.simulation.mark_changed()
             return "SetLinkProperties: properties set"
 
-        return fill_response(response, put)
+        return fill_response(response, set_properties)
 
     def _set_joint(self, request: Any, response: Any) -> Any:
         """Set the damping and the limits of the first axis.
@@ -120,7 +120,7 @@ class ClassicProperties(SimulatedPlugin[NoParameters]):
         Other properties are specific to ODE and have no effect.
         """
 
-        def put() -> str:
+        def set_properties() -> str:
             self.simulation.refresh()
             scene_joint = self.simulation.scene.joints[self._entities.joint(request.joint_name)]
             config = request.ode_joint_config
@@ -138,21 +138,21 @@ class ClassicProperties(SimulatedPlugin[NoParameters]):
                 joint.limited = True
             if len(config.damping):
                 set_coefficient(joint, "damping", config.damping[0])
-            self.simulation.set_altered()
+            self.simulation.mark_changed()
             return "SetJointProperties: properties set"
 
-        return fill_response(response, put)
+        return fill_response(response, set_properties)
 
     def _get_physics(self, _: Any, response: Any) -> Any:
         self.simulation.refresh()
         response.time_step = self.simulation.step / NANOSECONDS_PER_SECOND
-        response.max_update_rate = physics_of(self.place.world).real_time_update_rate
+        response.max_update_rate = physics_of(self.context.world).real_time_update_rate
         response.gravity = Vector3(*np.asarray(self.simulation.model.opt.gravity).tolist())
         response.success, response.status_message = True, "GetPhysicsProperties: got properties"
         return response
 
     def _set_physics(self, request: Any, response: Any) -> Any:
-        self.simulation.set_gravity(numbers(request.gravity))
+        self.simulation.set_gravity(vector_components(request.gravity))
         response.success, response.status_message = True, "gravity is set; other settings have no effect"
         return response
 

@@ -58,7 +58,7 @@ class GzSceneBroadcaster(SimulatedPlugin[SceneParameters]):
 
     def start(self) -> None:
         """Create the topics for the poses of all entities and of moving entities."""
-        world_topic = f"/world/{self.place.world.name}"
+        world_topic = f"/world/{self.context.world.name}"
         self._revision = -1
         self._all = self._dynamic = _Entities((), ())
         all_output = self.node.publisher("tf2_msgs/msg/TFMessage", f"{world_topic}/pose/info")

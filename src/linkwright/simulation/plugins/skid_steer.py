@@ -64,6 +64,6 @@ class SkidSteer(ClassicDiffDrive):
     PARAMETERS = SkidSteerParameters
 
     def __init__(
-        self, place: PluginContext, node: PluginNode, parameters: SkidSteerParameters, environment: Environment
+        self, context: PluginContext, node: PluginNode, parameters: SkidSteerParameters, environment: Environment
     ) -> None:
-        super().__init__(place, node, parameters.as_diff_drive(), environment)
+        super().__init__(context, node, parameters.as_diff_drive(), environment)

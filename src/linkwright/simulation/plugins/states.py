@@ -63,11 +63,11 @@ class ClassicState(SimulatedPlugin[StateParameters]):
             response.status_message = "set_joint_positions: joint name and position list have different lengths"
             return response
 
-        def put() -> str:
+        def set_positions() -> str:
             model = self._entities.model(request.model_name)
             joints = [self._entities.joint(f"{model}{SEPARATOR}{name}") for name in request.joint_names]
             for joint, position in zip(joints, request.joint_positions, strict=True):
                 self.simulation.set_joint_position(joint, float(position))
             return "set_joint_positions: success"
 
-        return fill_response(response, put)
+        return fill_response(response, set_positions)

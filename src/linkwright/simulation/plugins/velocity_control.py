@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from linkwright.geometry.single import Vector3, rotate
-from linkwright.simulation.plugins.entities import numbers
+from linkwright.simulation.plugins.entities import vector_components
 from linkwright.simulation.plugins.planar_move import PlanarDrive
 
 
@@ -40,12 +40,12 @@ class GzVelocityControl(PlanarDrive[VelocityControlParameters]):
         """
         self.require_free_model()
         self.reset()
-        topic = self.parameters.topic or f"/model/{self.place.path}/cmd_vel"
+        topic = self.parameters.topic or f"/model/{self.context.path}/cmd_vel"
         commander = self.node.commander(self._stop_motion)
         self.node.subscribe(
             "geometry_msgs/msg/Twist",
             topic,
-            self._receive,
+            self._on_command,
             usual="/cmd_vel",
             commander=commander,
             stop_motion=self._stop_motion,
@@ -62,8 +62,8 @@ class GzVelocityControl(PlanarDrive[VelocityControlParameters]):
                 parameters.initial_angular or (0.0, 0.0, 0.0),
             )
 
-    def _receive(self, twist: Any) -> None:
-        self._command = (numbers(twist.linear), numbers(twist.angular))
+    def _on_command(self, twist: Any) -> None:
+        self._command = (vector_components(twist.linear), vector_components(twist.angular))
 
     def _stop_motion(self) -> bool:
         zero_velocity = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
@@ -73,6 +73,6 @@ class GzVelocityControl(PlanarDrive[VelocityControlParameters]):
     def _move(self) -> None:
         if self._command is None:
             return
-        orientation = self.simulation.model_pose(self.place.path)[3:]
+        orientation = self.simulation.model_pose(self.context.path)[3:]
         linear, angular = (rotate(orientation, velocity) for velocity in self._command)
-        self.simulation.set_model_velocity(self.place.path, linear, angular)
+        self.simulation.set_model_velocity(self.context.path, linear, angular)

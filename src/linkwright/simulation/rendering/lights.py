@@ -26,20 +26,20 @@ class PlacedLight:
         light: the parsed ``<light>``.
         position: the position of the light in the world in m, shape (3,).
         direction: the direction of the light in the world as a unit vector, shape (3,).
-        colour: red, green and blue from 0 to 1, scaled by the light's intensity, shape (3,).
+        color: red, green and blue from 0 to 1, scaled by the light's intensity, shape (3,).
     """
 
     light: Light
     position: Array
     direction: Array
-    colour: Array
+    color: Array
 
 
 def lights_of(simulation: Simulation, forwards: Array) -> list[PlacedLight]:
     """Return the lights of a world and its links at their current poses, or else a sun.
 
     The first light is a faint light in the viewing direction of the camera, `forwards`. It replaces indirect light:
-    without it, everything in the shade would have the same colour.
+    without it, everything in the shade would have the same color.
     """
     lights = [*_world_lights(simulation), *_link_lights(simulation)]
     if not lights:

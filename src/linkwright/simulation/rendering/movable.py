@@ -64,7 +64,7 @@ class MovableGeoms:
         self._is_resting: Any = np.zeros(count, dtype=bool)
         self._has_contained_camera: Any = np.zeros(count, dtype=bool)
 
-    def settle(self, origin: Array) -> bool:
+    def update_resting(self, origin: Array) -> bool:
         """Update `resting`, and return whether it has changed.
 
         Call this before each image is rendered, with the camera's position.

@@ -103,12 +103,12 @@ class OpenGlRenderer:
         self._update_context()
         self._enlarge_buffer(pinhole)
         self._update_scene(pinhole, pose)
-        colour, depth = self._draw_pixels(pinhole, channels)
+        color, depth = self._draw_pixels(pinhole, channels)
         geoms = self._draw_geoms(pinhole) if Channels.GEOMS in channels else None
         if optics.is_pinhole:
-            return RenderedImage(colour, depth, geoms)
+            return RenderedImage(color, depth, geoms)
         return RenderedImage(
-            None if colour is None else _resample_interpolated(colour, optics),
+            None if color is None else _resample_interpolated(color, optics),
             None if depth is None else _resample_nearest(depth, optics),
             None if geoms is None else _resample_nearest(geoms, optics),
         )
@@ -263,44 +263,44 @@ class OpenGlRenderer:
             )
             light.cutoff = float(np.degrees(cone)) if cone < np.pi / 2 else 180.0
             light.exponent = 0.0
-            light.diffuse[:] = placed_light.colour
+            light.diffuse[:] = placed_light.color
             light.specular[:] = description.specular[:3]
             light.ambient[:] = ambient
             ambient = np.zeros(3)
             light.headlight = light.castshadow = 0
 
     def _draw_pixels(self, pinhole: Optics, channels: Channels) -> tuple[Pixels | None, Pixels | None]:
-        if not channels & (Channels.COLOUR | Channels.DEPTH):
+        if not channels & (Channels.COLOR | Channels.DEPTH):
             return None, None
         rect = self._mujoco.MjrRect(0, 0, pinhole.width, pinhole.height)
-        colour: Pixels | None = None
-        if Channels.COLOUR in channels:
-            colour = np.empty((pinhole.height, pinhole.width, 3), np.uint8)
+        color: Pixels | None = None
+        if Channels.COLOR in channels:
+            color = np.empty((pinhole.height, pinhole.width, 3), np.uint8)
             self._mujoco.mjr_render(rect, self._scene, self._draw_context)
         else:
-            self._draw_without_colours(rect)
+            self._draw_without_colors(rect)
         depth_buffer = np.empty((pinhole.height, pinhole.width), np.float32)
-        self._mujoco.mjr_readPixels(colour, depth_buffer, rect, self._draw_context)
+        self._mujoco.mjr_readPixels(color, depth_buffer, rect, self._draw_context)
         is_background = depth_buffer <= 0
-        if colour is not None:
+        if color is not None:
             background = np.clip(np.array(self._simulation.world.scene.background[:3]), 0, 1) * 255
             for channel, shade in enumerate(np.round(background).astype(np.uint8)):
                 np.copyto(
-                    colour[:, :, channel], shade, where=is_background
+                    color[:, :, channel], shade, where=is_background
                 )  # a tenth of the time of copying all channels
-            colour = np.ascontiguousarray(colour[::-1])
+            color = np.ascontiguousarray(color[::-1])
         if Channels.DEPTH not in channels:
-            return colour, None
+            return color, None
         near, far = np.float32(pinhole.near), np.float32(pinhole.far)
         depth_buffer *= far - near
         depth_buffer += near
         distances = np.empty_like(depth_buffer)
         np.divide(far * near, depth_buffer, out=distances[::-1])
         np.copyto(distances, np.inf, where=is_background[::-1])
-        return colour, distances
+        return color, distances
 
-    def _draw_without_colours(self, rect: Any) -> None:
-        """Render into the depth buffer only, without lights or colours."""
+    def _draw_without_colors(self, rect: Any) -> None:
+        """Render into the depth buffer only, without lights or colors."""
         lights, self._scene.nlight = self._scene.nlight, 0
         self._functions.glColorMask(False, False, False, False)
         try:
@@ -317,9 +317,9 @@ class OpenGlRenderer:
             self._mujoco.mjr_render(rect, scene, self._draw_context)
         finally:
             scene.flags[flags.mjRND_SEGMENT] = scene.flags[flags.mjRND_IDCOLOR] = 0
-        colours = np.empty((pinhole.height, pinhole.width, 3), np.uint8)
-        self._mujoco.mjr_readPixels(colours, None, rect, self._draw_context)
-        segment_ids = colours[::-1].astype(np.int32) @ np.array([1, 1 << 8, 1 << 16], dtype=np.int32)
+        colors = np.empty((pinhole.height, pinhole.width, 3), np.uint8)
+        self._mujoco.mjr_readPixels(colors, None, rect, self._draw_context)
+        segment_ids = colors[::-1].astype(np.int32) @ np.array([1, 1 << 8, 1 << 16], dtype=np.int32)
         segments = [(geom.segid + 1, geom.objid) for geom in scene.geoms[: scene.ngeom] if geom.segid >= 0]
         geom_by_segment = np.full(max((number for number, _ in segments), default=0) + 1, -1, dtype=np.int32)
         for segment_id, geom in segments:
@@ -362,7 +362,7 @@ def _context_class(backend: str) -> Any:
 
 
 def _resample_nearest(pixels: Pixels, optics: Optics) -> Pixels:
-    """Return a pinhole image as seen through the lens, with nearest-neighbour interpolation."""
+    """Return a pinhole image as seen through the lens, with nearest-neighbor interpolation."""
     column, row = optics.sources
     column = np.clip(np.round(column).astype(int), 0, optics.pinhole.width - 1)
     row = np.clip(np.round(row).astype(int), 0, optics.pinhole.height - 1)
@@ -371,7 +371,7 @@ def _resample_nearest(pixels: Pixels, optics: Optics) -> Pixels:
 
 
 def _resample_interpolated(pixels: Pixels, optics: Optics) -> Pixels:
-    """Return a colour image as seen through the lens, with bilinear interpolation."""
+    """Return a color image as seen through the lens, with bilinear interpolation."""
     column = np.clip(optics.sources[0], 0, optics.pinhole.width - 1.001)
     row = np.clip(optics.sources[1], 0, optics.pinhole.height - 1.001)
     left, top = column.astype(int), row.astype(int)

@@ -183,7 +183,7 @@ class EmbreeCaster:
         self._cast_to_planes(hits, origin, rays)
         origins = rays * np.float32(near)
         origins += origin.astype(np.float32)
-        if self._movable_geoms.settle(origin):
+        if self._movable_geoms.update_resting(origin):
             self._build_static_tree()
         if self._static_tree is not None:
             self._static_tree.cast_into(hits, origins, rays, near)

@@ -18,7 +18,7 @@ from linkwright.simulation.rendering.renderer import Channels, RenderedImage, ax
 from linkwright.simulation.simulation import Simulation
 
 _DEFAULT_RGBA = (0.5, 0.5, 0.5, 1.0)
-"""MuJoCo's default colour, which a geom has if its material determines its colour."""
+"""MuJoCo's default color, which a geom has if its material determines its color."""
 
 
 class RayRenderer:
@@ -33,7 +33,7 @@ class RayRenderer:
         self.method = caster.method
         self._simulation = simulation
         self._caster = caster
-        self._colours: Any = None
+        self._colors: Any = None
         self._known_paints: tuple[Any, ...] = ()
         self._revision = -1
 
@@ -41,13 +41,13 @@ class RayRenderer:
         """Render the current view of a camera."""
         axes = axes_of(pose)
         origin, rays = np.array(pose[:3]), optics.directions(axes)
-        hits = self._caster.cast(View(optics, origin, axes, rays), normals=Channels.COLOUR in channels)
+        hits = self._caster.cast(View(optics, origin, axes, rays), normals=Channels.COLOR in channels)
         is_clipped = ~((hits.distances >= optics.near) & (hits.distances <= optics.far))
         np.copyto(hits.distances, np.inf, where=is_clipped)
         np.copyto(hits.geoms, -1, where=is_clipped)
         shape = optics.height, optics.width
         return RenderedImage(
-            self._shade(hits, origin, rays, axes[:, 2]).reshape(*shape, 3) if Channels.COLOUR in channels else None,
+            self._shade(hits, origin, rays, axes[:, 2]).reshape(*shape, 3) if Channels.COLOR in channels else None,
             hits.distances.reshape(shape) if Channels.DEPTH in channels else None,
             hits.geoms.reshape(shape) if Channels.GEOMS in channels else None,
         )
@@ -59,7 +59,7 @@ class RayRenderer:
         simulation = self._simulation
         paints = simulation.model.geom_rgba, simulation.model.geom_matid  # these vary with each image of a data set
         if self._revision != simulation.revision or not all(map(np.array_equal, paints, self._known_paints)):
-            self._colours = geom_colours(simulation.model)
+            self._colors = geom_colors(simulation.model)
             self._known_paints = tuple(paint.copy() for paint in paints)
             self._revision = simulation.revision
         scene = simulation.world.scene
@@ -68,18 +68,18 @@ class RayRenderer:
         light[:] = scene.ambient[:3]
         for placed_light in lights_of(simulation, forwards):
             received = _received_light(placed_light, hits, facing_signs, origin, rays)
-            for channel, strength in enumerate(placed_light.colour.astype(np.float32)):
+            for channel, strength in enumerate(placed_light.color.astype(np.float32)):
                 light[:, channel] += received * strength
-        light *= self._colours.take(hits.geoms, axis=0, mode="wrap")
+        light *= self._colors.take(hits.geoms, axis=0, mode="wrap")
         np.minimum(light, 1.0, out=light)
         light *= 255
         rendered = light.astype(np.uint8)
-        np.copyto(rendered, _background_colour(scene.background), where=(hits.geoms < 0)[:, None])
+        np.copyto(rendered, _background_color(scene.background), where=(hits.geoms < 0)[:, None])
         return rendered
 
 
-def _background_colour(colour: Sequence[float]) -> Any:
-    return np.round(np.clip(np.array(colour[:3]), 0, 1) * 255).astype(np.uint8)
+def _background_color(color: Sequence[float]) -> Any:
+    return np.round(np.clip(np.array(color[:3]), 0, 1) * 255).astype(np.uint8)
 
 
 def _received_light(placed_light: PlacedLight, hits: Hits, facing_signs: Any, origin: Array, rays: Any) -> Any:
@@ -107,25 +107,25 @@ def _received_light(placed_light: PlacedLight, hits: Hits, facing_signs: Any, or
     return fractions
 
 
-def geom_colours(model: Any) -> Any:
-    """Return the colours of all geoms, from 0 to 1, shape (geoms, 3), float32.
+def geom_colors(model: Any) -> Any:
+    """Return the colors of all geoms, from 0 to 1, shape (geoms, 3), float32.
 
-    The colour of a textured geom is multiplied by the mean colour of the texture.
+    The color of a textured geom is multiplied by the mean color of the texture.
     """
-    colours = np.array(model.geom_rgba[:, :3], dtype=np.float64)
+    colors = np.array(model.geom_rgba[:, :3], dtype=np.float64)
     for geom in np.nonzero(model.geom_matid >= 0)[0]:
         material = model.geom_matid[geom]
         if (model.geom_rgba[geom] == _DEFAULT_RGBA).all():
-            colours[geom] = model.mat_rgba[material, :3]
+            colors[geom] = model.mat_rgba[material, :3]
         for texture in np.atleast_1d(model.mat_texid[material]):
             if texture >= 0:
-                colours[geom] *= mean_colour(model, int(texture))
+                colors[geom] *= mean_color(model, int(texture))
                 break
-    return colours.astype(np.float32)
+    return colors.astype(np.float32)
 
 
-def mean_colour(model: Any, texture: int) -> Array:
-    """Return the mean colour of a texture in a MuJoCo model: red, green and blue from 0 to 1."""
+def mean_color(model: Any, texture: int) -> Array:
+    """Return the mean color of a texture in a MuJoCo model: red, green and blue from 0 to 1."""
     first, channels = model.tex_adr[texture], model.tex_nchannel[texture]
     count = model.tex_width[texture] * model.tex_height[texture] * channels
     mean: Array = model.tex_data[first : first + count].reshape(-1, channels).mean(axis=0) / 255

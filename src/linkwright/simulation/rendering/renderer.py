@@ -22,7 +22,7 @@ _IMAGE_AXES = np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
 class Channels(Flag):
     """The channels of a rendered image that a caller can request."""
 
-    COLOUR = auto()
+    COLOR = auto()
     DEPTH = auto()
     GEOMS = auto()
 
@@ -34,13 +34,13 @@ class RenderedImage:
     Channels that were not requested are None.
 
     Attributes:
-        colour: the red, green and blue of each pixel, shape (height, width, 3), uint8.
+        color: the red, green and blue of each pixel, shape (height, width, 3), uint8.
         depth: the distance along the optical axis in m, shape (height, width); inf if nothing is nearer than the far
             clip plane.
         geoms: the index of the visible geom in MuJoCo's model, shape (height, width); -1 for none.
     """
 
-    colour: Pixels | None
+    color: Pixels | None
     depth: Pixels | None
     geoms: Pixels | None
 

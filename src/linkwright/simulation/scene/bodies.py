@@ -43,9 +43,9 @@ _MIN_INERTIA = 1e-9
 _MIN_MOMENT = 1e-12
 """The minimum moment of inertia in kg m2, because MuJoCo treats moments below 1e-14 as zero."""
 _DEFAULT_INERTIAL = Inertial()
-_GREY: Color = (0.7, 0.7, 0.7, 1.0)
+_GRAY: Color = (0.7, 0.7, 0.7, 1.0)
 _WHITE: Color = (1.0, 1.0, 1.0, 1.0)
-"""The colour of a textured visual that has no colour."""
+"""The color of a textured visual that has no color."""
 _DEFAULT_DENSITY = 1000.0
 """The default density, in kg/m3."""
 
@@ -94,10 +94,10 @@ class BodyWriter:
         mass = inertial.mass
         if not (isfinite(mass) and mass >= _MIN_MASS):
             message = phrase(
-                "link '{name}' has a mass of {mass} kg, but is simulated with {least} kg",
+                "link '{name}' has a mass of {mass} kg, but is simulated with {minimum} kg",
                 name=link.name,
                 mass=mass,
-                least=_MIN_MASS,
+                minimum=_MIN_MASS,
             )
             self._warn("SIM110", message, inertial.element or link.element)
             mass = _MIN_MASS
@@ -186,7 +186,7 @@ class BodyWriter:
                         self._meshes.material_of(visual) if self._meshes.has_texture_coordinates(geom) else ""
                     )
                 if visual.material is not None or not geom.material:
-                    geom.rgba = _colour(visual, _WHITE if geom.material else _GREY)
+                    geom.rgba = _color(visual, _WHITE if geom.material else _GRAY)
 
     def add_collisions(self, body: Any, link: Link, frames: Frames, *, fixed: bool) -> None:
         """Add the collisions of a link as geoms, and record their friction."""
@@ -248,7 +248,7 @@ def _inertial_from_shapes(link: Link, frames: Frames) -> Inertial | None:
     return Inertial(total.mass, RawPose(Pose((x, y, z))), Inertia(ixx, iyy, izz, ixy, ixz, iyz))
 
 
-def _colour(visual: Visual, default: Color) -> list[float]:
+def _color(visual: Visual, default: Color) -> list[float]:
     material = visual.material
     red, green, blue, alpha = (material.diffuse if material is not None else None) or default
     return [min(max(value, 0.0), 1.0) for value in (red, green, blue, alpha * (1.0 - visual.transparency))]

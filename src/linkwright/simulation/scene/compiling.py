@@ -17,7 +17,7 @@ from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.scene.meshes import MeshLibrary
 from linkwright.simulation.scene.scene import Scene
 
-_MEMORY_THRESHOLD, MOST_LINKS = 1000, 10_000
+_MEMORY_THRESHOLD, MAX_LINKS = 1000, 10_000
 """The number of links above which MuJoCo gets memory for all pairs of links, and the maximum number of links."""
 _BYTES_PER_PAIR, _BASE_BYTES = 3, 1 << 28
 
@@ -29,7 +29,7 @@ def count_links(models: Iterable[Model]) -> int:
         LinkwrightError: SIM105, there are too many links.
     """
     count = sum(_count_model_links(model) for model in models)
-    if count > MOST_LINKS:
+    if count > MAX_LINKS:
         message = phrase("the world has {count} links, more than can be simulated", count=count)
         raise LinkwrightError(Diagnostic("SIM105", message, hint=too_many_links_hint()))
     return count
@@ -37,7 +37,7 @@ def count_links(models: Iterable[Model]) -> int:
 
 def too_many_links_hint() -> Phrase:
     """Return the hint for a world with too many links."""
-    return phrase("use at most {most} links; put shapes that never move into one link", most=MOST_LINKS)
+    return phrase("use at most {maximum} links; put shapes that never move into one link", maximum=MAX_LINKS)
 
 
 def _count_model_links(model: Model) -> int:
@@ -55,7 +55,7 @@ def compile_scene(scene: Scene, previous: tuple[Any, Any] | None = None) -> tupl
         LinkwrightError: SIM104, MuJoCo rejects the scene; SIM105, there are too many links.
     """
     mujoco = load_mujoco()
-    scene.settle()
+    scene.set_wheel_surfaces()
     count = count_links(model.model for model in scene.models.values())
     if count > _MEMORY_THRESHOLD:
         scene.spec.memory = _BYTES_PER_PAIR * count * count + _BASE_BYTES
@@ -70,7 +70,7 @@ def compile_scene(scene: Scene, previous: tuple[Any, Any] | None = None) -> tupl
     except (ValueError, mujoco.FatalError) as error:
         reason = str(error).removeprefix("Error: ").splitlines()[0]
         raise LinkwrightError(
-            Diagnostic("SIM104", phrase("MuJoCo cannot simulate this world: {said}", said=foreign(reason)))
+            Diagnostic("SIM104", phrase("MuJoCo cannot simulate this world: {reason}", reason=foreign(reason)))
         ) from None
 
 

@@ -21,16 +21,18 @@ class Connections:
     """The joints of a world that connect its models.
 
     Attributes:
-        hanging: joints that attach models to their parents, by the names of the child links.
+        attaching: joints that attach models to their parents, by the names of the child links.
         loops: joints between links that already have a parent.
         poses: the poses of the connected models' frames in the world.
     """
 
-    hanging: dict[str, PlacedJoint]
+    attaching: dict[str, PlacedJoint]
     loops: tuple[PlacedJoint, ...]
     poses: dict[str, Transform]
 
-    def of(self, structure: Structure, name: str, pose: Transform, earlier_models: Iterable[str]) -> Connected:
+    def connect(
+        self, structure: Structure, name: str, pose: Transform, earlier_models: Iterable[str]
+    ) -> ConnectedModel:
         """Return a model with the joints that connect it to earlier models.
 
         Args:
@@ -41,24 +43,27 @@ class Connections:
             earlier_models: the names of the earlier models.
         """
         if self.poses.get(name) != pose:
-            return Connected(structure, (), frozenset())
+            return ConnectedModel(structure, (), frozenset())
         available_models = {WORLD, name, *earlier_models}
-        joints = (*self.hanging.values(), *self.loops)
+        joints = (*self.attaching.values(), *self.loops)
         own_joints = [joint for joint in joints if name in _models(joint) and _models(joint) <= available_models]
         attaching_joints = {
             joint.child: joint
             for joint in own_joints
-            if self.hanging.get(joint.child) is joint and model_of(joint.child) == name
+            if self.attaching.get(joint.child) is joint and model_of(joint.child) == name
         }
-        links = tuple(TreeLink(held.link, attaching_joints.get(held.link.name, held.joint)) for held in structure.links)
+        links = tuple(
+            TreeLink(tree_link.link, attaching_joints.get(tree_link.link.name, tree_link.joint))
+            for tree_link in structure.links
+        )
         loops = tuple(joint for joint in own_joints if attaching_joints.get(joint.child) is not joint)
-        hangs_on = frozenset(model for joint in own_joints for model in _models(joint)) - {WORLD, name}
-        return Connected(replace(structure, links=links), loops, hangs_on)
+        attached_to = frozenset(model for joint in own_joints for model in _models(joint)) - {WORLD, name}
+        return ConnectedModel(replace(structure, links=links), loops, attached_to)
 
-    def in_order(self, names: Sequence[str]) -> list[str]:
+    def sort_by_attachment(self, names: Sequence[str]) -> list[str]:
         """Return model names in the given order, but each after the models that it is attached to."""
         parents: dict[str, list[str]] = {}
-        for joint in self.hanging.values():
+        for joint in self.attaching.values():
             parents.setdefault(model_of(joint.child), []).append(model_of(joint.parent))
         selected_names = set(names)
         ordered: dict[str, None] = {}
@@ -80,18 +85,18 @@ class Connections:
 
 
 @dataclass(frozen=True, slots=True)
-class Connected:
+class ConnectedModel:
     """A model with the joints that connect it to other models.
 
     Attributes:
         structure: the links, each attached by a joint of the model or of the world.
         loops: joints of the world that close loops with links of other models, or within the model.
-        hangs_on: the names of the models to which joints of the world connect this model.
+        attached_to: the names of the models to which joints of the world connect this model.
     """
 
     structure: Structure
     loops: tuple[PlacedJoint, ...]
-    hangs_on: frozenset[str]
+    attached_to: frozenset[str]
 
 
 def connections_of(world: World) -> Connections:
@@ -106,7 +111,7 @@ def connections_of(world: World) -> Connections:
     placed = _placed_joints(world, frames)
     models = {model for joint in placed for model in _models(joint)}
     poses: dict[str, Transform] = {}
-    held_links: dict[str, TreeLink] = {}
+    tree_links: dict[str, TreeLink] = {}
     for model in world.models:
         if model.name in models - poses.keys():
             try:
@@ -114,19 +119,19 @@ def connections_of(world: World) -> Connections:
             except FrameError:
                 continue  # The scene reports this model.
             poses[model.name] = frames.pose(model.name)
-            held_links |= {link.link.name: link for link in structure.links}
+            tree_links |= {link.link.name: link for link in structure.links}
 
-    joints_by_child = {name: each.joint for name, each in held_links.items() if each.joint is not None}
-    moving_links = {name for name, each in held_links.items() if not each.link.static}
-    free_links = {name for name in moving_links - joints_by_child.keys() if not held_links[name].link.link.kinematic}
-    hanging: dict[str, PlacedJoint] = {}
+    joints_by_child = {name: tree_link.joint for name, tree_link in tree_links.items() if tree_link.joint is not None}
+    moving_links = {name for name, tree_link in tree_links.items() if not tree_link.link.static}
+    free_links = {name for name in moving_links - joints_by_child.keys() if not tree_links[name].link.link.kinematic}
+    attaching: dict[str, PlacedJoint] = {}
     loops: list[PlacedJoint] = []
     for joint in placed:
-        known_links = held_links.keys() | {WORLD}
+        known_links = tree_links.keys() | {WORLD}
         if not {joint.parent, joint.child} <= known_links or not {joint.parent, joint.child} & moving_links:
             continue
-        can_hang = len(_models(joint)) > 1 and joint.joint.type != "gearbox"  # A model orders its own links.
-        candidates = (joint, _reversed_joint(joint)) if can_hang else ()
+        can_attach = len(_models(joint)) > 1 and joint.joint.type != "gearbox"  # A model orders its own links.
+        candidates = (joint, _reversed_joint(joint)) if can_attach else ()
         suitable_joints = (
             candidate
             for candidate in candidates
@@ -137,8 +142,8 @@ def connections_of(world: World) -> Connections:
             loops.append(joint)
         else:
             free_links.discard(attaching_joint.child)
-            hanging[attaching_joint.child] = joints_by_child[attaching_joint.child] = attaching_joint
-    return Connections(hanging, tuple(loops), poses)
+            attaching[attaching_joint.child] = joints_by_child[attaching_joint.child] = attaching_joint
+    return Connections(attaching, tuple(loops), poses)
 
 
 def model_of(link: str) -> str:

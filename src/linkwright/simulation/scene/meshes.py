@@ -28,7 +28,7 @@ from linkwright.xmltree import Element
 
 _MAX_PIECES = 300
 """The maximum number of convex pieces of a mesh. Each piece costs time in every step."""
-_MOST_TRIANGLES = 1_000_000
+_MAX_TRIANGLES = 1_000_000
 """The maximum number of triangles. Larger meshes need gigabytes without improving contacts or images."""
 _MAX_HULL_VERTICES = 64
 """The maximum number of vertices of a convex hull."""
@@ -260,8 +260,8 @@ class MeshLibrary:
         selected = [part for part in parts if submesh.name in part.names]
         if submesh.center and selected:
             positions = np.concatenate([part.triangles.positions for part in selected])
-            centre = (positions.min(axis=0) + positions.max(axis=0)) / 2
-            selected = [part.moved(-centre) for part in selected]
+            center = (positions.min(axis=0) + positions.max(axis=0)) / 2
+            selected = [part.moved(-center) for part in selected]
         return selected
 
     def _add_hull(self, corners: Array) -> str:
@@ -344,10 +344,10 @@ def _check_triangle_count(path: Path, count: int) -> None:
     """Raise an error if a mesh has too many triangles.
 
     Raises:
-        LinkwrightError: SIM115, the mesh has more than `_MOST_TRIANGLES` triangles.
+        LinkwrightError: SIM115, the mesh has more than `_MAX_TRIANGLES` triangles.
     """
-    if count > _MOST_TRIANGLES:
-        values = {"path": display_path(path), "count": count, "most": _MOST_TRIANGLES}
+    if count > _MAX_TRIANGLES:
+        values = {"path": display_path(path), "count": count, "most": _MAX_TRIANGLES}
         message = phrase("mesh '{path}' has {count} triangles, but the maximum is {most}", **values)
         hint = phrase("simplify the mesh, or use a simple shape for the collision")
         raise LinkwrightError(Diagnostic("SIM115", message, hint=hint))

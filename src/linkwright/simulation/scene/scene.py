@@ -19,7 +19,7 @@ from linkwright.sdf.poses import SEPARATOR, WORLD
 from linkwright.sdf.worlds import World, gravity_of, physics_of
 from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.scene.bodies import SECOND_AXIS, BodyWriter, hinge_anchors
-from linkwright.simulation.scene.connections import Connected, connections_of, model_of
+from linkwright.simulation.scene.connections import ConnectedModel, connections_of, model_of
 from linkwright.simulation.scene.couplings import gearbox_coupling, screw_coupling
 from linkwright.simulation.scene.figures import add_figure, figures_of
 from linkwright.simulation.scene.meshes import MeshLibrary, modification_time
@@ -61,7 +61,7 @@ class SceneModel:
         parts: the elements of the specification to delete with the model, in the order in which they were added: root
             bodies, constraints, contact exclusions and actuators.
         files: the modification times of the model's mesh files when the model was added, in ns since the epoch.
-        hangs_on: the names of the earlier models to which joints of the world connect the model.
+        attached_to: the names of the earlier models to which joints of the world connect the model.
     """
 
     name: str
@@ -70,7 +70,7 @@ class SceneModel:
     structure: Structure
     parts: list[Any] = field(default_factory=list)
     files: dict[Path, int] = field(default_factory=dict)
-    hangs_on: frozenset[str] = frozenset()
+    attached_to: frozenset[str] = frozenset()
 
     @property
     def is_outdated(self) -> bool:
@@ -131,7 +131,7 @@ class Scene:
         for model in self._sort_models(world.models):
             if model.name in exclusion_reasons:
                 message = phrase(
-                    "model '{name}' is left out: {why}", name=model.name, why=exclusion_reasons[model.name]
+                    "model '{name}' is left out: {reason}", name=model.name, reason=exclusion_reasons[model.name]
                 )
                 self._warn("SIM117", message, model.element)
             elif model.name not in self.models:  # `check` reports duplicate names
@@ -143,12 +143,14 @@ class Scene:
     def _sort_models(self, models: Iterable[Model]) -> list[Model]:
         """Return models in an order in which each follows the models to which it is attached."""
         models = list(models)
-        positions = {name: index for index, name in enumerate(self.in_order([model.name for model in models]))}
+        positions = {
+            name: index for index, name in enumerate(self.sort_by_attachment([model.name for model in models]))
+        }
         return sorted(models, key=lambda model: positions[model.name])
 
-    def in_order(self, names: Sequence[str]) -> list[str]:
+    def sort_by_attachment(self, names: Sequence[str]) -> list[str]:
         """Return model names in an order in which each follows the models it is attached to."""
-        return self._connections.in_order(names)
+        return self._connections.sort_by_attachment(names)
 
     def step_of(self, world: World) -> float:
         """Return the time step of a world in s.
@@ -225,15 +227,15 @@ class Scene:
         """
         if name in self.models:
             raise LinkwrightError(Diagnostic("SIM102", phrase("a model '{name}' already exists", name=name)))
-        connected = self._connections.of(structure_of(model, name, pose), name, pose, self.models)
+        connected = self._connections.connect(structure_of(model, name, pose), name, pose, self.models)
         structure = connected.structure
-        scene_model = self.models[name] = SceneModel(name, model, pose, structure, hangs_on=connected.hangs_on)
+        scene_model = self.models[name] = SceneModel(name, model, pose, structure, attached_to=connected.attached_to)
         poses = {
-            held.link.name: held.link.pose
-            for model_name in (name, *connected.hangs_on)
-            for held in self.models[model_name].structure.links
+            tree_link.link.name: tree_link.link.pose
+            for model_name in (name, *connected.attached_to)
+            for tree_link in self.models[model_name].structure.links
         }
-        own_links = {held.link.name for held in structure.links}
+        own_links = {tree_link.link.name for tree_link in structure.links}
         self._meshes.used.clear()
         for tree_link in structure.links:
             body = self._add_link(tree_link, poses)
@@ -245,16 +247,16 @@ class Scene:
             if tree_link.joint is not None and tree_link.joint.name in self.joints:
                 scene_model.parts += screw_coupling(self.spec, tree_link.joint)
         for joint in (*structure.loops, *connected.loops):
-            scene_model.parts += self._closed(joint, poses)
+            scene_model.parts += self._loop_constraints(joint, poses)
             if joint.joint.type == "gearbox":
                 scene_model.parts += gearbox_coupling(
-                    self.spec, joint, self._movable_joints((name, *connected.hangs_on))
+                    self.spec, joint, self._movable_joints((name, *connected.attached_to))
                 )
         scene_model.parts += self._self_collision_exclusions(structure)
-        scene_model.parts += self._neighbour_exclusions(connected)
+        scene_model.parts += self._neighbor_exclusions(connected)
         return scene_model
 
-    def place(self, name: str, pose: Transform) -> None:
+    def set_initial_pose(self, name: str, pose: Transform) -> None:
         """Set the initial pose of a model.
 
         Args:
@@ -301,7 +303,7 @@ class Scene:
         """
         attached = {name}
         for model in self.models.values():  # Attached models are added later.
-            if model.hangs_on & attached:
+            if model.attached_to & attached:
                 attached.add(model.name)
         return [model for model in self.models if model in attached - {name}]
 
@@ -320,7 +322,7 @@ class Scene:
         """
         actuator = self._add_actuator(joint, limit)
         actuator.set_to_velocity(kv=gain)
-        self.let_roll(joint, min(limit / _MAX_SPEED_CHANGE, gain))
+        self.enable_rolling(joint, min(limit / _MAX_SPEED_CHANGE, gain))
         return str(actuator.name)
 
     def speed_limit(self, joint: str) -> float:
@@ -328,8 +330,8 @@ class Scene:
         limit = self.joints[joint].axes[0][0].limit.velocity if joint in self.joints else inf
         return limit if limit > 0.0 else inf
 
-    def let_roll(self, joint: str, rotor: float = 0.0) -> None:
-        """Make the wheel on a joint roll without slipping, as soon as `settle` is called.
+    def enable_rolling(self, joint: str, rotor: float = 0.0) -> None:
+        """Make the wheel on a joint roll without slipping, as soon as `set_wheel_surfaces` is called.
 
         Args:
             joint: the name of the joint.
@@ -340,7 +342,7 @@ class Scene:
         rotors = self._rotor_inertias.setdefault(model, {})
         rotors[joint] = max(rotor, rotors.get(joint, 0.0))
 
-    def let_slide(self, joint: str) -> None:
+    def enable_sliding(self, joint: str) -> None:
         """Make the wheel on a joint slide in all directions, as if it had rollers.
 
         The motor of the wheel then has no grip.
@@ -383,7 +385,9 @@ class Scene:
         equality.data[:10] = [0.0, 0.0, 0.0, x, y, z, qw, qx, qy, qz]
         models = {model_of(parent), model_of(child)}
         if len(models) > 1:
-            links_by_model = ([held.link for held in self.models[model].structure.links] for model in sorted(models))
+            links_by_model = (
+                [tree_link.link for tree_link in self.models[model].structure.links] for model in sorted(models)
+            )
             colliding_links = (
                 [link.name for link in model_links if link.link.collisions] for model_links in links_by_model
             )
@@ -426,7 +430,7 @@ class Scene:
         if root is not None:
             root.sleep = sleep_policy
 
-    def settle(self) -> None:
+    def set_wheel_surfaces(self) -> None:
         """Set the surfaces of the wheels and casters of models with new motors.
 
         Call this after adding motors.
@@ -491,7 +495,7 @@ class Scene:
             equality.data[:5] = [offset, axis.mimic.multiplier, 0.0, 0.0, 0.0]
             yield equality
 
-    def _closed(self, joint: PlacedJoint, poses: dict[str, Transform]) -> Iterator[Any]:
+    def _loop_constraints(self, joint: PlacedJoint, poses: dict[str, Transform]) -> Iterator[Any]:
         """Add and yield the equality constraints of a joint that closes a loop.
 
         A joint whose type cannot close a loop is reported.
@@ -526,7 +530,11 @@ class Scene:
 
         A pair of links may collide only if both have ``<self_collide>``.
         """
-        colliding_links = [held.link for held in structure.links if held.link.link.collisions and not held.link.static]
+        colliding_links = [
+            tree_link.link
+            for tree_link in structure.links
+            if tree_link.link.link.collisions and not tree_link.link.static
+        ]
         for first, second in combinations(colliding_links, 2):
             if not (
                 _self_collides(first.link.self_collide, first.model)
@@ -534,10 +542,10 @@ class Scene:
             ):
                 yield self.spec.add_exclude(bodyname1=first.name, bodyname2=second.name)
 
-    def _neighbour_exclusions(self, connected: Connected) -> Iterator[Any]:
+    def _neighbor_exclusions(self, connected: ConnectedModel) -> Iterator[Any]:
         """Add and yield contact exclusions for pairs of links that joints of the world connect."""
-        own_links = {held.link.name for held in connected.structure.links}
-        parent_joints = (held.joint for held in connected.structure.links if held.joint is not None)
+        own_links = {tree_link.link.name for tree_link in connected.structure.links}
+        parent_joints = (tree_link.joint for tree_link in connected.structure.links if tree_link.joint is not None)
         joints = (*(joint for joint in parent_joints if joint.parent not in own_links), *connected.loops)
         for first, second in {tuple(sorted((joint.parent, joint.child))): None for joint in joints}:
             if WORLD not in (first, second):

@@ -30,7 +30,7 @@ _SIDES = (
     ((0, 0, 1), (0, -1, 0), (1, 0, 0)),
     ((0, 0, -1), (0, -1, 0), (-1, 0, 0)),
 )
-"""The normal of each side of a box, and the directions from its centre to the right and upper edges of the image."""
+"""The normal of each side of a box, and the directions from its center to the right and upper edges of the image."""
 
 
 _MIN_AREA = 1e-15
@@ -72,13 +72,13 @@ def _rectangle_mesh(side: Array, count: int) -> Triangles:
     """Return a rectangle as a mesh.
 
     Args:
-        side: the position of the centre, and the vectors from there to the right and upper edges, shape (3, 3).
+        side: the position of the center, and the vectors from there to the right and upper edges, shape (3, 3).
         count: the number of squares into which the rectangle is divided in each direction.
     """
     fractions = np.linspace(0.0, 1.0, count + 1)
     down, right = (array.reshape(-1, 1) for array in np.meshgrid(fractions, fractions, indexing="ij"))
-    centre, to_right, upwards = side
-    positions = centre + (2 * right - 1) * to_right + (1 - 2 * down) * upwards
+    center, to_right, upwards = side
+    positions = center + (2 * right - 1) * to_right + (1 - 2 * down) * upwards
     return _grid_mesh(positions, np.hstack([right, down]), count)
 
 

@@ -78,7 +78,7 @@ class Globe:
 
 
 def _from_geodetic(latitude: float, longitude: float, altitude: float) -> Array:
-    """Return a position in earth-centred coordinates, in m.
+    """Return a position in earth-centered coordinates, in m.
 
     Latitude and longitude are in rad.
     """
@@ -125,7 +125,7 @@ class NavsatSensor:
         self,
         mount: Mount,
         navsat: Navsat | None,
-        place: SphericalCoordinates | None,
+        coordinates: SphericalCoordinates | None,
         generator: np.random.Generator,
     ) -> None:
         settings = navsat or Navsat()
@@ -134,7 +134,7 @@ class NavsatSensor:
         horizontal_noise, vertical_noise = settings.horizontal_velocity, settings.vertical_velocity
         self.velocity_noise = VectorNoise(NoiseXyz(horizontal_noise, horizontal_noise, vertical_noise), generator)
         self._mount = mount
-        self._globe = Globe(place)
+        self._globe = Globe(coordinates)
 
     def measure(self) -> Fix:
         """Return the current position and velocity.

@@ -40,7 +40,9 @@ class ForceTorqueSensor:
         self._torque_noise = VectorNoise(self._settings.torque, generator)
         self._joint = simulation.scene.joints[joint]
         structure = simulation.scene.models[joint.partition("::")[0]].structure
-        child_pose = next(held.link.pose for held in structure.links if held.link.name == self._joint.child)
+        child_pose = next(
+            tree_link.link.pose for tree_link in structure.links if tree_link.link.name == self._joint.child
+        )
         self._joint_in_child = compose(invert(child_pose), self._joint.pose)
         self._offset = offset
 

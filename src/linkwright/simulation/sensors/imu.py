@@ -81,6 +81,6 @@ class ImuSensor:
         angular, acceleration = self._mount.inertial_motion()
         return Inertial(
             quaternion_multiply(quaternion_inverse(self._reference), orientation),
-            self.angular_velocity_noise.on(rotate(to_sensor, angular), period),
-            self.acceleration_noise.on(rotate(to_sensor, acceleration), period),
+            self.angular_velocity_noise.apply_to_tuple(rotate(to_sensor, angular), period),
+            self.acceleration_noise.apply_to_tuple(rotate(to_sensor, acceleration), period),
         )

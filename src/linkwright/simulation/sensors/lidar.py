@@ -94,7 +94,7 @@ class LidarSensor:
         intensities = self._retro.array()[hit_geoms]
         is_too_far = (ranges >= self.range_max) | (hit_geoms < 0)
         is_too_near = (ranges <= self.range_min) & ~is_too_far
-        if not self._noise.silent:
+        if not self._noise.is_silent:
             ranges = np.clip(self._noise.apply(ranges), self.range_min, self.range_max)
         ranges[is_too_far], ranges[is_too_near] = np.inf, -np.inf
         intensities[is_too_far] = 0.0

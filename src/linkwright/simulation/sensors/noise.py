@@ -40,12 +40,12 @@ class NoiseSource:
         return 0.0 if self._noise.type == "none" else self._noise.stddev**2
 
     @property
-    def silent(self) -> bool:
+    def is_silent(self) -> bool:
         """Whether the noise is of type ``none``."""
         return self._noise.type == "none"
 
     @property
-    def white(self) -> bool:
+    def is_white(self) -> bool:
         """Whether the noise is Gaussian with a constant bias and without quantization."""
         noise = self._noise
         return noise.type == "gaussian" and not noise.dynamic_bias_stddev and noise.stddev > 0
@@ -53,7 +53,7 @@ class NoiseSource:
     @property
     def offset(self) -> float:
         """The constant offset of all values: the sum of the bias and the mean."""
-        return 0.0 if self.silent else float(self._bias + self._noise.mean)
+        return 0.0 if self.is_silent else float(self._bias + self._noise.mean)
 
     def apply(self, values: Array, period: float = 0.0) -> Array:
         """Return values with noise added.
@@ -63,7 +63,7 @@ class NoiseSource:
             period: the time in s since the last call, during which the bias drifts; 0 for no drift.
         """
         noise = self._noise
-        if self.silent:
+        if self.is_silent:
             return values
         if noise.dynamic_bias_stddev > 0 and noise.dynamic_bias_correlation_time > 0 and period > 0:
             self._drift_bias(period)
@@ -95,8 +95,8 @@ class VectorNoise:
         self.covariance: Array = np.diag(self.variances).ravel()
         """The covariance matrix, row by row, shape (9,)."""
         self._generator = generator
-        self._is_white = all(source.white for source in self._sources)
-        self._is_silent = all(source.silent for source in self._sources)
+        self._is_white = all(source.is_white for source in self._sources)
+        self._is_silent = all(source.is_silent for source in self._sources)
         self._offsets = [source.offset for source in self._sources]
         self._deviations: list[float] = np.sqrt(self.variances).tolist()
         self._samples: list[list[float]] = []
@@ -104,9 +104,9 @@ class VectorNoise:
     def apply(self, vector: Array, period: float = 0.0) -> Array:
         """Return a vector, shape (3,), with noise added."""
         x, y, z = vector.tolist()
-        return np.array(self.on((x, y, z), period))
+        return np.array(self.apply_to_tuple((x, y, z), period))
 
-    def on(self, vector: Vector3, period: float = 0.0) -> Vector3:
+    def apply_to_tuple(self, vector: Vector3, period: float = 0.0) -> Vector3:
         """Return a vector, given as a tuple, with noise added.
 
         For three numbers, computing with plain floats is faster than computing with arrays.
@@ -124,7 +124,7 @@ class VectorNoise:
             (i, j, k), (u, v, w) = self._offsets, self._deviations
             return x + (i + u * a), y + (j + v * b), z + (k + w * c)
         x, y, z = (
-            value if source.silent else float(source.apply(np.array(value), period))
+            value if source.is_silent else float(source.apply(np.array(value), period))
             for value, source in zip(vector, self._sources, strict=True)
         )
         return x, y, z

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, foreign, phrase
 from linkwright.geometry.single import Transform
-from linkwright.sdf.comparison import alike
+from linkwright.sdf.comparison import have_equal_content
 from linkwright.sdf.frames import FrameError, Frames
 from linkwright.sdf.models import Model
 from linkwright.sdf.poses import AT_ORIGIN
@@ -47,13 +47,13 @@ class Changes:
     Attributes:
         removed_names: the names of the models to remove.
         moved: the new poses in the world of the models that differ only in their pose, by name.
-        renewed: the models that replace running models with the same names.
+        replaced: the models that replace running models with the same names.
         added: the models to add.
     """
 
     removed_names: tuple[str, ...]
     moved: dict[str, Transform]
-    renewed: tuple[AddedModel, ...]
+    replaced: tuple[AddedModel, ...]
     added: tuple[AddedModel, ...]
 
     def with_all_replaced(self, running: Mapping[str, SceneModel], namespaces: Mapping[str, str]) -> Changes:
@@ -61,27 +61,29 @@ class Changes:
 
         The replacements are at their current or new poses.
         """
-        changed_names = {*self.removed_names, *(change.name for change in self.renewed)}
+        changed_names = {*self.removed_names, *(change.name for change in self.replaced)}
         poses = {name: self.moved.get(name, model.pose) for name, model in running.items() if name not in changed_names}
         replacements = (
             AddedModel(running[name].model, name, pose, namespaces.get(name, ""), keeps_motion=name not in self.moved)
             for name, pose in poses.items()
         )
-        return replace(self, moved={}, renewed=(*self.renewed, *replacements))
+        return replace(self, moved={}, replaced=(*self.replaced, *replacements))
 
     def with_connected_replaced(self, running: Mapping[str, SceneModel], namespaces: Mapping[str, str]) -> Changes:
         """Return these changes with moved models replaced if joints connect them to other models.
 
         The replacements are at the new poses.
         """
-        connected = {name for model in running.values() if model.hangs_on for name in (model.name, *model.hangs_on)}
+        connected = {
+            name for model in running.values() if model.attached_to for name in (model.name, *model.attached_to)
+        }
         connected_poses = {name: pose for name, pose in self.moved.items() if name in connected}
         moved = {name: pose for name, pose in self.moved.items() if name not in connected}
         replacements = (
             AddedModel(running[name].model, name, pose, namespaces.get(name, ""))
             for name, pose in connected_poses.items()
         )
-        return replace(self, moved=moved, renewed=(*self.renewed, *replacements))
+        return replace(self, moved=moved, replaced=(*self.replaced, *replacements))
 
 
 def changes_to(world: World, running: Mapping[str, SceneModel], world_models: Collection[str]) -> Changes:
@@ -97,12 +99,12 @@ def changes_to(world: World, running: Mapping[str, SceneModel], world_models: Co
     """
     frames = Frames(world)
     moved: dict[str, Transform] = {}
-    renewed: list[AddedModel] = []
-    new: list[AddedModel] = []
+    replaced: list[AddedModel] = []
+    added: list[AddedModel] = []
     names: set[str] = set()
     for model in world.models:
         if model.name in names:
-            continue  # `check` reports duplicate names.
+            continue  # `check_models` reports duplicate names.
         names.add(model.name)
         try:
             pose = frames.pose(model.name)
@@ -110,21 +112,23 @@ def changes_to(world: World, running: Mapping[str, SceneModel], world_models: Co
             raise _simulation_error(model.name, error) from error
         running_model = running.get(model.name)
         if running_model is None:
-            new.append(AddedModel(model, model.name, pose))
+            added.append(AddedModel(model, model.name, pose))
         elif model.name not in world_models:
             span = None if model.element is None else model.element.span()
             message = phrase("a model '{name}' already exists", name=model.name)
             hint = phrase("that model was added to the running simulation; delete it there, or rename this model")
             raise LinkwrightError(Diagnostic("SIM102", message, span, hint=hint))
-        elif running_model.is_outdated or not alike(_without_pose(running_model.model), _without_pose(model)):
-            renewed.append(AddedModel(model, model.name, pose, keeps_motion=pose == running_model.pose))
+        elif running_model.is_outdated or not have_equal_content(
+            _without_pose(running_model.model), _without_pose(model)
+        ):
+            replaced.append(AddedModel(model, model.name, pose, keeps_motion=pose == running_model.pose))
         elif pose != running_model.pose:
             moved[model.name] = pose
-    gone = tuple(name for name in running if name in world_models and name not in names)
-    return Changes(gone, moved, tuple(renewed), tuple(new))
+    removed_names = tuple(name for name in running if name in world_models and name not in names)
+    return Changes(removed_names, moved, tuple(replaced), tuple(added))
 
 
-def check(
+def check_models(
     world: World, simulation: Simulation, added: Sequence[AddedModel], finder: ResourceFinder
 ) -> list[Diagnostic]:
     """Check that a running simulation can add models, by compiling them separately.
@@ -143,7 +147,7 @@ def check(
     """
     models = {model.name: model.model for model in simulation.scene.models.values()}
     count_links((models | {change.name: change.model for change in added}).values())
-    trial_simulation = simulation.separate_simulation(replace(world, models=(), states=()), finder)
+    trial_simulation = simulation.create_separate_simulation(replace(world, models=(), states=()), finder)
     add_models(trial_simulation, added)
     return trial_simulation.scene.diagnostics
 
@@ -158,10 +162,10 @@ def add_models(simulation: Simulation, added: Sequence[AddedModel]) -> None:
     attempted_names: list[str] = []
     by_name = {change.name: change for change in added}
     try:
-        for name in simulation.scene.in_order(list(by_name)):
-            each = by_name[name]
+        for name in simulation.scene.sort_by_attachment(list(by_name)):
+            added_model = by_name[name]
             attempted_names.append(name)
-            simulation.spawn(each.model, each.name, each.pose)
+            simulation.spawn(added_model.model, added_model.name, added_model.pose)
         simulation.refresh()
     except (FrameError, ValueError, RuntimeError, LinkwrightError) as error:
         for name in reversed(attempted_names):
@@ -170,7 +174,7 @@ def add_models(simulation: Simulation, added: Sequence[AddedModel]) -> None:
         raise _simulation_error(attempted_names[-1], error) from error
 
 
-def surroundings(world: World) -> tuple[object, ...]:
+def properties_used_by_plugins(world: World) -> tuple[object, ...]:
     """Return the properties of a world on which plugins of models depend.
 
     The server compares these properties with those of a world that replaces this one.

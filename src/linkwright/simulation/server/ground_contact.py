@@ -11,7 +11,7 @@ from linkwright.diagnostics import Diagnostic, Severity, phrase
 from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.simulation import Simulation
 
-_MIN_DEPTH, _MOST = 0.002, 0.3
+_MIN_DEPTH, _MAX_DEPTH = 0.002, 0.3
 """The depths in m between which a model is lifted. Smaller depths are harmless, and greater depths may be intended."""
 _MIN_UPWARD_COMPONENT = 0.7
 """The minimum vertical component of a contact's normal, so that a wall does not lift a model that it contains."""
@@ -27,12 +27,12 @@ def lift_onto_ground(simulation: Simulation, name: str) -> None:
     """
     if not simulation.free_links(name):
         return
-    height = _depth(simulation, name)
-    if not _MIN_DEPTH < height < _MOST:
+    height = _penetration_depth(simulation, name)
+    if not _MIN_DEPTH < height < _MAX_DEPTH:
         return
     x, y, z, *rotation = simulation.model_pose(name)
     qx, qy, qz, qw = rotation
-    simulation.place({name: (x, y, z + height, qx, qy, qz, qw)})
+    simulation.set_initial_poses({name: (x, y, z + height, qx, qy, qz, qw)})
 
 
 def collision_warnings(simulation: Simulation, name: str) -> list[Diagnostic]:
@@ -57,14 +57,14 @@ def collision_warnings(simulation: Simulation, name: str) -> list[Diagnostic]:
     return [Diagnostic("SIM143", message, span, severity=Severity.WARNING, hint=hint, source=source)]
 
 
-def _depth(simulation: Simulation, name: str) -> float:
+def _penetration_depth(simulation: Simulation, name: str) -> float:
     """Return the height in m by which a model must be lifted to leave the ground.
 
     The height is 0 if the model is not inside the ground.
     """
     simulation.refresh()
     model, data = simulation.model, simulation.data
-    own_bodies = {simulation.body(held.link.name) for held in simulation.scene.models[name].structure.links}
+    own_bodies = {simulation.body(tree_link.link.name) for tree_link in simulation.scene.models[name].structure.links}
     load_mujoco().mj_collision(model, data)
     height = 0.0
     for contact in data.contact:

@@ -66,7 +66,7 @@ class WorldLoader:
         except LinkwrightError:
             return True
 
-    def load(self, uri: str, text: str = "", *, refused: Sequence[str] = ()) -> None:
+    def load(self, uri: str, text: str = "", *, blocking_codes: Sequence[str] = ()) -> None:
         """Replace the running world with the world in a file or text.
 
         Findings that the running world also has do not prevent the replacement.
@@ -74,7 +74,7 @@ class WorldLoader:
         Args:
             uri: the path or address of a file, or the name of a world; empty for a text without a file.
             text: the text of the world, which is used instead of the text of the file; empty to read the file.
-            refused: the codes of warnings that, like errors, prevent the replacement.
+            blocking_codes: the codes of warnings that, like errors, prevent the replacement.
 
         Raises:
             LinkwrightError: the world cannot be read or simulated; nothing has changed.
@@ -88,22 +88,22 @@ class WorldLoader:
             for diagnostic in (*self.loaded.diagnostics, *self._server.simulation.scene.diagnostics)
         }
 
-        def allow(findings: Sequence[Diagnostic]) -> None:
+        def check_findings(findings: Sequence[Diagnostic]) -> None:
             new_errors = [
                 finding
                 for finding in findings
-                if (finding.severity is Severity.ERROR or finding.code in refused)
+                if (finding.severity is Severity.ERROR or finding.code in blocking_codes)
                 and _finding_key(finding) not in running_findings
             ]
             if new_errors:
                 raise LinkwrightError(*new_errors)
 
-        allow(loaded.diagnostics)
-        self._server.load(loaded.world, loaded.finder, allow)
+        check_findings(loaded.diagnostics)
+        self._server.load(loaded.world, loaded.finder, check_findings)
         self.loaded = loaded
         self._text = text or None
 
-    def answer(self, request: Any, response: Any) -> Any:
+    def handle_request(self, request: Any, response: Any) -> Any:
         """Handle a request to the ``/load_world`` service."""
         resource = request.world_resource
         blocking_codes = (
@@ -111,7 +111,7 @@ class WorldLoader:
             *(_UNREAD_CODES if request.fail_on_unsupported_element else ()),
         )
         try:
-            self.load(resource.uri, resource.resource_string, refused=blocking_codes)
+            self.load(resource.uri, resource.resource_string, blocking_codes=blocking_codes)
         except LinkwrightError as error:
             finding = error.diagnostics[0]
             response.result.result = _result_code(finding)

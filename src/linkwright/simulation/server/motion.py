@@ -42,7 +42,7 @@ def motion_of(simulation: Simulation, name: str) -> Motion:
     return Motion(pose, tuple(linear.tolist()), tuple(angular.tolist()), joints)
 
 
-def resume(simulation: Simulation, name: str, motion: Motion, *, keeps_pose: bool) -> None:
+def restore_motion(simulation: Simulation, name: str, motion: Motion, *, keeps_pose: bool) -> None:
     """Apply the motion of a replaced model to the model that replaces it.
 
     A joint keeps its positions and velocities if both models have a joint of this name and type.
@@ -62,7 +62,7 @@ def resume(simulation: Simulation, name: str, motion: Motion, *, keeps_pose: boo
         if joint not in free_joints and kind == int(simulation.model.jnt_type[index]):
             view = simulation.data.joint(index)
             view.qpos[:], view.qvel[:] = position, velocity
-    simulation.set_moved()
+    simulation.mark_moved()
     if keeps_pose and free_joints:
         _set_state(simulation, name, motion, free_joints)
 
@@ -74,7 +74,7 @@ def _set_state(simulation: Simulation, name: str, motion: Motion, free_joints: d
     velocities.
     """
     model = simulation.scene.models[name]
-    poses = {held.link.name: held.link.pose for held in model.structure.links}
+    poses = {tree_link.link.name: tree_link.link.pose for tree_link in model.structure.links}
     displacement = compose(motion.pose, invert(model.pose))
     for index, (joint, link) in enumerate(free_joints.items()):
         view = simulation.data.joint(joint)
@@ -83,7 +83,7 @@ def _set_state(simulation: Simulation, name: str, motion: Motion, free_joints: d
         else:
             x, y, z, qx, qy, qz, qw = compose(displacement, poses[link])
             view.qpos[:] = x, y, z, qw, qx, qy, qz
-    simulation.set_moved()
+    simulation.mark_moved()
     if simulation.moves_freely(name):
         simulation.set_model_velocity(name, motion.linear, motion.angular)
 

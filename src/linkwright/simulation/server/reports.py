@@ -63,7 +63,7 @@ class Reports:
             round(NANOSECONDS_PER_SECOND / clock_rate) if clock_rate > 0 else 0, self._publish_time
         )
 
-    def begin(self) -> None:
+    def start_description(self) -> None:
         """Publish the description of the world now and after each change."""
         self._server.on_change.append(self.publish_description)
         self.publish_description()
@@ -101,7 +101,7 @@ class Reports:
         converted: T = with_changed_uris(part, Path.cwd(), self._absolute_uri)
         return converted
 
-    def watch(self, factor: Callable[[], float]) -> None:
+    def publish_due(self, get_factor: Callable[[], float]) -> None:
         """Publish poses and the real-time factor if they are due and have subscriptions.
 
         Poses are due at 30 Hz and the factor at 2 Hz of real time; call this at least as often.
@@ -113,7 +113,7 @@ class Reports:
         if now - self._last_metrics >= _METRICS_PERIOD and self._metrics.is_wanted:
             self._last_metrics = now
             message = get_message(_METRICS_TYPE)(
-                header=Header(stamp=Time.from_nanoseconds(self._server.simulation.time)), real_time_factor=factor()
+                header=Header(stamp=Time.from_nanoseconds(self._server.simulation.time)), real_time_factor=get_factor()
             )
             self._metrics.publish(message)
 

@@ -40,7 +40,7 @@ class Runner:
         on_end: called in the thread with 0 after `seconds`; if `seconds` is set, also called with 1 after a failure.
 
     Attributes:
-        paused: whether the simulation is paused.
+        is_paused: whether the simulation is paused.
         real_time_factor: the recent number of simulated seconds per real second.
     """
 
@@ -55,7 +55,7 @@ class Runner:
         on_state: Callable[[], None] = lambda: None,
         on_end: Callable[[int], None] = lambda _: None,
     ) -> None:
-        self.paused = paused
+        self.is_paused = paused
         self.real_time_factor = 0.0
         self._server = server
         self._requested_factor = factor
@@ -97,8 +97,8 @@ class Runner:
         self._restart_timing()
 
     def _set_paused(self, *, paused: bool) -> None:
-        if paused != self.paused:
-            self.paused = paused
+        if paused != self.is_paused:
+            self.is_paused = paused
             self._restart_timing()
             self._on_state()
 
@@ -115,9 +115,9 @@ class Runner:
         while not self._must_end:
             self._call_logged(exchange.run_commands)
             wait_s = _PAUSED_PERIOD
-            if not self.paused:
+            if not self.is_paused:
                 self._call_logged(self._advance)
-                wait_s = 0.0 if self.paused else self._lead_s()
+                wait_s = 0.0 if self.is_paused else self._lead_s()
             self._measure()
             self._call_logged(self._watch)
             exchange.deliver(dispatcher)

@@ -16,7 +16,7 @@ from linkwright.geometry.single import IDENTITY, Transform
 from linkwright.graph import Node
 from linkwright.graph.stepped.calls import Calls
 from linkwright.graph.stepped.exchange import Exchange
-from linkwright.sdf.comparison import alike
+from linkwright.sdf.comparison import have_equal_content
 from linkwright.sdf.models import Model
 from linkwright.sdf.plugins import Plugin, library_name, original_library
 from linkwright.sdf.resources import ResourceFinder
@@ -24,10 +24,10 @@ from linkwright.sdf.saved import with_saved_state
 from linkwright.sdf.worlds import World
 from linkwright.simulation.plugins.alternatives import alternative_to
 from linkwright.simulation.plugins.bridged import BridgedTopics
+from linkwright.simulation.plugins.contexts import model_plugins, world_plugins
 from linkwright.simulation.plugins.findings import error_findings
 from linkwright.simulation.plugins.node import PluginNode
 from linkwright.simulation.plugins.parameters import parameters_from
-from linkwright.simulation.plugins.places import model_plugins, world_plugins
 from linkwright.simulation.plugins.plugin import PluginClass, PluginContext, SimulatedPlugin
 from linkwright.simulation.plugins.registry import (
     is_built_in,
@@ -37,9 +37,15 @@ from linkwright.simulation.plugins.registry import (
 )
 from linkwright.simulation.plugins.ros_element import node_of
 from linkwright.simulation.scene.scene import SceneModel
-from linkwright.simulation.server.changes import AddedModel, add_models, changes_to, check, surroundings
+from linkwright.simulation.server.changes import (
+    AddedModel,
+    add_models,
+    changes_to,
+    check_models,
+    properties_used_by_plugins,
+)
 from linkwright.simulation.server.ground_contact import collision_warnings, lift_onto_ground
-from linkwright.simulation.server.motion import motion_of, resume
+from linkwright.simulation.server.motion import motion_of, restore_motion
 from linkwright.simulation.server.overlaps import overlaps
 from linkwright.simulation.server.unsimulated import unsimulated_elements, unsimulated_model_elements
 from linkwright.simulation.simulation import Simulation
@@ -111,9 +117,11 @@ class SimulationServer:
         """Start the plugins of the world and of its models."""
         self.report(self.simulation.scene.diagnostics)
         self._warn_unsimulated(unsimulated_elements(self.simulation.world))
-        self._load(_WORLD_OWNER, world_plugins(self.simulation.world, self._options.systems), "")
+        self._start_plugins(_WORLD_OWNER, world_plugins(self.simulation.world, self._options.systems), "")
         for scene_model in tuple(self.simulation.scene.models.values()):
-            self._load(scene_model.name, model_plugins(self.simulation.world, scene_model.model, scene_model.name), "")
+            self._start_plugins(
+                scene_model.name, model_plugins(self.simulation.world, scene_model.model, scene_model.name), ""
+            )
         self.report(overlaps(self.simulation))  # after the plugins have attached models
         self._call_on_change()
 
@@ -158,13 +166,13 @@ class SimulationServer:
         """
         if name in self.simulation.scene.models:
             raise LinkwrightError(Diagnostic("SIM102", phrase("a model '{name}' already exists", name=name)))
-        self._exchange((), (AddedModel(model, name, pose, namespace),))
+        self._replace_models((), (AddedModel(model, name, pose, namespace),))
         lift_onto_ground(self.simulation, name)
         self.report(overlaps(self.simulation, (name,)))
         self.report(collision_warnings(self.simulation, name), name)
         self._warn_unsimulated(unsimulated_model_elements(model))
 
-    def renew(self, model: Model, name: str) -> None:
+    def replace_model(self, model: Model, name: str) -> None:
         """Replace a model with a changed model, and keep the pose, velocity and joint positions.
 
         Args:
@@ -175,13 +183,15 @@ class SimulationServer:
             LinkwrightError: SIM141, there is no model with this name; SIM140, the changed model cannot be placed or
                 moved, and nothing has changed.
         """
-        old_model = self._model(name)
+        old_model = self._find_model(name)
         added = AddedModel(model, name, old_model.pose, self._namespaces.get(name, ""), keeps_motion=True)
-        check(self.simulation.world, self.simulation, (added,), self.simulation.finder)
-        self._exchange((), (replace(added, motion=motion_of(self.simulation, name)),))
+        check_models(self.simulation.world, self.simulation, (added,), self.simulation.finder)
+        self._replace_models((), (replace(added, motion=motion_of(self.simulation, name)),))
         self.report(collision_warnings(self.simulation, name), name)
 
-    def load(self, world: World, finder: ResourceFinder, allow: Callable[[Sequence[Diagnostic]], object]) -> None:
+    def load(
+        self, world: World, finder: ResourceFinder, check_findings: Callable[[Sequence[Diagnostic]], object]
+    ) -> None:
         """Replace the running world with another one.
 
         Models and plugins that both worlds contain continue, and spawned models remain.
@@ -189,8 +199,8 @@ class SimulationServer:
         Args:
             world: the other world, with its includes resolved.
             finder: the finder of mesh files.
-            allow: called before anything changes, with the findings on elements that cannot be simulated. It may
-                raise an error to prevent the replacement.
+            check_findings: called before anything changes, with the findings on elements that cannot be simulated. It
+                may raise an error to prevent the replacement.
 
         Raises:
             LinkwrightError: SIM102, a model has the name of a spawned model; SIM104, SIM140, the world cannot be
@@ -199,22 +209,22 @@ class SimulationServer:
         simulation, old_world = self.simulation, self.simulation.world
         new_world = with_saved_state(world)
         changes = changes_to(new_world, simulation.scene.models, self._world_models)
-        if surroundings(old_world) != surroundings(new_world):
+        if properties_used_by_plugins(old_world) != properties_used_by_plugins(new_world):
             changes = changes.with_all_replaced(simulation.scene.models, self._namespaces)
         changes = changes.with_connected_replaced(simulation.scene.models, self._namespaces)
-        allow(check(new_world, simulation, (*changes.renewed, *changes.added), finder))
-        renewed = tuple(replace(change, motion=motion_of(simulation, change.name)) for change in changes.renewed)
+        check_findings(check_models(new_world, simulation, (*changes.replaced, *changes.added), finder))
+        replaced = tuple(replace(change, motion=motion_of(simulation, change.name)) for change in changes.replaced)
         simulation.set_world(world, finder)
-        simulation.place(changes.moved)
-        self._exchange(changes.removed_names, (*renewed, *changes.added))
+        simulation.set_initial_poses(changes.moved)
+        self._replace_models(changes.removed_names, (*replaced, *changes.added))
         self.report(overlaps(simulation, {*changes.moved, *(change.name for change in changes.added)}))
         self._world_models = {model.name for model in new_world.models}
-        if not alike(old_world.plugins, new_world.plugins):
+        if not have_equal_content(old_world.plugins, new_world.plugins):
             self._close_plugins(self._plugins.pop(_WORLD_OWNER, []))
-            self._load(_WORLD_OWNER, world_plugins(new_world, self._options.systems), "")
+            self._start_plugins(_WORLD_OWNER, world_plugins(new_world, self._options.systems), "")
 
-    def _exchange(self, gone: Iterable[str], added: Sequence[AddedModel]) -> None:
-        """Remove the models in `gone`, and add the models in `added`.
+    def _replace_models(self, removed: Iterable[str], added: Sequence[AddedModel]) -> None:
+        """Remove the models in `removed`, and add the models in `added`.
 
         An added model replaces a running model of the same name. Models attached to a removed or replaced model are
         also replaced.
@@ -222,8 +232,11 @@ class SimulationServer:
         simulation = self.simulation
         old_count = len(simulation.scene.diagnostics)
         old_plugins: dict[str, list[SimulatedPlugin[object]]] = {}
-        gone, added = tuple(gone), (*added, *self._attached_models({*gone, *(change.name for change in added)}))
-        removed_names = {*gone, *(change.name for change in added)}
+        removed, added = (
+            tuple(removed),
+            (*added, *self._attached_models({*removed, *(change.name for change in added)})),
+        )
+        removed_names = {*removed, *(change.name for change in added)}
         for name in [name for name in reversed(simulation.scene.models) if name in removed_names]:
             old_plugins[name] = self._plugins.pop(name, [])
             self._close_plugins(old_plugins[name])
@@ -233,13 +246,15 @@ class SimulationServer:
             add_models(simulation, added)
         for change in added:
             if change.motion is not None:
-                resume(simulation, change.name, change.motion, keeps_pose=change.keeps_motion)
+                restore_motion(simulation, change.name, change.motion, keeps_pose=change.keeps_motion)
         self.report(simulation.scene.diagnostics[old_count:])
         for change in added:
             self._namespaces[change.name] = change.namespace
-            places = model_plugins(simulation.world, change.model, change.name)
+            contexts = model_plugins(simulation.world, change.model, change.name)
             is_continued = change.keeps_motion and change.motion is not None
-            self._load(change.name, places, change.namespace, old_plugins[change.name] if is_continued else ())
+            self._start_plugins(
+                change.name, contexts, change.namespace, old_plugins[change.name] if is_continued else ()
+            )
         self._call_on_change()
 
     def _attached_models(self, names: Collection[str]) -> Iterator[AddedModel]:
@@ -266,12 +281,12 @@ class SimulationServer:
         Raises:
             LinkwrightError: SIM141, there is no model with this name.
         """
-        self._model(name)
-        self._exchange((name,), ())
+        self._find_model(name)
+        self._replace_models((name,), ())
         self.stored_values.clear()
         self._world_models.discard(name)
 
-    def _model(self, name: str) -> SceneModel:
+    def _find_model(self, name: str) -> SceneModel:
         if name not in self.simulation.scene.models:
             raise LinkwrightError(Diagnostic("SIM141", phrase("there is no model '{name}'", name=name)))
         return self.simulation.scene.models[name]
@@ -279,7 +294,7 @@ class SimulationServer:
     def reset(self) -> None:
         """Restart at time 0, with the initial poses and the same random numbers."""
         self.simulation.reset()
-        for plugin in self._running():
+        for plugin in self._running_plugins():
             plugin.node.calls.call(plugin.reset)
         for function in self.on_reset:
             function()
@@ -302,19 +317,19 @@ class SimulationServer:
     def close(self) -> None:
         """Stop all plugins of the world and of its models."""
         self._bridged.close()
-        self._close_plugins(self._running())
+        self._close_plugins(self._running_plugins())
         self._plugins.clear()
 
-    def _running(self) -> list[SimulatedPlugin[object]]:
+    def _running_plugins(self) -> list[SimulatedPlugin[object]]:
         return [plugin for plugins in self._plugins.values() for plugin in plugins]
 
     def _close_plugins(self, plugins: list[SimulatedPlugin[object]]) -> None:
         for plugin in reversed(plugins):
-            self._forget_node(plugin.place, plugin.node)
-            plugin.close(partial(self._log_failure, plugin.place))
+            self._release_node_name(plugin.context, plugin.node)
+            plugin.close(partial(self._log_failure, plugin.context))
 
-    def _forget_node(self, place: PluginContext, node: PluginNode) -> None:
-        if not is_shared(place):
+    def _release_node_name(self, context: PluginContext, node: PluginNode) -> None:
+        if not is_shared(context):
             self._node_names.discard(node.name)
 
     def _call_on_change(self) -> None:
@@ -323,10 +338,10 @@ class SimulationServer:
 
     # --- plugins ------------------------------------------------------------------------------------------------------
 
-    def _load(
+    def _start_plugins(
         self,
         owner: str,
-        places: Iterable[PluginContext],
+        contexts: Iterable[PluginContext],
         namespace: str,
         old_plugins: Sequence[SimulatedPlugin[object]] = (),
     ) -> None:
@@ -336,13 +351,13 @@ class SimulationServer:
         """
         self._plugins[owner] = []
         unsimulated: dict[str, None] = {}
-        for place in places:
-            with self._logging_failures(place):
-                plugin_class_ = self._find_class(place)
+        for context in contexts:
+            with self._logging_failures(context):
+                plugin_class_ = self._find_plugin_class(context)
                 if plugin_class_ is None:
-                    unsimulated |= dict.fromkeys(_unsimulated_names(place))
+                    unsimulated |= dict.fromkeys(_unsimulated_names(context))
                 else:
-                    self._begin(owner, plugin_class_, place, namespace, old_plugins)
+                    self._start_plugin(owner, plugin_class_, context, namespace, old_plugins)
         new_names = [name for name in unsimulated if name not in self._logged]
         self._logged.update(new_names)
         if new_names:
@@ -352,13 +367,13 @@ class SimulationServer:
             if (alternative := alternative_to(name)) is not None:
                 self.node.get_logger().info(phrase("instead of {name}, use {other}", name=name, other=alternative))
 
-    def _find_class(self, place: PluginContext) -> PluginClass | None:
-        if place.plugin is None:
-            assert place.sensor is not None
-            return sensor_class(place.sensor.sensor.type)
-        filename, original = place.plugin.filename, original_library(place.plugin.name)
-        class_ = plugin_class(library_name(filename))
-        if class_ is None and (class_ := plugin_class(original)) is not None and filename not in self._logged:
+    def _find_plugin_class(self, context: PluginContext) -> PluginClass | None:
+        if context.plugin is None:
+            assert context.sensor is not None
+            return sensor_class(context.sensor.sensor.type)
+        filename, original = context.plugin.filename, original_library(context.plugin.name)
+        found_class = plugin_class(library_name(filename))
+        if found_class is None and (found_class := plugin_class(original)) is not None and filename not in self._logged:
             self._logged.add(filename)
             notice = phrase(
                 "'{copy}' is simulated as '{original}', because its plugin class belongs to '{original}'",
@@ -366,13 +381,13 @@ class SimulationServer:
                 original=original,
             )
             self.node.get_logger().info(notice)
-        return class_
+        return found_class
 
-    def _begin(
+    def _start_plugin(
         self,
         owner: str,
-        kind: PluginClass,
-        place: PluginContext,
+        plugin_class_: PluginClass,
+        context: PluginContext,
         namespace: str,
         old_plugins: Sequence[SimulatedPlugin[object]],
     ) -> None:
@@ -380,45 +395,45 @@ class SimulationServer:
 
         The plugin or sensor resumes from its unchanged previous instance, if `old_plugins` contains one.
         """
-        calls = Calls(lambda error: self._failed(owner, place, error))
-        node = self._node(place, namespace, calls)
+        calls = Calls(lambda error: self._end_failed_plugin(owner, context, error))
+        node = self._create_node(context, namespace, calls)
         started: list[SimulatedPlugin[object]] = []
 
         def start() -> None:
             parameters, findings = parameters_from(
-                kind.PARAMETERS, place.plugin.element if place.plugin else None, kind.IGNORED
+                plugin_class_.PARAMETERS, context.plugin.element if context.plugin else None, plugin_class_.IGNORED
             )
             self.report(findings)
-            plugin = kind(place, node, parameters, self)
+            plugin = plugin_class_(context, node, parameters, self)
             started.append(plugin)
             self._plugins[owner].append(plugin)
             plugin.start()
             predecessor = next(
-                (simulated_plugin for simulated_plugin in old_plugins if plugin.is_like(simulated_plugin)), None
+                (simulated_plugin for simulated_plugin in old_plugins if plugin.is_same_plugin(simulated_plugin)), None
             )
             if predecessor is not None:
                 plugin.resume(predecessor)
 
         calls.call(start)
         if not started:
-            self._forget_node(place, node)
+            self._release_node_name(context, node)
             node.close()
 
-    def _failed(self, owner: str, place: PluginContext, error: Exception) -> None:
+    def _end_failed_plugin(self, owner: str, context: PluginContext, error: Exception) -> None:
         """Log the error of a plugin or sensor, and end only that plugin."""
-        self._log_failure(place, error)
+        self._log_failure(context, error)
         running = self._plugins.get(owner, [])
-        failed_plugins = [simulated_plugin for simulated_plugin in running if simulated_plugin.place is place]
-        running[:] = [simulated_plugin for simulated_plugin in running if simulated_plugin.place is not place]
+        failed_plugins = [simulated_plugin for simulated_plugin in running if simulated_plugin.context is context]
+        running[:] = [simulated_plugin for simulated_plugin in running if simulated_plugin.context is not context]
         self._close_plugins(failed_plugins)
 
-    def _log_failure(self, place: PluginContext, error: Exception) -> None:
-        self.report(error_findings(error, place.name, place.element))
+    def _log_failure(self, context: PluginContext, error: Exception) -> None:
+        self.report(error_findings(error, context.name, context.element))
         if not isinstance(error, LinkwrightError):
             for function in self.on_failure:
                 function(error)
 
-    def _node(self, place: PluginContext, namespace: str, calls: Calls) -> PluginNode:
+    def _create_node(self, context: PluginContext, namespace: str, calls: Calls) -> PluginNode:
         """Return the node for a plugin or sensor.
 
         Plugins of gz and sensors without a plugin share the simulator's node; other plugins get a separate node.
@@ -426,7 +441,7 @@ class SimulationServer:
         Raises:
             LinkwrightError: SIM135, another plugin has a node with the same name.
         """
-        if is_shared(place):
+        if is_shared(context):
             return PluginNode(
                 self.node,
                 self.exchange,
@@ -437,16 +452,16 @@ class SimulationServer:
                 now_ns=self._now_ns,
                 calls=calls,
             )
-        node_description = node_of(place.name, place.element, namespace)
+        node_description = node_of(context.name, context.element, namespace)
         full_name = node_description.full_name
         if full_name in self._node_names:
             message = phrase(
                 "plugin '{plugin}' is not loaded: another plugin already uses the node name '{name}'",
-                plugin=place.name,
+                plugin=context.name,
                 name=full_name,
             )
             hint = phrase("give the plugin another name, or a namespace in <ros>")
-            span, source = (place.element.span(), place.element.source) if place.element else (None, None)
+            span, source = (context.element.span(), context.element.source) if context.element else (None, None)
             raise LinkwrightError(Diagnostic("SIM135", message, span, hint=hint, source=source))
         node = Node(
             self.node.graph,
@@ -471,12 +486,12 @@ class SimulationServer:
             self.node.get_logger().info(phrase("elements that are not simulated: {names}", names=joined(new_names)))
 
     @contextmanager
-    def _logging_failures(self, place: PluginContext) -> Iterator[None]:
+    def _logging_failures(self, context: PluginContext) -> Iterator[None]:
         """Log and suppress an error in the context, so that other plugins are still started."""
         try:
             yield
         except Exception as error:  # noqa: BLE001 - a plugin of any world or package may raise anything
-            self._log_failure(place, error)
+            self._log_failure(context, error)
 
     def report(self, findings: Iterable[Diagnostic], model: str = _WORLD_OWNER) -> None:
         """Log each new finding once, and keep the findings about a model in `findings`.
@@ -511,16 +526,16 @@ class SimulationServer:
             function()
 
 
-def is_shared(place: PluginContext) -> bool:
+def is_shared(context: PluginContext) -> bool:
     """Return whether a plugin or sensor shares the simulator's node."""
-    return place.plugin is None or is_gz_library(place.plugin.filename)
+    return context.plugin is None or is_gz_library(context.plugin.filename)
 
 
-def _unsimulated_names(place: PluginContext) -> list[str]:
+def _unsimulated_names(context: PluginContext) -> list[str]:
     """Return a list with the library or sensor type of a plugin that is not simulated.
 
     The list is empty if the simulation itself does the work of the library.
     """
-    if place.plugin is None:
-        return [] if place.sensor is None else [place.sensor.sensor.type]
-    return [] if is_built_in(place.plugin.filename) else [place.plugin.filename]
+    if context.plugin is None:
+        return [] if context.sensor is None else [context.sensor.sensor.type]
+    return [] if is_built_in(context.plugin.filename) else [context.plugin.filename]

@@ -20,9 +20,9 @@ from linkwright.simulation.plugins.entities import (
     Entities,
     fill_response,
     finding_line,
-    numbers,
     refusal_text,
-    transform_in,
+    transform_from_message,
+    vector_components,
 )
 from linkwright.simulation.server.entities import Entity, read_entity
 from linkwright.simulation.server.loading import WorldLoader
@@ -34,11 +34,11 @@ _OK, _WRONG_STATE, _FAILED = 1, 3, 4
 """The codes of simulation_interfaces/msg/Result that are returned here."""
 
 
-class Progress(Protocol):
+class RunControl(Protocol):
     """The controls of a running simulation."""
 
     @property
-    def paused(self) -> bool:
+    def is_paused(self) -> bool:
         """Whether the simulation is paused."""
 
     def pause(self) -> None:
@@ -73,7 +73,7 @@ class Services:
     def __init__(
         self,
         server: SimulationServer,
-        runner: Progress,
+        runner: RunControl,
         node: SteppedNode,
         world: LoadedWorld,
         library: DescriptionLibrary,
@@ -88,7 +88,7 @@ class Services:
         for service_type, name, callback in (
             ("gazebo_msgs/srv/SpawnEntity", "/spawn_entity", self._spawn),
             ("gazebo_msgs/srv/DeleteEntity", "/delete_entity", self._delete),
-            ("gazebo_msgs/srv/GetModelList", "/get_model_list", self._list),
+            ("gazebo_msgs/srv/GetModelList", "/get_model_list", self._list_models),
             ("gazebo_msgs/srv/GetEntityState", "/get_entity_state", self._get_state),
             ("gazebo_msgs/srv/SetEntityState", "/set_entity_state", self._set_state),
             ("gazebo_msgs/srv/ApplyLinkWrench", "/apply_link_wrench", self._push),
@@ -98,7 +98,7 @@ class Services:
             ("std_srvs/srv/Empty", "/reset_simulation", self._reset),
             ("std_srvs/srv/Empty", "/reset_world", self._reset),
             ("simulation_interfaces/srv/StepSimulation", "/step_simulation", self._step),
-            ("simulation_interfaces/srv/LoadWorld", "/load_world", self.worlds.answer),
+            ("simulation_interfaces/srv/LoadWorld", "/load_world", self.worlds.handle_request),
         ):
             node.service(service_type, name, callback)
 
@@ -128,7 +128,7 @@ class Services:
         self._server.report(entity.diagnostics, name)
         return name
 
-    def renew(self, text: str, name: str) -> None:
+    def replace_model(self, text: str, name: str) -> None:
         """Replace a model with the model in a description.
 
         The method may be called from any thread.
@@ -144,18 +144,20 @@ class Services:
         """
         entity = read_entity(text, self._server.simulation.finder, self._library)
 
-        def renew() -> None:
+        def replace_in_simulation() -> None:
             try:
-                self._server.renew(entity.model, name)
+                self._server.replace_model(entity.model, name)
                 self._server.report(entity.diagnostics, name)
             except LinkwrightError as error:
                 self._server.node.get_logger().error(finding_line(error.diagnostics[0]))
 
-        self._server.exchange.post(renew)
+        self._server.exchange.post(replace_in_simulation)
 
     def _spawn(self, request: Any, response: Any) -> Any:
         def spawn() -> str:
-            pose = compose(self._entities.frame(request.reference_frame), transform_in(request.initial_pose))
+            pose = compose(
+                self._entities.frame_pose(request.reference_frame), transform_from_message(request.initial_pose)
+            )
             entity = read_entity(request.xml, self._server.simulation.finder, self._library)
             if entity.unread:
                 raise LinkwrightError(*entity.unread)
@@ -173,7 +175,7 @@ class Services:
 
         return fill_response(response, delete)
 
-    def _list(self, _: Any, response: Any) -> Any:
+    def _list_models(self, _: Any, response: Any) -> Any:
         response.header = Header(Time.from_nanoseconds(self._server.simulation.time), WORLD)
         response.model_names = list(self._server.simulation.scene.models)
         response.success = True
@@ -194,15 +196,16 @@ class Services:
     def _push(self, request: Any, response: Any) -> Any:
         def push() -> str:
             link = self._entities.link(request.link_name)
-            orientation = self._entities.frame(request.reference_frame)[3:]
+            orientation = self._entities.frame_pose(request.reference_frame)[3:]
             force, torque = (
-                rotate(orientation, numbers(vector)) for vector in (request.wrench.force, request.wrench.torque)
+                rotate(orientation, vector_components(vector))
+                for vector in (request.wrench.force, request.wrench.torque)
             )
             duration = request.duration.nanoseconds
             start = request.start_time.nanoseconds
             start_time = max(start, self._server.simulation.time)
             end = None if duration < 0 else start_time + duration
-            self._wrenches.add(link, Wrench(force, torque, numbers(request.reference_point), start_time, end))
+            self._wrenches.add(link, Wrench(force, torque, vector_components(request.reference_point), start_time, end))
             return ""
 
         return fill_response(response, push)
@@ -229,7 +232,7 @@ class Services:
         return response
 
     def _step(self, request: Any, response: Any) -> Any:
-        if not self._runner.paused:
+        if not self._runner.is_paused:
             response.result.result = _WRONG_STATE
             response.result.error_message = "the simulation is running: pause it to make single steps"
             return response

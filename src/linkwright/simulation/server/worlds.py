@@ -13,7 +13,7 @@ from linkwright.packages import PackageFinder
 from linkwright.sdf.link_counts import has_more_links
 from linkwright.sdf.resources import ResourceFinder
 from linkwright.sdf.worlds import World
-from linkwright.simulation.scene.compiling import MOST_LINKS, count_links, too_many_links_hint
+from linkwright.simulation.scene.compiling import MAX_LINKS, count_links, too_many_links_hint
 from linkwright.xmltree import Overlay
 from linkwright.xmltree.reader import read_bytes
 
@@ -81,8 +81,8 @@ def load_world(name: str, text: str | None = None, environment: Mapping[str, str
 
 
 def _check_link_count(text: bytes | str) -> None:
-    if has_more_links(text, MOST_LINKS):
-        message = phrase("a world of more than {most} links cannot be simulated", most=MOST_LINKS)
+    if has_more_links(text, MAX_LINKS):
+        message = phrase("a world of more than {maximum} links cannot be simulated", maximum=MAX_LINKS)
         raise LinkwrightError(Diagnostic("SIM105", message, hint=too_many_links_hint()))
 
 

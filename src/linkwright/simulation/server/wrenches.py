@@ -71,12 +71,12 @@ class Wrenches:
             simulation.push(link, force.tolist(), torque.tolist())
 
     def _total_wrench(self, link: str, wrenches: list[Wrench]) -> tuple[Array, Array]:
-        """Return the total force in N, and the torque in N m about a link's centre of mass."""
+        """Return the total force in N, and the torque in N m about a link's center of mass."""
         pose = self._simulation.link_pose(link)
-        rotation, mass_centre = rotation_matrix(pose[3:]), self._simulation.data.body(link).xipos
+        rotation, mass_center = rotation_matrix(pose[3:]), self._simulation.data.body(link).xipos
         force, torque = np.zeros(3), np.zeros(3)
         for wrench in wrenches:
-            arm = rotation @ np.asarray(wrench.point) + np.asarray(pose[:3]) - mass_centre
+            arm = rotation @ np.asarray(wrench.point) + np.asarray(pose[:3]) - mass_center
             force += wrench.force
             torque += np.asarray(wrench.torque) + np.cross(arm, wrench.force)
         return force, torque

@@ -72,7 +72,7 @@ class Driver:
             drive: the command.
             values: the values of its slots.
         """
-        self._topic.review(may_change=self._drive is None)
+        self._topic.update_type(may_change=self._drive is None)
         self._drive = drive
         amounts = {"duration": drive.duration, "distance": drive.distance, "angle": drive.angle}
         limits = [(name, resolve_amount(limit, values)) for name, limit in amounts.items() if limit is not None]
@@ -90,7 +90,7 @@ class Driver:
         """
         self._drive = None
         self._timer.cancel()
-        self._topic.review(may_change=False)
+        self._topic.update_type(may_change=False)
         self._topic.stop()
 
     def scale(self, factor: float) -> float:

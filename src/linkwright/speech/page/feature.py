@@ -67,7 +67,7 @@ class VoiceFeature(PageFeature):
         self._is_enrolling_proposed = False
         self._word_book = WordBook()
 
-    def opening(self) -> list[ServerMessage]:
+    def opening_messages(self) -> list[ServerMessage]:
         """Return a message that states whether a node executes commands.
 
         Other nodes, such as an object seeker, may answer as well.
@@ -88,17 +88,17 @@ class VoiceFeature(PageFeature):
         elif self._text_input is not None:
             self._text_input.publish(self._text_input.msg_type(data=message.text[:_MAX_TEXT]))
 
-    def page_closed(self, page: Page) -> None:
+    def remove_page(self, page: Page) -> None:
         """End the microphone mode, the recording and the watching of a page."""
         self._muted_pages.discard(page)
-        self._word_book.page_closed(page)
+        self._word_book.remove_page(page)
         self._set_mode(page, Talk("off"))
         self._watch(page, watched=False)
 
     def close(self) -> None:
         """Handle all pages as closed, so that the publishers and subscriptions are destroyed."""
         for page in {*self._watchers, *self._budgets}:
-            self.page_closed(page)
+            self.remove_page(page)
 
     # --- sound -------------------------------------------------------------------------------------------------
 

@@ -94,7 +94,7 @@ class WordBook:
             recording.add(samples)
         return recording is not None
 
-    def page_closed(self, page: Page) -> None:
+    def remove_page(self, page: Page) -> None:
         """Forget a page and its recording."""
         self._watchers.discard(page)
         self._recordings.pop(page, None)

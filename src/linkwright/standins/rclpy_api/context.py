@@ -32,9 +32,9 @@ _MAX_JOIN_WAIT_S = 3.0
 
 
 class Context:
-    """A graph with its nodes, from initialisation to shutdown.
+    """A graph with its nodes, from initialization to shutdown.
 
-    A context can be initialised only once.
+    A context can be initialized only once.
 
     Args:
         graph: an existing graph, which is closed with the context.
@@ -62,7 +62,7 @@ class Context:
 
     @property
     def handle(self) -> Context | None:
-        """The context itself, for ``with context.handle``, or None before initialisation."""
+        """The context itself, for ``with context.handle``, or None before initialization."""
         return self if self._initialized else None
 
     @property
@@ -85,7 +85,7 @@ class Context:
     def init(
         self, args: Sequence[str] | None = None, *, initialize_logging: bool = True, domain_id: int | None = None
     ) -> None:
-        """Initialise the context.
+        """Initialize the context.
 
         Args:
             args: the command line; None for ``sys.argv``.
@@ -94,7 +94,7 @@ class Context:
                 set.
 
         Raises:
-            RuntimeError: the domain ID is negative, or the context was initialised before.
+            RuntimeError: the domain ID is negative, or the context was initialized before.
             UnknownROSArgsError: there are unknown ROS arguments.
             RCLInvalidROSArgsError: a ROS argument is malformed.
             RclError: security is enforced (``ROS_SECURITY_STRATEGY``), which is not supported.
@@ -118,14 +118,14 @@ class Context:
         shut_down_on_signal(self)
 
     def ok(self) -> bool:
-        """Return whether the context is initialised and not shut down."""
+        """Return whether the context is initialized and not shut down."""
         return self._ok
 
     def get_domain_id(self) -> int:
         """Return the domain ID of the network.
 
         Raises:
-            RuntimeError: the context is not initialised.
+            RuntimeError: the context is not initialized.
         """
         if not self._initialized:
             raise RuntimeError("Context must be initialized before it can have a domain id")
@@ -155,7 +155,7 @@ class Context:
         """Shut the context down: executors stop spinning, and the nodes leave the graph.
 
         Raises:
-            RclError: the context was not initialised, or was already shut down, unless a signal did this.
+            RclError: the context was not initialized, or was already shut down, unless a signal did this.
         """
         if not self._initialized:
             raise RclError("Context must be initialized before it can be shutdown")
@@ -165,7 +165,7 @@ class Context:
         self._complete_shutdown()
 
     def try_shutdown(self) -> None:
-        """Shut the context down, unless it is not initialised or already shut down."""
+        """Shut the context down, unless it is not initialized or already shut down."""
         if self._initialized and (self._ok or self._was_ended_by_signal):
             self.shutdown()
 

@@ -53,7 +53,7 @@ def is_default(context: Context | None) -> bool:
 
 
 def use_graph(graph: Graph, args: Sequence[str]) -> Context:
-    """Initialise the default context with an existing graph, as `linkwright.testing` does.
+    """Initialize the default context with an existing graph, as `linkwright.testing` does.
 
     The graph is closed with the context.
 
@@ -62,7 +62,7 @@ def use_graph(graph: Graph, args: Sequence[str]) -> Context:
         args: the command line.
 
     Raises:
-        RuntimeError: the default context is already initialised.
+        RuntimeError: the default context is already initialized.
     """
     with _lock:
         state = current_state()
@@ -74,6 +74,6 @@ def use_graph(graph: Graph, args: Sequence[str]) -> Context:
 
 
 def check_initialized(context: Context, action: str) -> None:
-    """Raise NotInitializedError unless a context is initialised and not shut down."""
+    """Raise NotInitializedError unless a context is initialized and not shut down."""
     if not context.ok():
         raise NotInitializedError(action)

@@ -48,7 +48,7 @@ class Node(GraphNode):
         enable_logger_service: whether other nodes can read and set the levels of the node's loggers.
 
     Raises:
-        NotInitializedError: the context is not initialised.
+        NotInitializedError: the context is not initialized.
         InvalidNodeNameError, InvalidNamespaceError: the name or the namespace is not valid.
     """
 

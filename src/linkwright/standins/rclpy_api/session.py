@@ -1,4 +1,4 @@
-"""The functions of the package ``rclpy`` for initialisation, shutdown and spinning."""
+"""The functions of the package ``rclpy`` for initialization, shutdown and spinning."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class InitContextManager:
     """The result of `init`, a context manager that shuts the context down on exit.
 
     Attributes:
-        context: the context that was initialised.
+        context: the context that was initialized.
     """
 
     def __init__(self, context: Context) -> None:
@@ -51,19 +51,19 @@ def init(
     domain_id: int | None = None,
     signal_handler_options: SignalHandlerOptions | None = None,
 ) -> InitContextManager:
-    """Initialise a context.
+    """Initialize a context.
 
     Nodes can be created only afterwards.
 
     Args:
         args: the command line; None for ``sys.argv``.
-        context: the context to initialise; None for the default context.
+        context: the context to initialize; None for the default context.
         domain_id: the domain ID of the network; None for the value of ROS_DOMAIN_ID, or 0 if the variable is not set.
         signal_handler_options: the signals that shut contexts down. None means all signals if `context` is None, or
             else no signals.
 
     Raises:
-        RuntimeError: the context is already initialised.
+        RuntimeError: the context is already initialized.
     """
     target_context = get_default_context() if context is None else context
     if signal_handler_options is None:
@@ -74,7 +74,7 @@ def init(
 
 
 def ok(*, context: Context | None = None) -> bool:
-    """Return whether a context is initialised and not shut down."""
+    """Return whether a context is initialized and not shut down."""
     return (get_default_context() if context is None else context).ok()
 
 
@@ -86,7 +86,7 @@ def shutdown(*, context: Context | None = None, uninstall_handlers: bool | None 
         uninstall_handlers: whether to restore the previous signal handlers; None to do so for the default context only.
 
     Raises:
-        RclError: the context is not initialised, or already shut down.
+        RclError: the context is not initialized, or already shut down.
     """
     _end_global_executor(context)
     is_default_context = is_default(context)
@@ -97,7 +97,7 @@ def shutdown(*, context: Context | None = None, uninstall_handlers: bool | None 
 
 
 def try_shutdown(*, context: Context | None = None, uninstall_handlers: bool | None = None) -> None:
-    """Shut a context down, unless it is not initialised or already shut down."""
+    """Shut a context down, unless it is not initialized or already shut down."""
     is_default_context = is_default(context)
     if is_default_context and not has_default_context():
         return
@@ -124,7 +124,7 @@ def create_node(node_name: str, **arguments: Any) -> Node:
     """Create a node. See `Node` for the arguments.
 
     Raises:
-        NotInitializedError: the node's context is not initialised.
+        NotInitializedError: the node's context is not initialized.
     """
     return Node(node_name, **arguments)
 

@@ -10,22 +10,22 @@ from linkwright.messages.definitions.library import LIBRARY
 
 def get_message(identifier: str) -> Any:
     """Return the class of a message, such as ``std_msgs/msg/String``."""
-    return _found(classes.get_message, identifier, "message")
+    return _get_interface(classes.get_message, identifier, "message")
 
 
 def get_service(identifier: str) -> Any:
     """Return the class of a service, such as ``std_srvs/srv/SetBool``."""
-    return _found(classes.get_service, identifier, "service")
+    return _get_interface(classes.get_service, identifier, "service")
 
 
 def get_action(identifier: str) -> Any:
     """Return the class of an action, such as ``example_interfaces/action/Fibonacci``."""
-    return _found(classes.get_action, identifier, "action")
+    return _get_interface(classes.get_action, identifier, "action")
 
 
 def get_interface(identifier: str) -> Any:
     """Return the class of the message, service or action with the given full name."""
-    return _found(classes.get_interface, identifier, "interface")
+    return _get_interface(classes.get_interface, identifier, "interface")
 
 
 def import_message_from_namespaced_type(message_type: Any) -> Any:
@@ -33,7 +33,7 @@ def import_message_from_namespaced_type(message_type: Any) -> Any:
     return classes.get_message("/".join(message_type.namespaced_name()))
 
 
-def _found(getter: Any, identifier: str, kind_name: str) -> Any:
+def _get_interface(getter: Any, identifier: str, kind_name: str) -> Any:
     # Raise the same exceptions as importing the generated module would, because callers expect them.
     name = split_name(identifier)
     if name is None or name.kind is None:

@@ -166,7 +166,7 @@ def _enable_field_checks(spec: ModuleSpec | None) -> ModuleSpec | None:
         from linkwright.messages import checks, distribution
 
         if distribution.checks_fields_as_ros():
-            checks.keep_to_ros(as_humble=distribution.is_before_iron())
+            checks.restrict_to_ros_values(as_humble=distribution.is_before_iron())
     return spec
 
 

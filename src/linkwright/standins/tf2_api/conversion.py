@@ -49,7 +49,7 @@ class TransformRegistration:
         Raises:
             TypeException: the type is not registered.
         """
-        return _found(self._by_type, key)
+        return _find_registered(self._by_type, key)
 
     def print_me(self) -> None:
         """Print the registered types and their functions."""
@@ -84,7 +84,7 @@ class ConvertRegistration:
         Raises:
             TypeException: no such conversion is registered.
         """
-        return _found(self._from_msg, key)
+        return _find_registered(self._from_msg, key)
 
     def get_to_msg(self, key: Any) -> Conversion:
         """Return the function that converts a type to messages.
@@ -92,7 +92,7 @@ class ConvertRegistration:
         Raises:
             TypeException: no such conversion is registered.
         """
-        return _found(self._to_msg, key)
+        return _find_registered(self._to_msg, key)
 
     def get_convert(self, key: tuple[Any, Any]) -> Conversion:
         """Return the function that converts the first type of a pair to the second.
@@ -100,7 +100,7 @@ class ConvertRegistration:
         Raises:
             TypeException: no such conversion is registered.
         """
-        return _found(self._direct, key)
+        return _find_registered(self._direct, key)
 
 
 def convert(a: Any, b_type: Any) -> Any:
@@ -128,7 +128,7 @@ def Stamped(obj: Any, stamp: Any, frame_id: str) -> Any:
     return obj
 
 
-def _found(registry: dict[Any, F], key: Any) -> F:
+def _find_registered(registry: dict[Any, F], key: Any) -> F:
     if key not in registry:
         raise TypeException(f"Type {key} is not loaded or supported")
     return registry[key]

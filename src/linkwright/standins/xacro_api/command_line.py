@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from collections.abc import Iterable, Sequence
 
-from linkwright.standins.xacro_api import colour
+from linkwright.standins.xacro_api import color
 
 REMAP = ":="
 
@@ -56,7 +56,7 @@ def process_args(argv: Sequence[str], require_input: bool = True) -> tuple[argpa
     options = parser.parse_intermixed_args([word for word in argv if REMAP not in word])
     files = options.__dict__.pop("files")
     if options.in_order:
-        colour.message("xacro: files are always processed in reading order; the option can be omitted")
+        color.message("xacro: files are always processed in reading order; the option can be omitted")
     options.in_order = True
     if len(files) != 1 and require_input:
         parser.error("exactly one file is expected")

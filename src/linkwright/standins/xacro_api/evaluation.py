@@ -111,7 +111,7 @@ def create_global_symbols() -> dict[str, Any]:
 
 
 class ConstructUnits(enum.Enum):
-    """The YAML tags for values with units, each with the size of the unit in metres or radians."""
+    """The YAML tags for values with units, each with the size of the unit in meters or radians."""
 
     radians = ("!radians", yaml_data.UNITS["!radians"])
     degrees = ("!degrees", yaml_data.UNITS["!degrees"])

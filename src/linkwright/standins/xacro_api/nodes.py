@@ -8,7 +8,7 @@ from typing import Any
 from xml.dom import minidom
 
 from linkwright.diagnostics import phrase
-from linkwright.standins.xacro_api import colour
+from linkwright.standins.xacro_api import color
 from linkwright.standins.xacro_api.errors import XacroException
 from linkwright.standins.xacro_api.evaluation import eval_text, get_boolean_value, is_valid_name
 from linkwright.standins.xacro_api.macros import Macro, parse_macro_arg
@@ -80,7 +80,7 @@ def check_attrs(tag: Any, required: Sequence[str], optional: Sequence[str]) -> l
     unexpected_names = [name for name in tag.attributes.keys() if name not in (*required, *optional)]  # noqa: SIM118 - not a dict
     unexpected_names = [name for name in unexpected_names if not name.startswith("xmlns:")]
     if unexpected_names:
-        colour.warning(f"'{tag.nodeName}' has unknown attributes: {', '.join(map(repr, unexpected_names))}")
+        color.warning(f"'{tag.nodeName}' has unknown attributes: {', '.join(map(repr, unexpected_names))}")
         if STATE.verbosity > 0:
             print_location()
     return values
@@ -92,7 +92,7 @@ def import_xml_namespaces(parent: Any, attributes: Any) -> None:
         if not name.startswith("xmlns:"):
             continue
         if parent.hasAttribute(name) and parent.getAttribute(name) != value:
-            colour.warning(
+            color.warning(
                 phrase(
                     "'{name}' is declared as '{value}' here, but as '{attributes}' in an enclosing element",
                     name=name,
@@ -131,7 +131,7 @@ def grab_macro(elt: Any, macros: dict[str, Any]) -> None:
     if name == "call" or "." in name:
         raise XacroException(f"a macro cannot be named '{name}'")
     if name.startswith("xacro:"):
-        colour.warning(f"macro names must not contain prefix 'xacro:': {name}")
+        color.warning(f"macro names must not contain prefix 'xacro:': {name}")
         name = name.removeprefix("xacro:")
     macro = macros[name] if name in macros else Macro()
     macro.name, macro.body = name, elt

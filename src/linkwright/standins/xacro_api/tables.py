@@ -6,7 +6,7 @@ import sys
 from typing import Any
 
 from linkwright.diagnostics import phrase
-from linkwright.standins.xacro_api import colour
+from linkwright.standins.xacro_api import color
 from linkwright.standins.xacro_api.errors import XacroException
 from linkwright.standins.xacro_api.evaluation import eval_text
 from linkwright.standins.xacro_api.stacks import STATE, print_location
@@ -59,7 +59,7 @@ class Table(dict[str, Any]):
             table.unevaluated.discard(key)
             table = table.parent
         if key in self.root:
-            colour.warning(f"Cannot remove global symbol: {key}")
+            color.warning(f"Cannot remove global symbol: {key}")
 
     def __contains__(self, key: object) -> bool:
         return dict.__contains__(self, key) or key in self.parent
@@ -80,7 +80,7 @@ class Table(dict[str, Any]):
 
     def _setitem(self, key: str, value: Any, unevaluated: bool) -> None:
         if key in self.root:
-            colour.warning(f"redefining global symbol: {key}")
+            color.warning(f"redefining global symbol: {key}")
             print_location()
         value = literal(value)
         dict.__setitem__(self, key, value)

@@ -125,11 +125,11 @@ class Studio:
             light(stage, generator)
         if "colours" not in options.fixed_properties:
             paint(stage, shot, generator)
-        image = stage.renderer.render(shot.optics, shot.pose, Channels.COLOUR | Channels.GEOMS)
-        assert image.colour is not None
+        image = stage.renderer.render(shot.optics, shot.pose, Channels.COLOR | Channels.GEOMS)
+        assert image.color is not None
         assert image.geoms is not None
         labels = label_image(stage, shot, image.geoms, options.min_size, options.min_visible)
-        colour = image.colour
+        colour = image.color
         if "lights" not in options.fixed_properties:
             fill_backdrop(colour, image.geoms, generator)
         if "lens" not in options.fixed_properties:

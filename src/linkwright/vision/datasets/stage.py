@@ -85,7 +85,7 @@ class Stage:
         copies_with_originals = self._copy(objects, copies)
         self._add_distractors(distractors)
         self._add_materials()
-        simulation.set_altered()
+        simulation.mark_changed()
         simulation.refresh()
         model, data = simulation.model, simulation.data
         self.props = [_make_prop(model, scene_object, bases[scene_object.name]) for scene_object in objects]
@@ -96,7 +96,7 @@ class Stage:
         labelled = {model.geom(name).id for name in object_geoms} | {
             int(geom) for prop in self.props for geom in prop.geoms
         }
-        surroundings = [
+        properties_used_by_plugins = [
             geom
             for geom in range(model.ngeom)
             if model.geom_group[geom] == VISUAL_GROUP and geom not in labelled and geom not in first
@@ -105,12 +105,12 @@ class Stage:
         plane = self._mujoco.mjtGeom.mjGEOM_PLANE
         flat_geoms = [
             geom
-            for geom in surroundings
+            for geom in properties_used_by_plugins
             if model.geom_type[geom] == plane or self.boxes[geom, 1, 2] - self.boxes[geom, 0, 2] < _MAX_FLAT_HEIGHT
         ]
         self.ground = flat_geoms
         self.structures: dict[str, list[int]] = {}
-        for geom in surroundings:
+        for geom in properties_used_by_plugins:
             if geom not in flat_geoms:
                 self.structures.setdefault(model.geom(geom).name.partition("::")[0], []).append(geom)
         self.area = self._area(labelled)

@@ -123,7 +123,7 @@ class ObjectSeeker(SingleNode):
             return
         self._answer_language = language or (self._language if request.language == ENGLISH else request.language)
         if self._seeker.phase is Phase.IDLE:
-            self._velocity.review()
+            self._velocity.update_type()
         self._cancel_trip()
         self._request, self._target, self._start_ns = request, None, self._now_ns()
         self._seeker.begin(follow=follow)

@@ -59,7 +59,7 @@ class Backlog:
             self._waiting.append(sample)
             return self._write_queued()
 
-    def review(self) -> bool:
+    def write_queued(self) -> bool:
         """Write the queued samples that may now be written, and return whether any remain queued."""
         with self._lock:
             return self._write_queued()

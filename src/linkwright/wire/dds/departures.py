@@ -93,7 +93,7 @@ class Departures:
             if missing.endpoint.participant != participant or missing.endpoint.guid in endpoints
         ]
 
-    def review(self) -> float | None:
+    def report_lost_publishers(self) -> float | None:
         """Report the publishers that have become lost since the last call.
 
         Returns:
@@ -101,11 +101,11 @@ class Departures:
         """
         if not self._watchers:
             return None
-        self._review_missing_writers()
-        processes = self._review_processes()
+        self._check_missing_writers()
+        processes = self._check_processes()
         return POLL_SECONDS if self._missing_writers or processes else None
 
-    def _review_missing_writers(self) -> None:
+    def _check_missing_writers(self) -> None:
         now, undecided = self._now(), []
         for missing in self._missing_writers:
             if missing.deadline is None:
@@ -116,7 +116,7 @@ class Departures:
                 self._report(missing.endpoint, missing.node)
         self._missing_writers = undecided
 
-    def _review_processes(self) -> bool:
+    def _check_processes(self) -> bool:
         """Check the processes of participants on this machine, and return whether there are any."""
         now = self._now()
         local_participants = [

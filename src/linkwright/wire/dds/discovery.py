@@ -186,7 +186,7 @@ class Discovery:
         Returns:
             The seconds until the next call, or None if no call is needed.
         """
-        return self._requests.review(is_complete=self._remote.have_all_announced())
+        return self._requests.create_next_reader(is_complete=self._remote.have_all_announced())
 
     def _listen_again(self) -> Callable[[], None]:
         topic, reader = self._new_reader()
@@ -201,7 +201,7 @@ class Discovery:
 
     # --- announcing --------------------------------------------------------------------------------------------------
 
-    def review_gid_size(self) -> None:
+    def update_gid_size(self) -> None:
         """Update the gid size to the size that the other participants understand."""
         own_participants = {participant.guid for participant in self._remote.participants() if participant.is_ours}
         sizes = {size for owner, size in self._gid_sizes.items() if owner not in own_participants}
@@ -278,7 +278,7 @@ class DiscoveryRequests:
         self._request_count: int | None = None
         self._due = 0.0
 
-    def review(self, *, is_complete: bool) -> float | None:
+    def create_next_reader(self, *, is_complete: bool) -> float | None:
         """Create the next reader if it is due, in place of the previous one.
 
         Args:

@@ -22,7 +22,7 @@ from linkwright.wire.dds.presences import QuietClient, QuietReader, open_presenc
 from linkwright.wire.dds.remote import RemoteGraph
 from linkwright.wire.dds.rtps.participant import RtpsParticipant
 from linkwright.wire.dds.rtps.values import Address
-from linkwright.wire.dds.services import IncomingService, OutsideServer
+from linkwright.wire.dds.services import IncomingService, RemoteServer
 from linkwright.wire.dds.settings import Range, Settings
 from linkwright.wire.dds.topics import IncomingTopic, OutgoingTopic
 from linkwright.wire.dds.waiting import WaitingThread
@@ -85,7 +85,7 @@ class Engine(AnyEngine):
         self._outgoing: dict[Any, OutgoingTopic] = {}
         self._incoming: dict[Any, IncomingTopic] = {}
         self._services: dict[Any, IncomingService] = {}
-        self._clients: dict[Any, OutsideServer] = {}
+        self._clients: dict[Any, RemoteServer] = {}
         self._presences: dict[Any, QuietReader | QuietClient] = {}
         self._closing_deadlines: dict[OutgoingTopic, float] = {}
         self._waiting: dict[OutgoingTopic, None] = {}
@@ -153,7 +153,7 @@ class Engine(AnyEngine):
         try:
             topic = OutgoingTopic(publisher, self._domain, self._on_mismatch, self._on_waiting)
         except BaseException:
-            publisher.set_outside(None)
+            publisher.set_remote_sender(None)
             raise
         self._outgoing[publisher] = topic
         self._control.attach(topic.entity, topic.on_status)
@@ -185,11 +185,11 @@ class Engine(AnyEngine):
 
     def open_client(self, client: Any) -> None:
         """Mirror a client."""
-        outside = OutsideServer(client, self._domain, self._on_match)
-        self._clients[client] = outside
-        self._connect_fast(outside)
-        self._reception.attach(outside.pair.reader, outside.on_data)
-        self._control.attach(outside.pair.writer, outside.on_writer_status)
+        remote_server = RemoteServer(client, self._domain, self._on_match)
+        self._clients[client] = remote_server
+        self._connect_fast(remote_server)
+        self._reception.attach(remote_server.pair.reader, remote_server.on_data)
+        self._control.attach(remote_server.pair.writer, remote_server.on_writer_status)
         self._is_announced = False
 
     def open_presence(self, presence: Any) -> None:
@@ -226,29 +226,29 @@ class Engine(AnyEngine):
         self._handle_discovery()
         self._close_finished_topics()
         self._write_waiting()
-        has_late_replies = self._review_replies()
+        has_late_replies = self._write_pending_replies()
         self._log_mismatches()
         self._announce()
-        next_request, next_review = self._discovery.request_missing_nodes(), self._departures.review()
+        next_request, next_check = self._discovery.request_missing_nodes(), self._departures.report_lost_publishers()
         if self._work:
             return 0.0
         if self._closing_deadlines or self._waiting or self._mismatch_deadlines or has_late_replies:
             return _POLL_INTERVAL_S
-        return min((seconds for seconds in (next_request, next_review) if seconds is not None), default=None)
+        return min((seconds for seconds in (next_request, next_check) if seconds is not None), default=None)
 
     def _handle_discovery(self) -> None:
         matches_changed, self._matches_changed = self._matches_changed, False
         has_changed, self._discovery.changed = self._discovery.changed, False
         if has_changed:
-            self._discovery.review_gid_size()
+            self._discovery.update_gid_size()
             self._discover_fast()
         if has_changed or matches_changed:
             for client in tuple(self._clients.values()):
-                client.review()
+                client.update_availability()
         if has_changed:
             self._remote.announce()
 
-    def _connect_fast(self, mirror: IncomingService | OutsideServer) -> None:
+    def _connect_fast(self, mirror: IncomingService | RemoteServer) -> None:
         """Announce a new service or client to the Fast DDS participants, if there are any."""
         if self._fast is None:
             self._discover_fast()
@@ -296,7 +296,7 @@ class Engine(AnyEngine):
         """Write the samples that waited for acknowledgements and can now be written."""
         for topic in tuple(self._waiting):
             del self._waiting[topic]  # removed first: an acknowledgement that arrives now adds it again
-            if topic.review():
+            if topic.write_queued():
                 self._waiting[topic] = None
 
     def _on_mismatch(self, topic: OutgoingTopic | IncomingTopic) -> None:
@@ -307,14 +307,14 @@ class Engine(AnyEngine):
         """Report incompatible QoS once the node names are known, or after a timeout."""
         for topic, deadline in tuple(self._mismatch_deadlines.items()):
             is_due = time.monotonic() >= deadline
-            topic.log_mismatches(finally_=is_due)
+            topic.log_mismatches(include_unnamed=is_due)
             if is_due:
                 self._mismatch_deadlines.pop(topic, None)
 
-    def _review_replies(self) -> bool:
+    def _write_pending_replies(self) -> bool:
         busy_services = [service for service in tuple(self._services.values()) if service.has_more_to_do]
         for service in busy_services:
-            service.review()
+            service.write_pending_replies()
         return any(service.has_more_to_do for service in busy_services)
 
     def _close_finished_topics(self) -> None:

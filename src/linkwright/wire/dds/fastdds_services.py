@@ -95,7 +95,7 @@ class FastServer:
             with self._lock:
                 self._early_requests.append(request)
 
-    def review(self) -> None:
+    def write_pending_replies(self) -> None:
         """Write replies to clients that are now known.
 
         Early requests whose sequence numbers are now known are passed on.
@@ -111,7 +111,7 @@ class FastServer:
 
     @property
     def has_more_to_do(self) -> bool:
-        """Whether `review` must be called again soon."""
+        """Whether `write_pending_replies` must be called again soon."""
         return bool(self._late_replies or self._early_requests)
 
     def close(self) -> None:

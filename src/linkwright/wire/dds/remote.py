@@ -22,7 +22,7 @@ from linkwright.wire.dds.names import (
     ros_service_type,
 )
 from linkwright.wire.dds.participant import NAME, process_namespace
-from linkwright.wire.outside import Outside
+from linkwright.wire.remote_entities import RemoteEntities
 from linkwright.wire.type_names import ros_type
 
 _FAST_DDS = b"\x01\x0f"
@@ -173,10 +173,10 @@ class DepartureWatch(Protocol):
         """Handle an announcement of the current endpoints of a participant's nodes."""
 
 
-class RemoteGraph(Outside):
+class RemoteGraph(RemoteEntities):
     """The nodes and endpoints of other processes.
 
-    `Outside` describes the thread safety.
+    `RemoteEntities` describes the thread safety.
     """
 
     def __init__(self) -> None:

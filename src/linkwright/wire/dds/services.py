@@ -113,10 +113,10 @@ class Pair:
         self._participant.delete(self.reader, self.writer, *self._topics)
 
 
-class OutsideServer:
+class RemoteServer:
     """The connection of a client to the servers of other processes.
 
-    Implements `linkwright.graph.endpoints.service.OutsideService`.
+    Implements `linkwright.graph.endpoints.service.RemoteService`.
 
     Args:
         client: the client.
@@ -170,7 +170,7 @@ class OutsideServer:
             self._on_match()
         return False
 
-    def review(self) -> None:
+    def update_availability(self) -> None:
         """Check whether a server is available, and update the client.
 
         A server is available if both its reader and its writer match ours.
@@ -179,14 +179,14 @@ class OutsideServer:
         is_ready = self._uses_cyclone or (self._fast is not None and self._fast.is_ready())
         if is_ready != self._is_ready:
             self._is_ready = is_ready
-            self._client.set_outside(self if is_ready else None)
+            self._client.set_remote_service(self if is_ready else None)
 
     def close(self) -> None:
         """Delete the endpoints.
 
         Pending requests stay unanswered.
         """
-        self._client.set_outside(None)
+        self._client.set_remote_service(None)
         self._response_callbacks.clear()
         if self._fast is not None:
             self._fast.close()
@@ -194,7 +194,7 @@ class OutsideServer:
 
     def abandon(self) -> None:
         """Stop sending requests, without calling Cyclone."""
-        self._client.outside = None
+        self._client.remote_service = None
 
     def _forget(self, number: int) -> None:
         self._response_callbacks.pop(number, None)
@@ -203,7 +203,9 @@ class OutsideServer:
         request_readers = [self._remote.endpoint(handle) for handle in self._dds.matched(self.pair.writer, writer=True)]
         cyclone_readers = [endpoint for endpoint in request_readers if endpoint is not None and not endpoint.is_fast]
         reply_writers = [self._remote.endpoint(handle) for handle in self._dds.matched(self.pair.reader, writer=False)]
-        return any(_have_same_owner(a, b, "serviceid") for a in cyclone_readers for b in reply_writers)
+        return any(
+            _have_same_owner(reader, writer, "serviceid") for reader in cyclone_readers for writer in reply_writers
+        )
 
 
 class IncomingService:
@@ -248,7 +250,7 @@ class IncomingService:
         for request in early_requests:
             self._fast.on_early_request(request)
 
-    def review(self) -> None:
+    def write_pending_replies(self) -> None:
         """Write replies whose clients can now be reached or have been unreachable for too long."""
         with self._lock:
             for _ in range(len(self._late_replies)):
@@ -258,7 +260,7 @@ class IncomingService:
                 else:
                     self._late_replies.append((deadline, sender, client_id, number, response))
         if self._fast is not None:
-            self._fast.review()
+            self._fast.write_pending_replies()
 
     @property
     def has_more_to_do(self) -> bool:
@@ -307,16 +309,16 @@ class IncomingService:
         return any(_have_same_owner(sender, reader, "clientid") for reader in readers)
 
 
-def _have_same_owner(a: RemoteEndpoint | None, b: RemoteEndpoint | None, key: str) -> bool:
+def _have_same_owner(first: RemoteEndpoint | None, second: RemoteEndpoint | None, key: str) -> bool:
     """Return whether two endpoints belong to the same client or server.
 
     The comparison uses the ID in the USER_DATA, or the participant if there is no ID.
     """
-    if a is None or b is None:
+    if first is None or second is None:
         return False
-    if key in a.user_data or key in b.user_data:
-        return a.user_data.get(key) == b.user_data.get(key)
-    return a.participant == b.participant
+    if key in first.user_data or key in second.user_data:
+        return first.user_data.get(key) == second.user_data.get(key)
+    return first.participant == second.participant
 
 
 def _split_sample(data: bytes) -> tuple[int, int, bytes]:

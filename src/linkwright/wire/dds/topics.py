@@ -139,7 +139,7 @@ class OutgoingTopic(MirroredTopic):
         publisher: the publisher.
         domain: the domain to write in.
         on_mismatch: called when a subscription of another process requests more than the publisher offers.
-        on_waiting: called when messages are queued, so that `review` must be called again soon.
+        on_waiting: called when messages are queued, so that `write_queued` must be called again soon.
     """
 
     _STATUS = PUBLICATION_MATCHED | OFFERED_INCOMPATIBLE_QOS
@@ -156,7 +156,7 @@ class OutgoingTopic(MirroredTopic):
         self._on_waiting = on_waiting
         self._paced_writer = self._make_paced_writer(domain)
         self._backlog = self._make_backlog(domain.fragment_size)
-        publisher.assert_outside = self._assert_liveliness
+        publisher.assert_remote_liveliness = self._assert_liveliness
         self._is_transient_local = publisher.qos_profile.durability is DurabilityPolicy.TRANSIENT_LOCAL
         self._send = self._sender()
         self.on_status()
@@ -171,18 +171,18 @@ class OutgoingTopic(MirroredTopic):
         match_status = MatchedStatus()
         if self._dds.dds_get_publication_matched_status(self.entity, c.byref(match_status)) >= 0:
             is_needed = self._is_transient_local or match_status.current_count > 0
-            self._publisher.set_outside(self._send if is_needed else None, self._acknowledged)
-            self._publisher.set_outside_count(match_status.current_count)
+            self._publisher.set_remote_sender(self._send if is_needed else None, self._acknowledged)
+            self._publisher.set_remote_count(match_status.current_count)
         if status.value & OFFERED_INCOMPATIBLE_QOS:
             self._on_mismatch(self)
         return False
 
-    def review(self) -> bool:
+    def write_queued(self) -> bool:
         """Write the samples that need not wait for acknowledgements any longer.
 
         Returns whether samples are still queued.
         """
-        return self._backlog is not None and self._backlog.review()
+        return self._backlog is not None and self._backlog.write_queued()
 
     def acknowledged(self, nanoseconds: int) -> bool:
         """Wait until all reliable readers have acknowledged all published samples.
@@ -190,22 +190,22 @@ class OutgoingTopic(MirroredTopic):
         Returns False if that takes longer than the given time.
         """
         deadline_ns = time.monotonic_ns() + nanoseconds
-        while self.review():
+        while self.write_queued():
             if not self._wait_for_acks(max(0, deadline_ns - time.monotonic_ns())):
                 return False
         return self._wait_for_acks(max(0, deadline_ns - time.monotonic_ns()))
 
     def close(self) -> None:
         """Delete the writer."""
-        self._publisher.set_outside(None)
+        self._publisher.set_remote_sender(None)
         if self._paced_writer is not None:
             self._paced_writer.close()
         self._participant.delete(self.entity, self._topic)
 
     def abandon(self) -> None:
         """Stop sending, without calling Cyclone."""
-        self._publisher.outside = None
-        self._publisher.assert_outside = None
+        self._publisher.send_remote = None
+        self._publisher.assert_remote_liveliness = None
 
     def _create(self, qos: Any) -> int:
         return self._participant.create_writer(self._topic, qos)
@@ -296,13 +296,13 @@ class OutgoingTopic(MirroredTopic):
         sample = Sample(data, len(data))
         start = time.monotonic()
         must_retry = published_ns is not None or self._publisher.qos_profile.history is HistoryPolicy.KEEP_ALL
-        code = self._hand_over(sample, published_ns)
+        code = self._try_write(sample, published_ns)
         while code == TIMEOUT and must_retry and time.monotonic() < start + _PATIENCE and not self._participant.closed:
-            code = self._hand_over(sample, published_ns)
+            code = self._try_write(sample, published_ns)
         self._log_failure(code)
         return code >= 0
 
-    def _hand_over(self, sample: Sample, published_ns: int | None) -> int:
+    def _try_write(self, sample: Sample, published_ns: int | None) -> int:
         if published_ns is None:
             code: int = self._dds.dds_write(self.entity, c.byref(sample))
         else:
@@ -321,17 +321,17 @@ class OutgoingTopic(MirroredTopic):
             f"A message of topic '{self._publisher.name}' was not sent to other processes: {reason}"
         )
 
-    def log_mismatches(self, *, finally_: bool) -> None:
+    def log_mismatches(self, *, include_unnamed: bool) -> None:
         """Report subscriptions of other processes that request more than this publisher offers.
 
         Args:
-            finally_: whether to report also subscriptions whose node name is not known yet.
+            include_unnamed: whether to report also subscriptions whose node name is not known yet.
         """
         offered = self._publisher.qos_profile
         for reader in self._remote.topic_endpoints(self.topic_name, writers=False):
             policies = incompatible_policies(offered, reader.qos)
             name = self._remote.node_name(reader)
-            if policies and (name or finally_) and self._log_limits.is_new(reader.guid):
+            if policies and (name or include_unnamed) and self._log_limits.is_new(reader.guid):
                 sides = describe_mismatch(self._publisher.node_name, offered, name or _NAMELESS, reader.qos, policies)
                 report_to_publisher(self._publisher, policies[-1].name, sides)
 
@@ -394,30 +394,30 @@ class IncomingTopic(MirroredTopic):
         if status & SUBSCRIPTION_MATCHED:
             match_status = MatchedStatus()
             self._dds.dds_get_subscription_matched_status(self.entity, c.byref(match_status))
-            self._subscription.set_outside_count(match_status.current_count)
+            self._subscription.set_remote_count(match_status.current_count)
         if status & SAMPLE_LOST:
             lost_status = CountStatus()
             self._dds.dds_get_sample_lost_status(self.entity, c.byref(lost_status))
             if lost_status.total_count_change > 0:
-                self._subscription.count_lost_outside(lost_status.total_count_change)
+                self._subscription.count_lost_remote(lost_status.total_count_change)
         if status & LIVELINESS_CHANGED:
             liveliness_status = LivelinessChangedStatus()
             self._dds.dds_get_liveliness_changed_status(self.entity, c.byref(liveliness_status))
-            self._subscription.set_outside_liveliness(liveliness_status.alive_count, liveliness_status.not_alive_count)
+            self._subscription.set_remote_liveliness(liveliness_status.alive_count, liveliness_status.not_alive_count)
         if status & REQUESTED_INCOMPATIBLE_QOS:
             self._on_mismatch(self)
 
-    def log_mismatches(self, *, finally_: bool) -> None:
+    def log_mismatches(self, *, include_unnamed: bool) -> None:
         """Report publishers of other processes that offer less than this subscription requests.
 
         Args:
-            finally_: whether to report also publishers whose node name is not known yet.
+            include_unnamed: whether to report also publishers whose node name is not known yet.
         """
         requested = self._subscription.qos_profile
         for writer in self._remote.topic_endpoints(self.topic_name, writers=True):
             policies = incompatible_policies(writer.qos, requested)
             name = self._remote.node_name(writer)
-            if policies and (name or finally_) and self._log_limits.is_new(writer.guid):
+            if policies and (name or include_unnamed) and self._log_limits.is_new(writer.guid):
                 sides = describe_mismatch(
                     name or _NAMELESS, writer.qos, self._subscription.node_name, requested, policies
                 )

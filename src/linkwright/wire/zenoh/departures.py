@@ -108,7 +108,7 @@ class Departures:
         if self._watchers and token.kind is EndpointKind.PUBLISHER:
             self._missing_publishers.append(_MissingPublisher(key, token, self._now() + GRACE))
 
-    def review(self) -> float | None:
+    def report_lost_publishers(self) -> float | None:
         """Report the publishers that have become lost since the last call.
 
         Returns:

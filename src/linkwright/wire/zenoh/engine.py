@@ -27,7 +27,7 @@ from linkwright.wire.zenoh.departures import Departures
 from linkwright.wire.zenoh.interests import OURS, Interests
 from linkwright.wire.zenoh.opening import SessionOpener
 from linkwright.wire.zenoh.remote import RemoteGraph
-from linkwright.wire.zenoh.services import IncomingService, OutsideServer
+from linkwright.wire.zenoh.services import IncomingService, RemoteServer
 from linkwright.wire.zenoh.session import close_session, configuration, is_client
 from linkwright.wire.zenoh.settings import Settings
 from linkwright.wire.zenoh.tokens import Token
@@ -167,7 +167,7 @@ class Engine(AnyEngine):
             token = self._create_token(publisher, EndpointKind.PUBLISHER)
             outgoing = OutgoingTopic(publisher, token, self._session, self._matches_changed)
         except BaseException:
-            publisher.set_outside(None)
+            publisher.set_remote_sender(None)
             raise
         self._own_gids.add(token.gid)
         self._announce(publisher, outgoing)
@@ -194,7 +194,7 @@ class Engine(AnyEngine):
     def open_client(self, client: Any) -> None:
         """Mirror a client."""
         token = self._create_token(client, EndpointKind.CLIENT)
-        self._announce(client, OutsideServer(client, token, self._session, self._matches_changed))
+        self._announce(client, RemoteServer(client, token, self._session, self._matches_changed))
 
     def open_presence(self, presence: Any) -> None:
         """Announce an endpoint that neither sends nor receives, by declaring its token."""
@@ -226,7 +226,7 @@ class Engine(AnyEngine):
         peer_kind = _OPPOSITE.get(mirror.token.kind)
         if peer_kind is not None:
             self._interests.add(tokens.peer_token_pattern(mirror.token, peer_kind))
-        self._review(mirror)
+        self._update_match_count(mirror)
 
     def _create_token(self, endpoint: Any, kind: EndpointKind) -> Token:
         node_tokens = self._nodes.get(endpoint.node.identity)
@@ -303,7 +303,7 @@ class Engine(AnyEngine):
             self._wake_event.clear()
             self._process_some_requests()
             guarded(self._update_mirrors, self._report)
-            timeout = 0.0 if self._work else guarded(self._departures.review, self._report)
+            timeout = 0.0 if self._work else guarded(self._departures.report_lost_publishers, self._report)
             self._wake_event.wait(timeout)
 
     def _update_mirrors(self) -> None:
@@ -312,7 +312,7 @@ class Engine(AnyEngine):
         if has_changed or self._is_stale:
             self._is_stale = False
             for mirror in tuple(self._mirrors.values()):
-                self._review(mirror)
+                self._update_match_count(mirror)
         if has_changed:
             self._remote.announce()
 
@@ -345,10 +345,10 @@ class Engine(AnyEngine):
         elif appeared:
             self._departures.session_leaves(session)
 
-    def _review(self, mirror: Any) -> None:
+    def _update_match_count(self, mirror: Any) -> None:
         peer_kind = _OPPOSITE.get(mirror.token.kind)
         if peer_kind is not None:
-            mirror.review(self._remote.count(peer_kind, mirror.token.data_key))
+            mirror.update_match_count(self._remote.count(peer_kind, mirror.token.data_key))
 
     def _look_for_router(self) -> None:
         """Wait for a router if ZENOH_ROUTER_CHECK_ATTEMPTS is set, then continue without one."""

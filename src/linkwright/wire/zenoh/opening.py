@@ -39,7 +39,7 @@ class SessionOpener:
     def __init__(self, logger: Logger, cancel_event: threading.Event) -> None:
         self._logger = logger
         self._cancel_event = cancel_event
-        self.waits = False
+        self.is_waiting = False
         """Whether opening a session currently waits for a router or peers."""
 
     def open(self, config: zenoh.Config) -> zenoh.Session:
@@ -53,14 +53,14 @@ class SessionOpener:
         if seconds == 0:
             return open_with(config)
         config.insert_json5("connect/timeout_ms", "0")
-        self.waits = True
+        self.is_waiting = True
         reporter = ObstacleReporter(config, self._log_wait)
         try:
             reporter.start()
             return self._open_until(config, time.monotonic() + seconds)
         finally:
             reporter.end()
-            self.waits = False
+            self.is_waiting = False
 
     def _open_until(self, config: zenoh.Config, deadline: float) -> zenoh.Session:
         while True:

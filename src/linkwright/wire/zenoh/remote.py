@@ -9,17 +9,17 @@ from threading import Lock
 
 from linkwright.graph.endpoints.base import EndpointInfo, EndpointKind
 from linkwright.graph.names.rules import NodeIdentity
-from linkwright.wire.outside import Outside
+from linkwright.wire.remote_entities import RemoteEntities
 from linkwright.wire.zenoh.tokens import Token
 
 _GONE_FOR = 0.5
 """Seconds for which a removed token is not added again. Zenoh retries broken links only after one second."""
 
 
-class RemoteGraph(Outside):
+class RemoteGraph(RemoteEntities):
     """The nodes and endpoints of other sessions.
 
-    `Outside` describes the thread safety.
+    `RemoteEntities` describes the thread safety.
     """
 
     def __init__(self) -> None:

@@ -28,10 +28,10 @@ _RESULT_TIMEOUT_S = 30 * 24 * 3600.0
 """The same for the result of an action, which may take any time."""
 
 
-class OutsideServer:
+class RemoteServer:
     """The connection of a client to the servers of other processes.
 
-    Implements `linkwright.graph.endpoints.service.OutsideService`.
+    Implements `linkwright.graph.endpoints.service.RemoteService`.
 
     Args:
         client: the client.
@@ -67,7 +67,7 @@ class OutsideServer:
         self._querier.get(handler, payload=to_cdr(request), attachment=metadata)
         return partial(self._forget, number)
 
-    def review(self, count: int) -> None:
+    def update_match_count(self, count: int) -> None:
         """Check whether a server is reachable, and update the client.
 
         Args:
@@ -76,21 +76,21 @@ class OutsideServer:
         is_ready = count > 0 and self._querier.matching_status.matching
         if is_ready != self._is_ready:
             self._is_ready = is_ready
-            self._client.set_outside(self if is_ready else None)
+            self._client.set_remote_service(self if is_ready else None)
 
     def close(self) -> None:
         """Withdraw the client.
 
         Pending requests stay unanswered.
         """
-        self._client.set_outside(None)
+        self._client.set_remote_service(None)
         self._response_callbacks.clear()
         self._listener.undeclare()
         self._querier.undeclare()
 
     def abandon(self) -> None:
         """Stop sending requests, without calling Zenoh."""
-        self._client.outside = None
+        self._client.remote_service = None
 
     def _receive(self, number: int, reply: zenoh.Reply) -> None:
         """Pass the first reply to a request on to the client.

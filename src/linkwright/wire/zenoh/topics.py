@@ -74,7 +74,7 @@ class OutgoingTopic:
             self._listener = self._zenoh.declare_matching_listener(Callback(lambda _: on_change(), indirect=False))
         self._send: Callable[[Any], None] | None = self._sender()
 
-    def review(self, count: int) -> None:
+    def update_match_count(self, count: int) -> None:
         """Enable or disable sending, and update the number of remote subscriptions.
 
         Sending is enabled while there is a subscription, or while late joiners must be served.
@@ -83,8 +83,8 @@ class OutgoingTopic:
             count: the number of known remote subscriptions.
         """
         is_needed = self._is_transient_local or self._zenoh.matching_status.matching
-        self._publisher.set_outside(self._send if is_needed else None, _is_acknowledged)
-        self._publisher.set_outside_count(count if is_needed else 0)
+        self._publisher.set_remote_sender(self._send if is_needed else None, _is_acknowledged)
+        self._publisher.set_remote_count(count if is_needed else 0)
 
     def close(self) -> None:
         """Withdraw the publisher.
@@ -101,7 +101,7 @@ class OutgoingTopic:
 
     def abandon(self) -> None:
         """Stop sending, without calling Zenoh."""
-        self._publisher.outside = None
+        self._publisher.send_remote = None
 
     def _sender(self) -> Callable[[Any], None]:
         put, gid, now, write = self._zenoh.put, self.token.gid, time.time_ns, attachment.write
@@ -156,10 +156,10 @@ class IncomingTopic:
         else:
             self._zenoh = session.declare_subscriber(key, handler, allowed_origin=zenoh.Locality.REMOTE)
 
-    def review(self, count: int) -> None:
+    def update_match_count(self, count: int) -> None:
         """Update the number of known remote publishers."""
-        self._subscription.set_outside_count(count)
-        self._subscription.set_outside_liveliness(count, 0)  # Zenoh reports only live publishers
+        self._subscription.set_remote_count(count)
+        self._subscription.set_remote_liveliness(count, 0)  # Zenoh reports only live publishers
 
     def close(self) -> None:
         """Withdraw the subscription."""
@@ -181,7 +181,7 @@ class IncomingTopic:
         last_number = self._last_numbers.get(gid)
         self._last_numbers[gid] = number
         if last_number is not None and number > last_number + 1:
-            self._subscription.count_lost_outside(number - last_number - 1)
+            self._subscription.count_lost_remote(number - last_number - 1)
         info = MessageInfo(sent_ns, time.time_ns(), gid, True, number)
         try:
             self._subscription.receive(sample.payload.to_bytes(), info)

@@ -75,9 +75,9 @@ class ZenohTransport(BackgroundTransport):
         self._discovery_done.set()
 
     @property
-    def waits(self) -> bool:
+    def waits_for_others(self) -> bool:
         """Whether opening the session waits for a router, because the settings require one."""
-        return self._opener is not None and self._opener.waits
+        return self._opener is not None and self._opener.is_waiting
 
     def _wait_for_answer(self, answered: Event) -> None:
         """Wait for the answer to a request for tokens, and until no more tokens arrive.

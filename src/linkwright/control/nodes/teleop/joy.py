@@ -33,7 +33,7 @@ class _Settings:
         number: the number of the device.
         name: a part of the device's name; empty to use the number or path.
         path: the path of the device; None to use the number or name.
-        deadzone: the fraction of an axis around its centre that counts as 0.
+        deadzone: the fraction of an axis around its center that counts as 0.
         repeat_rate: the rate of messages while nothing changes, in Hz; 0 for none.
         coalesce: the time for which changes of axis positions are collected, in seconds.
         sticky: whether a button stays pressed until it is pressed again.
@@ -99,9 +99,9 @@ class JoyNode(SingleNode):
         self._message_type = get_message("sensor_msgs/msg/Joy")
         self._publisher = node.create_publisher(self._message_type, "joy", _DEPTH)
         clock = Clock(clock_type=ClockType.STEADY_TIME, timebase=node.get_clock().timebase)
-        self._soon = node.create_timer(settings.coalesce, self._publish, clock=clock, autostart=False)
+        self._publish_timer = node.create_timer(settings.coalesce, self._publish, clock=clock, autostart=False)
         is_repeated = settings.repeat_rate > 0.0
-        self._repeat = node.create_timer(
+        self._repeat_timer = node.create_timer(
             1.0 / settings.repeat_rate if is_repeated else 1.0, self._publish, clock=clock, autostart=False
         )
         self._retry_timer = node.create_timer(_RETRY_SECONDS, self._open, clock=clock)
@@ -111,7 +111,7 @@ class JoyNode(SingleNode):
         path = self._settings.device()
         if path is None:
             device_label = self._settings.requested_device()
-            self._wait(localized(phrase("the joystick {wanted} is not connected; waiting for it", wanted=device_label)))
+            self._wait(localized(phrase("the joystick {device} is not connected; waiting for it", device=device_label)))
             return
         try:
             self._device = JoystickDevice(path, self._on_events, self._on_unplugged)
@@ -135,7 +135,7 @@ class JoyNode(SingleNode):
             f"Opened joystick: {self._device.name or path}.  deadzone: {self._settings.deadzone:f}"
         )
         if self._settings.repeat_rate > 0.0:
-            self._repeat.reset()
+            self._repeat_timer.reset()
 
     def _wait(self, text: str) -> None:
         """Log the reason why there is no joystick, unless it was logged last."""
@@ -145,8 +145,8 @@ class JoyNode(SingleNode):
 
     def _on_unplugged(self) -> None:
         self._device = None
-        self._soon.cancel()
-        self._repeat.cancel()
+        self._publish_timer.cancel()
+        self._repeat_timer.cancel()
         self._axes, self._buttons = [0.0] * len(self._axes), [0] * len(self._buttons)
         self._send()
         self._node.get_logger().warning(localized(phrase("the joystick was disconnected; waiting for it")))
@@ -163,8 +163,8 @@ class JoyNode(SingleNode):
                 publish_now, publish_soon = publish_now or not event.is_initial, publish_soon or event.is_initial
         if publish_now or (publish_soon and self._settings.coalesce == 0.0):
             self._publish()
-        elif publish_soon and self._soon.is_canceled():
-            self._soon.reset()
+        elif publish_soon and self._publish_timer.is_canceled():
+            self._publish_timer.reset()
 
     def _update_axis(self, event: JoystickEvent) -> bool:
         axes = self._axes
@@ -183,11 +183,11 @@ class JoyNode(SingleNode):
         return event.is_initial or old_value != buttons[event.number]
 
     def _publish(self) -> None:
-        self._soon.cancel()
+        self._publish_timer.cancel()
         if self._device is None:
             return
         if self._settings.repeat_rate > 0.0:
-            self._repeat.reset()
+            self._repeat_timer.reset()
         self._send()
 
     def _send(self) -> None:
@@ -217,7 +217,7 @@ def deflection(value: int, deadzone: float) -> float:
 
     Args:
         value: the device's value from -32767 to 32767, positive backwards and to the right.
-        deadzone: the fraction around the centre that counts as 0; beyond it, the deflection grows from 0.
+        deadzone: the fraction around the center that counts as 0; beyond it, the deflection grows from 0.
     """
     raw_deflection = max(-1.0, min(1.0, -value / MAX_VALUE))
     excess = abs(raw_deflection) - deadzone
@@ -245,13 +245,15 @@ def _number_in_range(node: Node, name: str, default: float, minimum: float, maxi
     if isfinite(value) and value >= minimum and (maximum is None or value <= maximum):
         return float(value)
     message = (
-        phrase("parameter '{name}' must be at least {least}, but it is {value}", name=name, least=minimum, value=value)
+        phrase(
+            "parameter '{name}' must be at least {minimum}, but it is {value}", name=name, minimum=minimum, value=value
+        )
         if maximum is None
         else phrase(
-            "parameter '{name}' must be between {least} and {most}, but it is {value}",
+            "parameter '{name}' must be between {minimum} and {maximum}, but it is {value}",
             name=name,
-            least=minimum,
-            most=maximum,
+            minimum=minimum,
+            maximum=maximum,
             value=value,
         )
     )

@@ -106,7 +106,7 @@ class TeleopTwistKeyboard(SingleNode):
             self._apply_key(key)
         if self._key_timeout:
             self._timeout_timer.reset()
-        self._adopt_message_type()
+        self._update_message_type()
         self._publish()
 
     def _apply_key(self, key: str) -> None:
@@ -136,16 +136,16 @@ class TeleopTwistKeyboard(SingleNode):
         if not self.finished.done():
             self.finished.set_result(0)
 
-    def _adopt_message_type(self) -> bool:
+    def _update_message_type(self) -> bool:
         """Adopt the message type of the subscriptions, and return whether there are any."""
-        return self._topic.review(may_change=self._direction == STILL or self._has_warned) > 0
+        return self._topic.update_type(may_change=self._direction == STILL or self._has_warned) > 0
 
     def _review(self) -> None:
         """Adopt the message type of the subscriptions.
 
         If there are none while the robot should move, warn once.
         """
-        if self._adopt_message_type():
+        if self._update_message_type():
             self._has_warned = False
         elif self._direction != STILL and not self._has_warned:
             self._has_warned = True

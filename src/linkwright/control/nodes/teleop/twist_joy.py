@@ -123,7 +123,7 @@ class TeleopTwistJoy(SingleNode):
             self._topic.stop()
 
     def _review(self) -> None:
-        self._topic.review(may_change=not self._is_driving)
+        self._topic.update_type(may_change=not self._is_driving)
         if self._is_driving and not any(
             endpoint.name == self._joy_topic and endpoint.kind is EndpointKind.PUBLISHER
             for endpoint in self._node.graph.endpoints()

@@ -41,7 +41,7 @@ class _Source:
         """Record the arrival of a message."""
         self._latest_message_ns = now_ns
 
-    def expired(self, now_ns: int) -> bool:
+    def is_expired(self, now_ns: int) -> bool:
         """Return whether no message arrived within the timeout.
 
         An input without a timeout never expires.
@@ -54,7 +54,7 @@ class _Source:
         )
 
     @property
-    def silent(self) -> bool:
+    def is_silent(self) -> bool:
         """Whether no message has arrived yet."""
         return self._latest_message_ns is None
 
@@ -95,11 +95,11 @@ class TwistMux(SingleNode):
         self._commander = Commander(partial(send_stop, node, self._publisher))
         for source in self._topics:
             velocities: Subscription[Any] = node.create_subscription(
-                kind, source.topic, partial(self._velocity, source, DriverWatch.of(node)), _DEPTH
+                kind, source.topic, partial(self._on_velocity, source, DriverWatch.of(node)), _DEPTH
             )
             self._commander.watch(velocities)
         for source in self._locks:
-            node.create_subscription("std_msgs/msg/Bool", source.topic, partial(self._lock, source), _DEPTH)
+            node.create_subscription("std_msgs/msg/Bool", source.topic, partial(self._on_lock, source), _DEPTH)
         for source in (*self._topics, *self._locks):
             timeout = f"{source.timeout:f}s" if source.timeout > 0.0 else "None"
             node.get_logger().info(
@@ -111,7 +111,7 @@ class TwistMux(SingleNode):
     def _now_ns(self) -> int:
         return self._node.get_clock().now().nanoseconds
 
-    def _velocity(self, source: _Source, drivers: DriverWatch, message: Any, info: MessageInfo) -> None:
+    def _on_velocity(self, source: _Source, drivers: DriverWatch, message: Any, info: MessageInfo) -> None:
         drivers.note_command(message, info)
         now_ns = self._now_ns()
         source.record_message(now_ns)
@@ -123,15 +123,15 @@ class TwistMux(SingleNode):
             self._commander.note_publisher(info)
             self._publisher.publish(message)
 
-    def _lock(self, source: _Source, message: Any) -> None:
+    def _on_lock(self, source: _Source, message: Any) -> None:
         source.record_message(self._now_ns())
         source.locked = message.data
 
     def _lock_priority(self, now_ns: int) -> int:
-        return max((lock.priority for lock in self._locks if lock.locked or lock.expired(now_ns)), default=0)
+        return max((lock.priority for lock in self._locks if lock.locked or lock.is_expired(now_ns)), default=0)
 
     def _is_masked(self, source: _Source, lock_priority: int, now_ns: int) -> bool:
-        return source.silent or source.expired(now_ns) or source.priority < lock_priority
+        return source.is_silent or source.is_expired(now_ns) or source.priority < lock_priority
 
     def _health(self) -> Health:
         now_ns = self._now_ns()
@@ -143,7 +143,7 @@ class TwistMux(SingleNode):
             for topic in self._topics
         }
         values |= {
-            f"lock {lock.name}": lock.diagnostic_line("locked" if lock.locked or lock.expired(now_ns) else "free")
+            f"lock {lock.name}": lock.diagnostic_line("locked" if lock.locked or lock.is_expired(now_ns) else "free")
             for lock in self._locks
         }
         values["current priority"] = str(lock)

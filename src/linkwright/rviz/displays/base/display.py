@@ -24,7 +24,7 @@ from linkwright.rviz.config.former_names import former_keys
 from linkwright.rviz.config.property_store import PropertyStore
 from linkwright.rviz.config.rviz_config import DisplayConfig
 from linkwright.rviz.config.schema import FIXED_FRAME, Path, Schema
-from linkwright.rviz.config.yaml_tree import Memory
+from linkwright.rviz.config.yaml_tree import SavedEntry
 from linkwright.rviz.context import ViewerContext
 from linkwright.rviz.frames.stream import FrameView, TimeControl
 
@@ -44,13 +44,13 @@ class DisplayHost(Protocol):
     frames: FrameView
     time: TimeControl
 
-    def robot_changed(self, gone: set[str]) -> None:
+    def on_robot_changed(self, removed_frames: set[str]) -> None:
         """Handle a new robot of a display.
 
-        `gone` contains the frames that only the previous robot had.
+        `removed_frames` contains the frames that only the previous robot had.
         """
 
-    def fading_changed(self) -> None:
+    def on_fading_changed(self) -> None:
         """Handle a change to a TF display's frame timeout or check box."""
 
 
@@ -146,7 +146,7 @@ class ViewerDisplay:
             ValueError: the property does not accept the value.
         """
         accepted_value = self.properties.set(path, value)
-        self.changed(path)
+        self.on_property_changed(path)
         if self.properties.is_condition(path):
             self.publish_properties()
         self.pages.publish(PropertyChanged(self.property_id(path), accepted_value))
@@ -154,17 +154,17 @@ class ViewerDisplay:
     def set_checked(self, value: bool) -> None:
         """Set the check box, and send its value to all pages.
 
-        The caller must then call `enabled_changed`.
+        The caller must then call `on_enabled_changed`.
         """
         self.config.checked = value
         self.pages.publish(PropertyChanged(f"{self.id}/Enabled", value))
 
-    def recall(self, memories: Sequence[Memory]) -> None:
+    def restore(self, saved_entries: Sequence[SavedEntry]) -> None:
         """Restore and apply previous values of properties, and send all property rows to the pages."""
-        for path in self.properties.recall(memories):
-            self.changed(path)
-        self.properties.recall(memories)  # `changed` may have set further properties, so restore again
-        self.recalled()
+        for path in self.properties.restore(saved_entries):
+            self.on_property_changed(path)
+        self.properties.restore(saved_entries)  # `on_property_changed` may have set further properties
+        self.on_properties_restored()
         self.publish_properties()
 
     def property_id(self, path: Path) -> str:
@@ -195,33 +195,33 @@ class ViewerDisplay:
     def stop(self) -> None:
         """Stop the display permanently."""
 
-    def changed(self, path: Path) -> None:
+    def on_property_changed(self, path: Path) -> None:
         """Handle a property's new value."""
 
-    def recalled(self) -> None:
+    def on_properties_restored(self) -> None:
         """Update derived state after values were restored and `changed` was called for each of them."""
 
-    def enabled_changed(self) -> None:
+    def on_enabled_changed(self) -> None:
         """Handle a change to the check box of the display or of a group that contains the display."""
-        self.frames_changed()
+        self.on_frames_changed()
 
-    def arranged(self, displays: Sequence[ViewerDisplay]) -> None:
+    def on_displays_rearranged(self, displays: Sequence[ViewerDisplay]) -> None:
         """Handle a change to the list of displays: one was added, removed, moved or renamed.
 
         Args:
             displays: all displays, each group before its contents.
         """
 
-    def frames_changed(self) -> None:
+    def on_frames_changed(self) -> None:
         """Handle a change to the frames, their known poses, or the Fixed Frame."""
 
     def receive(self, message: Any) -> None:
         """Handle a page's message for this display, such as a mesh status or a marker action."""
 
-    def time_changed(self) -> None:
+    def on_time_changed(self) -> None:
         """Handle a pause or resume of the viewer's time, or a change of the synchronization source."""
 
-    def time_reset(self) -> None:
+    def on_time_reset(self) -> None:
         """Handle a reset of time: discard all earlier messages."""
 
     def messages(self) -> list[ServerMessage]:

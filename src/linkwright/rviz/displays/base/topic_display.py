@@ -132,7 +132,7 @@ class TopicDisplay(DataDisplay, ABC):
     """Whether messages are rare, such as plans, so that there is no warning before the first message."""
 
     FOLLOWS_TRANSFORMS: ClassVar[bool] = False
-    """Whether `transforms_received` is also called without queued messages, for displays that place content."""
+    """Whether `on_transforms_received` is also called without queued messages, for displays that place content."""
 
     def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
         super().__init__(host, identity, config)
@@ -166,7 +166,7 @@ class TopicDisplay(DataDisplay, ABC):
         """Discard all content, because the topic or the Fixed Frame has changed or time was reset."""
         self.forget()
 
-    def transforms_received(self) -> None:
+    def on_transforms_received(self) -> None:
         """Handle new transforms.
 
         By default, show the queued messages that can be placed now.
@@ -211,30 +211,30 @@ class TopicDisplay(DataDisplay, ABC):
         """Unsubscribe."""
         self._unsubscribe()
 
-    def changed(self, path: Path) -> None:
+    def on_property_changed(self, path: Path) -> None:
         """Subscribe again if the topic or its QoS has changed."""
         if path[0] == TOPIC and path != (TOPIC, FILTER_SIZE):
             self._restart()
 
-    def enabled_changed(self) -> None:
+    def on_enabled_changed(self) -> None:
         """Subscribe if the display is enabled, otherwise unsubscribe."""
         self._restart()
 
-    def frames_changed(self) -> None:
+    def on_frames_changed(self) -> None:
         """Show the last message in the new Fixed Frame, and queued messages with a known pose."""
-        if self.fixed_frame_changed():
+        if self._check_fixed_frame_change():
             self._waiting.clear()
             self.reset()
             self.show_again()
         self._show_placeable()
 
-    def time_changed(self) -> None:
+    def on_time_changed(self) -> None:
         """Show the messages that were queued while time was paused."""
         self._show_placeable()
         while self._paused_messages and not self.host.time.paused:
             self._offer(self._paused_messages.popleft())
 
-    def time_reset(self) -> None:
+    def on_time_reset(self) -> None:
         """Discard all messages and the content.
 
         The display stays empty until a new message arrives.
@@ -244,7 +244,7 @@ class TopicDisplay(DataDisplay, ABC):
         self._paused_messages.clear()
         self.reset()
 
-    def fixed_frame_changed(self) -> bool:
+    def _check_fixed_frame_change(self) -> bool:
         """Return whether the Fixed Frame has changed since the last call."""
         previous_frame, self._fixed_frame = self._fixed_frame, self.host.frames.fixed_frame
         return previous_frame != self._fixed_frame
@@ -281,7 +281,7 @@ class TopicDisplay(DataDisplay, ABC):
             )
             return
         if self.TRANSFORMED or self.FOLLOWS_TRANSFORMS:
-            self._release = self.context.transforms.use(self.transforms_received)
+            self._release = self.context.transforms.use(self.on_transforms_received)
         self._report_count()
 
     def _unsubscribe(self) -> None:
@@ -540,9 +540,9 @@ class RecentDisplay(TopicDisplay):
             self._shown_contents.popleft()
         self._send(self._shown_contents[-1])
 
-    def changed(self, path: Path) -> None:
+    def on_property_changed(self, path: Path) -> None:
         """Subscribe again if necessary, or apply a new number of messages to show."""
-        super().changed(path)
+        super().on_property_changed(path)
         if path == self.LENGTH:
             length = self._length()
             recent_contents = list(self._shown_contents)[-length:]

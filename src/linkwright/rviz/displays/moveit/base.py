@@ -98,12 +98,12 @@ class MoveItDisplay(StoredMarkersDisplay):
         self._description_topic.close()
         super().stop()
 
-    def enabled_changed(self) -> None:
+    def on_enabled_changed(self) -> None:
         """Subscribe if the display is enabled, or unsubscribe."""
-        super().enabled_changed()
+        super().on_enabled_changed()
         self._subscribe_description()
 
-    def changed(self, path: Path) -> None:
+    def on_property_changed(self, path: Path) -> None:
         """Apply a new topic, a new description topic or the check box for all links, and draw again."""
         if path == self.TOPIC:
             self._restart()
@@ -117,14 +117,14 @@ class MoveItDisplay(StoredMarkersDisplay):
             self.publish_properties()
         self.draw()
 
-    def frames_changed(self) -> None:
+    def on_frames_changed(self) -> None:
         """Show in the status which frames have no known pose."""
         self._report_frames()
 
-    def time_changed(self) -> None:
+    def on_time_changed(self) -> None:
         """Handle the description and the messages that were queued while time was paused."""
         self._description_topic.resume()
-        super().time_changed()
+        super().on_time_changed()
 
     def reset(self) -> None:
         """Discard all markers."""
@@ -169,10 +169,10 @@ class MoveItDisplay(StoredMarkersDisplay):
             self.publish_properties()
         for link, problems in self.robot.problems.items():
             self.set_status_row(link, "error", joined(problems, "; "))
-        self.robot_changed()
+        self.on_robot_changed()
         self.draw()
 
-    def robot_changed(self) -> None:
+    def on_robot_changed(self) -> None:
         """Handle a change of the robot, after which `draw` is called."""
 
     def _report_frames(self) -> None:

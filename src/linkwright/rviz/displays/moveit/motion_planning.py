@@ -68,27 +68,27 @@ class MotionPlanningDisplay(PlanningSceneDisplay):
         self._player.forget()
         super().stop()
 
-    def enabled_changed(self) -> None:
+    def on_enabled_changed(self) -> None:
         """Subscribe if the display is enabled, or unsubscribe."""
-        super().enabled_changed()
+        super().on_enabled_changed()
         self._subscribe_motions()
 
-    def changed(self, path: Path) -> None:
+    def on_property_changed(self, path: Path) -> None:
         """Subscribe to another motion topic, or restart the motion if looping was just enabled."""
         if path == (PATH, TRAJECTORY_TOPIC):
             self._player.forget()
             self._subscribe_motions()
-        super().changed(path)
+        super().on_property_changed(path)
         self._player.property_changed(path)
 
-    def time_changed(self) -> None:
+    def on_time_changed(self) -> None:
         """Show the messages that were queued while time was paused."""
-        super().time_changed()
+        super().on_time_changed()
         self._motion_topic.resume()
 
-    def robot_changed(self) -> None:
+    def on_robot_changed(self) -> None:
         """Play the motion again with the new robot."""
-        super().robot_changed()
+        super().on_robot_changed()
         self._player.begin_again()
 
     def reset(self) -> None:

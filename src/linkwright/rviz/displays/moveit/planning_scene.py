@@ -78,12 +78,12 @@ class PlanningSceneDisplay(MoveItDisplay):
         self._cancel_request()
         super().stop()
 
-    def enabled_changed(self) -> None:
+    def on_enabled_changed(self) -> None:
         """Subscribe and request the full scene if the display is enabled, or unsubscribe."""
-        super().enabled_changed()
+        super().on_enabled_changed()
         self._request_scene()
 
-    def changed(self, path: Path) -> None:
+    def on_property_changed(self, path: Path) -> None:
         """Apply a changed property.
 
         A new namespace or topic also requests the full scene again.
@@ -92,13 +92,13 @@ class PlanningSceneDisplay(MoveItDisplay):
             self._restart()
             self._subscribe_description()
             self._request_scene()
-        super().changed(path)
+        super().on_property_changed(path)
         if path == self.TOPIC:
             self._request_scene()
 
-    def time_reset(self) -> None:
+    def on_time_reset(self) -> None:
         """Discard the scene and request it again."""
-        super().time_reset()
+        super().on_time_reset()
         self._request_scene()
 
     def reset(self) -> None:
@@ -108,7 +108,7 @@ class PlanningSceneDisplay(MoveItDisplay):
         self._reported.clear()
         super().reset()
 
-    def robot_changed(self) -> None:
+    def on_robot_changed(self) -> None:
         """Apply the last state to the new robot.
 
         The state may have arrived before the description.

@@ -57,7 +57,7 @@ class RobotStateDisplay(MoveItDisplay):
         self._read(message)
         self.draw()
 
-    def robot_changed(self) -> None:
+    def on_robot_changed(self) -> None:
         """Show the last state with the new robot."""
         if self.last_message is not None:
             self._read(self.last_message)

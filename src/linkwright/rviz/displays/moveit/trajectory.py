@@ -257,12 +257,12 @@ class TrajectoryDisplay(MoveItDisplay):
         """Play a motion."""
         self._player.play(message)
 
-    def changed(self, path: Path) -> None:
+    def on_property_changed(self, path: Path) -> None:
         """Apply a changed property, and play the last motion again if looping was just enabled."""
-        super().changed(path)
+        super().on_property_changed(path)
         self._player.property_changed(path)
 
-    def robot_changed(self) -> None:
+    def on_robot_changed(self) -> None:
         """Play the motion again with the new robot."""
         self._player.begin_again()
 

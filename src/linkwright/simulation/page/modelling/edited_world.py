@@ -94,7 +94,7 @@ class EditedWorld:
         return None if self._content is None else self.path
 
     @property
-    def unsaved(self) -> bool:
+    def is_unsaved(self) -> bool:
         """Whether the text has changed since it was read or saved."""
         return self.world.text != self._saved_text
 
@@ -198,7 +198,7 @@ class EditedWorld:
             write_whole_file(file, self._encoded)
         except OSError as error:
             return Diagnostic("RVIZ104", _write_error(file, error))
-        message = phrase("unsaved changes to the world '{path}' are stored in '{kept}'", path=self.path, kept=file)
+        message = phrase("unsaved changes to the world '{path}' are stored in '{copy}'", path=self.path, copy=file)
         return Diagnostic("RVIZ301", message, severity=Severity.WARNING)
 
     @property

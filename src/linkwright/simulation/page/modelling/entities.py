@@ -41,21 +41,21 @@ def world_entities(world: WorldText) -> list[WorldEntity]:
 
 def _to_message(entity: Entity) -> WorldEntity:
     pose, shape = pose_of_entity(entity), entity.shape
-    colour = shape.colour if shape is not None else entity.light.diffuse if entity.light is not None else None
+    color = shape.color if shape is not None else entity.light.diffuse if entity.light is not None else None
     return WorldEntity(
         name=entity.name,
         kind=entity.kind,
         pose=[*pose.xyz, *pose.rpy],
-        static=entity.static,
+        static=entity.is_static,
         shape=shape.kind if shape is not None else None,
         size=list(shape.size) if shape is not None else [],
-        colour=list(colour) if colour is not None else None,
+        colour=list(color) if color is not None else None,
         address=entity.written.uri.strip() if isinstance(entity.written, Include) else None,
         parts=list(entity.member_names),
     )
 
 
-def choices(packages: PackageFinder) -> ModelChoices:
+def model_choices(packages: PackageFinder) -> ModelChoices:
     """Return the message that lists the models on the search path, sorted by name."""
     folders = ResourceFinder(packages).models()
     names = sorted(name for name, folder in folders.items() if not isinstance(model_file(folder), Missing))
@@ -100,5 +100,5 @@ def _to_change(change: EntityChange) -> Change:
         size=None if change.size is None else tuple(change.size),
         new_name=change.new_name,
         static=change.static,
-        colour=None if change.colour is None else tuple(change.colour),
+        color=None if change.colour is None else tuple(change.colour),
     )

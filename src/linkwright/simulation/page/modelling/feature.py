@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 _DESCRIPTION_TOPIC = "/world_description"
 _EMPTY_SERVICE, _LOAD_SERVICE = "std_srvs/srv/Empty", "simulation_interfaces/srv/LoadWorld"
-_PATIENCE = 30.0
+_TIMEOUT_SECONDS = 30.0
 """The maximum time to wait for a response or the description of the simulation, in seconds."""
 
 
@@ -47,12 +47,12 @@ class ModellingFeature(PageFeature):
         self._services = SimulationServices(self.context)
         self._is_watching = False
         self._can_edit = False
-        self._active = False
+        self._is_active = False
         self._edited_world: EditedWorld | None = None
-        self._waiting: asyncio.Queue[tuple[Page, PageMessage]] = asyncio.Queue()
+        self._requests: asyncio.Queue[tuple[Page, PageMessage]] = asyncio.Queue()
         self._worker: asyncio.Task[None] | None = None
 
-    def opening(self) -> list[ServerMessage]:
+    def opening_messages(self) -> list[ServerMessage]:
         """Return the state of world editing for a new page.
 
         The method also begins to watch the graph for a simulated world.
@@ -63,7 +63,7 @@ class ModellingFeature(PageFeature):
             self._can_edit = self._is_available()
         return [self._state()]
 
-    def page_closed(self, page: Page) -> None:
+    def remove_page(self, page: Page) -> None:
         """Stop watching the graph after the last page has closed, and keep the edits."""
         if self._is_watching and len(self.context.pages) == 0:
             self._is_watching = False
@@ -74,7 +74,7 @@ class ModellingFeature(PageFeature):
 
         The list is empty if there are no unsaved changes.
         """
-        if self._edited_world is None or not self._edited_world.unsaved:
+        if self._edited_world is None or not self._edited_world.is_unsaved:
             return []
         return [self._edited_world.store_unsaved(recovery_folder())]
 
@@ -90,9 +90,9 @@ class ModellingFeature(PageFeature):
 
         Requests are handled in the order in which they arrive.
         """
-        self._waiting.put_nowait((page, message))
+        self._requests.put_nowait((page, message))
         if self._worker is None:
-            self._worker = asyncio.get_running_loop().create_task(self._work())
+            self._worker = asyncio.get_running_loop().create_task(self._handle_requests())
 
     # --- messages to pages -------------------------------------------------------------------------------------
 
@@ -109,16 +109,16 @@ class ModellingFeature(PageFeature):
     def _state(self) -> ModellingState:
         edited_world = self._edited_world
         if edited_world is None:
-            return ModellingState(self._can_edit, self._active, None, False, False, False, [])
+            return ModellingState(self._can_edit, self._is_active, None, False, False, False, [])
         from linkwright.simulation.page.modelling.entities import world_entities
 
         file = None if edited_world.file is None else str(edited_world.file)
         entities = world_entities(edited_world.world)
         return ModellingState(
             self._can_edit,
-            self._active,
+            self._is_active,
             file,
-            edited_world.unsaved,
+            edited_world.is_unsaved,
             edited_world.can_undo,
             edited_world.can_redo,
             entities,
@@ -129,12 +129,12 @@ class ModellingFeature(PageFeature):
 
     # --- requests of pages ------------------------------------------------------------------------------------
 
-    async def _work(self) -> None:
+    async def _handle_requests(self) -> None:
         """Handle the queued requests one at a time, because reading a large world takes long."""
         from linkwright.sdf.editing import EditError
 
         while True:
-            page, message = await self._waiting.get()
+            page, message = await self._requests.get()
             try:
                 await self._handle(page, message)
             except EditError as error:
@@ -148,9 +148,9 @@ class ModellingFeature(PageFeature):
 
     async def _handle(self, page: Page, message: PageMessage) -> None:
         if isinstance(message, AskModels):
-            from linkwright.simulation.page.modelling.entities import choices
+            from linkwright.simulation.page.modelling.entities import model_choices
 
-            page.send(await asyncio.to_thread(choices, self.context.finder))
+            page.send(await asyncio.to_thread(model_choices, self.context.finder))
         elif isinstance(message, SetModelling):
             await self._set_active(page, active=message.active)
         elif isinstance(message, SaveWorld):
@@ -159,13 +159,13 @@ class ModellingFeature(PageFeature):
             self._publish()
         else:
             edited_world = await self._current_world()
-            await asyncio.to_thread(_edit(edited_world, message))
+            await asyncio.to_thread(_edit_function(edited_world, message))
             self._publish()
-            if self._waiting.empty():
+            if self._requests.empty():
                 await self._load(page, edited_world)
 
     async def _set_active(self, page: Page, *, active: bool) -> None:
-        if active == self._active:
+        if active == self._is_active:
             return
         if active:
             await self._current_world()
@@ -173,7 +173,7 @@ class ModellingFeature(PageFeature):
             await self._call_service(page, _EMPTY_SERVICE, "/reset_simulation")
         else:
             await self._call_service(page, _EMPTY_SERVICE, "/unpause_physics")
-        self._active = active
+        self._is_active = active
         self._publish()
 
     async def _current_world(self) -> EditedWorld:
@@ -185,7 +185,7 @@ class ModellingFeature(PageFeature):
 
         edited_world, packages = self._edited_world, self.context.finder
         if edited_world is not None and edited_world.file is not None:
-            if not edited_world.unsaved and await asyncio.to_thread(lambda: edited_world.is_outdated):
+            if not edited_world.is_unsaved and await asyncio.to_thread(lambda: edited_world.is_outdated):
                 reloaded = await asyncio.to_thread(EditedWorld.of_file, edited_world.file, packages)
                 await asyncio.to_thread(reloaded.reserve, edited_world.world.reserved)
                 self._edited_world = reloaded
@@ -225,15 +225,15 @@ class ModellingFeature(PageFeature):
         client = node.create_client(get_service("rcl_interfaces/srv/GetParameters"), name)
         reply: asyncio.Future[str] = asyncio.get_running_loop().create_future()
 
-        def receive(future: Any) -> None:
+        def on_response(future: Any) -> None:
             if not reply.done():
                 reply.set_result(next((value.string_value for value in future.result().values), ""))
 
         try:
             if not client.service_is_ready():
                 return ""
-            client.call_async(client.srv_type.Request(names=["world"])).add_done_callback(receive)
-            return await asyncio.wait_for(reply, _PATIENCE)
+            client.call_async(client.srv_type.Request(names=["world"])).add_done_callback(on_response)
+            return await asyncio.wait_for(reply, _TIMEOUT_SECONDS)
         except asyncio.TimeoutError:
             return ""
         finally:
@@ -250,15 +250,15 @@ class ModellingFeature(PageFeature):
         node = self.context.node
         text: asyncio.Future[str] = asyncio.get_running_loop().create_future()
 
-        def receive(message: Any) -> None:
+        def on_description(message: Any) -> None:
             if not text.done():
                 text.set_result(message.data)
 
         subscription = node.create_subscription(
-            get_message("std_msgs/msg/String"), _DESCRIPTION_TOPIC, receive, LATCHED_QOS
+            get_message("std_msgs/msg/String"), _DESCRIPTION_TOPIC, on_description, LATCHED_QOS
         )
         try:
-            return await asyncio.wait_for(text, _PATIENCE if self._is_available() else 0)
+            return await asyncio.wait_for(text, _TIMEOUT_SECONDS if self._is_available() else 0)
         except asyncio.TimeoutError:
             raise EditError(
                 phrase("there is no world to edit, because no simulation publishes one; start a simulation")
@@ -275,20 +275,20 @@ class ModellingFeature(PageFeature):
 
     async def _call_service(self, page: Page, kind: str, name: str, fields: dict[str, Any] | None = None) -> None:
         """Call a service, wait for the response, and report a timeout to the page."""
-        done: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+        response_arrived: asyncio.Future[None] = asyncio.get_running_loop().create_future()
 
-        def answered(_: Any) -> None:
-            if not done.done():
-                done.set_result(None)
+        def on_response(_: Any) -> None:
+            if not response_arrived.done():
+                response_arrived.set_result(None)
 
-        self._services.call_service(page, kind, name, fields or {}, answered)
+        self._services.call_service(page, kind, name, fields or {}, on_response)
         try:
-            await asyncio.wait_for(done, _PATIENCE)
+            await asyncio.wait_for(response_arrived, _TIMEOUT_SECONDS)
         except asyncio.TimeoutError:
             refuse(page, phrase("'{name}' did not respond", name=name))
 
 
-def _edit(edited_world: EditedWorld, message: PageMessage) -> Callable[[], None]:
+def _edit_function(edited_world: EditedWorld, message: PageMessage) -> Callable[[], None]:
     """Return a function that applies a page's request to a world.
 
     The function is slow, so the caller runs it in a thread.

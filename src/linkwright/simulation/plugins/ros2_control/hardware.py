@@ -34,7 +34,7 @@ class ControlledModel(Protocol):
     """The attributes and methods of `SimulatedControl` that the hardware uses."""
 
     simulation: Simulation
-    place: PluginContext
+    context: PluginContext
 
     def joint(self, name: str) -> str:
         """Return the full name of a movable joint of the plugin's model, as used in the simulation."""
@@ -113,7 +113,7 @@ class SimulatedSystem(Hardware):
 
     def _create_sensors(self, plugin: ControlledModel) -> list[SimulatedSensor]:
         simulated_sensors = []
-        placed_sensors = sensors_of(plugin.place)
+        placed_sensors = sensors_of(plugin.context)
         for sensor in self.description.sensors:
             placed_sensor = placed_sensors.get(sensor.name)
             if placed_sensor is None:

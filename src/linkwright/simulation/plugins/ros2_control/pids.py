@@ -73,7 +73,7 @@ def _declared_gains(
     if node_gains or not is_pid:
         return node_gains or None
     prefix = _PREFIXES[kind]
-    return {name.removeprefix(prefix): each for name, each in joint.parameters.items() if name.startswith(prefix)}
+    return {name.removeprefix(prefix): value for name, value in joint.parameters.items() if name.startswith(prefix)}
 
 
 def _pid_gains(joint: str, declared_gains: Mapping[str, Any], logger: Logger) -> PidGains:

@@ -63,7 +63,7 @@ class SimulatedControl(SimulatedPlugin[Parameters]):
         parameter_rules = ParameterRules()
         for path in self.parameters.parameters:
             parameter_rules.add(read_parameter_file(path))
-        node_description = node_of(self.place.name, self.place.element, namespace)
+        node_description = node_of(self.context.name, self.context.element, namespace)
         self._values = {**parameter_rules.for_node(self.node.name), **node_description.parameters}
         name = self.parameters.controller_manager_name
         values = {

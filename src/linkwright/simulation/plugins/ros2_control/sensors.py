@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator, Sequence
 import numpy as np
 
 from linkwright.control.hardware.interfaces import StateInterface
-from linkwright.simulation.plugins.places import model_plugins
+from linkwright.simulation.plugins.contexts import model_plugins
 from linkwright.simulation.plugins.plugin import PlacedSensor, PluginContext
 from linkwright.simulation.sensors.force_torque import ForceTorqueSensor
 from linkwright.simulation.sensors.imu import ImuSensor
@@ -42,14 +42,14 @@ class SimulatedSensor:
             state.value = values.get(state.kind, state.value)
 
 
-def sensors_of(place: PluginContext) -> dict[str, PlacedSensor]:
+def sensors_of(context: PluginContext) -> dict[str, PlacedSensor]:
     """Return the IMUs and force-torque sensors of the plugin's model, by sensor name."""
-    assert place.model is not None
-    places: Iterator[PluginContext] = model_plugins(place.world, place.model, place.path)
+    assert context.model is not None
+    contexts: Iterator[PluginContext] = model_plugins(context.world, context.model, context.path)
     return {
-        place.sensor.sensor.name: place.sensor
-        for place in places
-        if place.sensor is not None and place.sensor.sensor.type in _SENSOR_TYPES
+        context.sensor.sensor.name: context.sensor
+        for context in contexts
+        if context.sensor is not None and context.sensor.sensor.type in _SENSOR_TYPES
     }
 
 

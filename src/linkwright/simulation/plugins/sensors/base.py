@@ -89,8 +89,8 @@ class SensorPlugin(SimulatedPlugin[P], ABC, Generic[P]):
         """Return the default topic of a sensor in gz, with `leaf` as the last part of its name."""
         model, *nested_names = self.sensor.name.split(SEPARATOR)
         entity_type = "joint" if self.sensor.joint else "link"
-        place = f"/world/{self.place.world.name}/model/{model}/{entity_type}/{'/'.join(nested_names[:-1])}"
-        return f"{place}/sensor/{nested_names[-1]}/{leaf}"
+        parent_topic = f"/world/{self.context.world.name}/model/{model}/{entity_type}/{'/'.join(nested_names[:-1])}"
+        return f"{parent_topic}/sensor/{nested_names[-1]}/{leaf}"
 
     def gz_output(self, kind: str, leaf: str, usual: str = "") -> Output:
         """Create the publisher of a gz sensor, on its declared topic or on gz's default topic.
@@ -126,7 +126,7 @@ class OneTopic(SensorPlugin[P], Generic[P]):
         return self.output.is_wanted
 
 
-def vector(values: Array) -> Vector3:
+def vector_message(values: Array) -> Vector3:
     """Return three numbers as a ``geometry_msgs/msg/Vector3``."""
     x, y, z = values.tolist()
     return Vector3(x, y, z)

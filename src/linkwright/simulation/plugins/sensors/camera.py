@@ -1,7 +1,7 @@
 """Cameras and depth cameras: ``gazebo_ros_camera``, the cameras of ROS 1, and gz's cameras.
 
 Source: gazebo_ros_pkgs for ROS 2 (topics, parameters, encodings, point clouds), for ROS 1 (names), gz-sensors (topics).
-The colours of point clouds have the byte order that PCL and RViz expect; ``gazebo_ros_camera`` swaps red and blue.
+The colors of point clouds have the byte order that PCL and RViz expect; ``gazebo_ros_camera`` swaps red and blue.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ class MountedCamera:
         description: the parsed ``<camera>``.
         optics: the projection of the camera.
         pose: the pose of the camera in the frame of the link.
-        noise: the noise on the colours of the images.
+        noise: the noise on the colors of the images.
         encoding: the ROS encoding of the images, such as ``rgb8``.
     """
 
@@ -78,17 +78,17 @@ class CameraPlugin(SensorPlugin[P], Generic[P]):
         self._shared.release()
 
     def render(self, camera: MountedCamera, channels: Channels) -> RenderedImage:
-        """Render the requested channels of one of the sensor's cameras, with noise on the colours."""
+        """Render the requested channels of one of the sensor's cameras, with noise on the colors."""
         pose = compose(self.simulation.link_pose(self.sensor.link), camera.pose)
         rendered = self._shared.render(camera.optics, pose, channels, self._log_renderer)
-        if rendered.colour is None:
+        if rendered.color is None:
             return rendered
-        return RenderedImage(camera.noise.apply(rendered.colour), rendered.depth, rendered.geoms)
+        return RenderedImage(camera.noise.apply(rendered.color), rendered.depth, rendered.geoms)
 
     def publish_image(self, output: Output, camera: MountedCamera, rendered: RenderedImage, frame: str) -> None:
-        """Publish the colours of a rendered image in the camera's encoding."""
+        """Publish the colors of a rendered image in the camera's encoding."""
         message = self.message(IMAGE, frame)
-        fill_image(message, rendered.colour, camera.encoding)  # type: ignore[arg-type]  # requested
+        fill_image(message, rendered.color, camera.encoding)  # type: ignore[arg-type]  # requested
         output.publish(message)
 
     def _mount_camera(self, camera: Camera, generator: np.random.Generator) -> MountedCamera:
@@ -104,7 +104,7 @@ class CameraPlugin(SensorPlugin[P], Generic[P]):
         return MountedCamera(camera, optics_of(camera), pose, PixelNoise(camera.noise, generator), encoding)
 
     def _log_renderer(self, renderer_description: Phrase) -> None:
-        self.node.logger.info(phrase("camera images are rendered by {way}", way=renderer_description))
+        self.node.logger.info(phrase("camera images are rendered by {renderer}", renderer=renderer_description))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -211,7 +211,7 @@ class ClassicCamera(CameraPlugin[CameraParameters]):
             has_cloud = cloud is not None and cloud.is_wanted
             channels = Channels(0)
             if image.is_wanted or has_cloud:
-                channels |= Channels.COLOUR
+                channels |= Channels.COLOR
             if has_cloud or (depth is not None and depth.is_wanted):
                 channels |= Channels.DEPTH
             rendered = self.render(camera, channels) if channels else RenderedImage(None, None, None)
@@ -228,10 +228,10 @@ class ClassicCamera(CameraPlugin[CameraParameters]):
             message = self.message(IMAGE, self._frame)
             fill_depth(message, rendered.depth, nearest, farthest)
             depth.publish(message)
-        if cloud.is_wanted and rendered.depth is not None and rendered.colour is not None:
+        if cloud.is_wanted and rendered.depth is not None and rendered.color is not None:
             message = self.message(CLOUD, self._frame)
             points = points_of(camera.optics, clip_depth(rendered.depth, nearest, farthest))
-            fill_camera_cloud(message, points, rendered.colour, swap_red_blue=self.gazebo_mistakes)
+            fill_camera_cloud(message, points, rendered.color, swap_red_blue=self.gazebo_mistakes)
             cloud.publish(message)
 
     def _publish_info(self, output: Output, camera: MountedCamera) -> None:
@@ -310,7 +310,7 @@ class GzCamera(CameraPlugin[NoParameters]):
         (camera, *_) = self.cameras
         channels = Channels(0)
         if any(output is not None and output.is_wanted for output in (self._image, self._cloud)):
-            channels |= Channels.COLOUR
+            channels |= Channels.COLOR
         if any(output is not None and output.is_wanted for output in (self._depth, self._cloud)):
             channels |= Channels.DEPTH
         rendered = self.render(camera, channels) if channels else RenderedImage(None, None, None)
@@ -325,7 +325,7 @@ class GzCamera(CameraPlugin[NoParameters]):
             message = self.message(CLOUD, self._frame)
             points = points_of(camera.optics, clip_depth(rendered.depth, clip.near, clip.far))  # type: ignore[arg-type]  # see above
             forward_points = np.stack([points[:, :, 2], -points[:, :, 0], -points[:, :, 1]], axis=-1)
-            fill_camera_cloud(message, forward_points, rendered.colour)  # type: ignore[arg-type]  # requested
+            fill_camera_cloud(message, forward_points, rendered.color)  # type: ignore[arg-type]  # requested
             self._cloud.publish(message)
         if self._info.is_wanted:
             message = self.message(INFO, self._optical)

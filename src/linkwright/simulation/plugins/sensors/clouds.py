@@ -25,7 +25,7 @@ VELODYNE = _layout(22, x=0, y=4, z=8, intensity=12, ring=16, time=18)
 """The layout of a point of velodyne_simulator, as in velodyne_pointcloud. All points of a revolution have time 0."""
 GZ = _layout(32, x=0, y=4, z=8, intensity=16, ring=24)
 """The layout of a point of gz-sensors. The fields after x, y and z start at multiples of 8 bytes."""
-_COLOURED = _layout(32, x=0, y=4, z=8, rgb=16)
+_COLORED = _layout(32, x=0, y=4, z=8, rgb=16)
 
 
 @cache
@@ -67,22 +67,22 @@ def fill_lidar_cloud(
     message.is_dense = bool(np.isfinite(points).all() and np.isfinite(intensities).all())
 
 
-def fill_camera_cloud(message: Any, points: Points, colour: Points, *, swap_red_blue: bool = False) -> None:
-    """Fill a PointCloud2 with the points of an image and their colours.
+def fill_camera_cloud(message: Any, points: Points, color: Points, *, swap_red_blue: bool = False) -> None:
+    """Fill a PointCloud2 with the points of an image and their colors.
 
-    `points` are in m, and `colour` contains RGB bytes, both of shape (height, width, 3).
+    `points` are in m, and `color` contains RGB bytes, both of shape (height, width, 3).
 
     With `swap_red_blue`, red and blue are exchanged as in Gazebo classic.
 
-    Each point has 32 bytes with the colour at byte 16, as in ``gazebo_ros_camera``.
+    Each point has 32 bytes with the color at byte 16, as in ``gazebo_ros_camera``.
     """
     height, width, _ = points.shape
     records = np.zeros((height * width, 8), np.float32)
     records[:, :3] = points.reshape(-1, 3)
     record_bytes = records.view(np.uint8).reshape(height * width, 32)
     # PCL stores blue in the lowest byte.
-    record_bytes[:, 16:19] = colour.reshape(-1, 3)[:, :: 1 if swap_red_blue else -1]
-    _fill(message, records.view(_COLOURED).reshape(-1), height)
+    record_bytes[:, 16:19] = color.reshape(-1, 3)[:, :: 1 if swap_red_blue else -1]
+    _fill(message, records.view(_COLORED).reshape(-1), height)
     message.is_dense = False
 
 

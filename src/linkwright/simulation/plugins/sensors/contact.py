@@ -13,7 +13,7 @@ from linkwright.geometry.arrays import Array
 from linkwright.messages import get_message
 from linkwright.sdf.poses import WORLD
 from linkwright.simulation.plugins.parameters import NoParameters, parameter
-from linkwright.simulation.plugins.sensors.base import SENSOR_QOS, OneTopic, vector
+from linkwright.simulation.plugins.sensors.base import SENSOR_QOS, OneTopic, vector_message
 from linkwright.simulation.sensors.contact import Contact, ContactSensor
 
 P = TypeVar("P")
@@ -88,13 +88,16 @@ def _contact_message(contact: Contact) -> Any:
     message = get_message("ros_gz_interfaces/msg/Contact")()
     for entity, name in ((message.collision1, contact.collision1), (message.collision2, contact.collision2)):
         entity.name, entity.type = name, entity.COLLISION
-    message.positions = [vector(position) for position in contact.positions]
-    message.normals = [vector(normal) for normal in contact.normals]
+    message.positions = [vector_message(position) for position in contact.positions]
+    message.normals = [vector_message(normal) for normal in contact.normals]
     message.depths = [float(depth) for depth in contact.depths]
     for force, torque in zip(contact.forces, contact.torques, strict=True):
         joint_wrench = get_message("ros_gz_interfaces/msg/JointWrench")()
         joint_wrench.body_1_name.data, joint_wrench.body_2_name.data = contact.collision1, contact.collision2
-        joint_wrench.body_1_wrench, joint_wrench.body_2_wrench = wrench(force, torque), wrench(-force, -torque)
+        joint_wrench.body_1_wrench, joint_wrench.body_2_wrench = (
+            wrench_message(force, torque),
+            wrench_message(-force, -torque),
+        )
         message.wrenches.append(joint_wrench)
     return message
 
@@ -102,14 +105,14 @@ def _contact_message(contact: Contact) -> Any:
 def _contact_state(contact: Contact) -> Any:
     state = get_message("gazebo_msgs/msg/ContactState")()
     state.collision1_name, state.collision2_name = contact.collision1, contact.collision2
-    state.wrenches = [wrench(*pair) for pair in zip(contact.forces, contact.torques, strict=True)]
-    state.total_wrench = wrench(contact.forces.sum(axis=0), contact.torques.sum(axis=0))
-    state.contact_positions = [vector(position) for position in contact.positions]
-    state.contact_normals = [vector(normal) for normal in contact.normals]
+    state.wrenches = [wrench_message(*pair) for pair in zip(contact.forces, contact.torques, strict=True)]
+    state.total_wrench = wrench_message(contact.forces.sum(axis=0), contact.torques.sum(axis=0))
+    state.contact_positions = [vector_message(position) for position in contact.positions]
+    state.contact_normals = [vector_message(normal) for normal in contact.normals]
     state.depths = [float(depth) for depth in contact.depths]
     return state
 
 
-def wrench(force: Array, torque: Array) -> Any:
+def wrench_message(force: Array, torque: Array) -> Any:
     """Return a force in N and a torque in N m as a ``geometry_msgs/msg/Wrench``."""
-    return get_message("geometry_msgs/msg/Wrench")(force=vector(force), torque=vector(torque))
+    return get_message("geometry_msgs/msg/Wrench")(force=vector_message(force), torque=vector_message(torque))

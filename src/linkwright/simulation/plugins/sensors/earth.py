@@ -10,7 +10,7 @@ from __future__ import annotations
 from typing import Any, Generic, TypeVar
 
 from linkwright.simulation.plugins.parameters import NoParameters
-from linkwright.simulation.plugins.sensors.base import SENSOR_QOS, FrameName, OneTopic, SensorPlugin, vector
+from linkwright.simulation.plugins.sensors.base import SENSOR_QOS, FrameName, OneTopic, SensorPlugin, vector_message
 from linkwright.simulation.sensors.earth import AltimeterSensor, Barometer, Fix, MagnetometerSensor, NavsatSensor
 
 P = TypeVar("P")
@@ -26,10 +26,10 @@ class _Receiver(SensorPlugin[P], Generic[P]):
 
     def make_sensor(self) -> None:
         """Create the receiver for the geographic position of the world's origin."""
-        place = self.place.world.spherical_coordinates
-        self._receiver = NavsatSensor(self.mount, self.sensor.sensor.navsat, place, self.random)
+        coordinates = self.context.world.spherical_coordinates
+        self._receiver = NavsatSensor(self.mount, self.sensor.sensor.navsat, coordinates, self.random)
 
-    def receive(self, frame: str) -> tuple[Fix, Any]:
+    def measure_fix(self, frame: str) -> tuple[Fix, Any]:
         """Measure, and return the fix and its NavSatFix message."""
         fix = self._receiver.measure()
         message = self.message(_FIX_TYPE, frame)
@@ -59,10 +59,10 @@ class ClassicGps(_Receiver[FrameName]):
 
     def measure(self) -> None:
         """Measure, and publish the position and the velocity."""
-        fix, message = self.receive(self.classic_frame())
+        fix, message = self.measure_fix(self.classic_frame())
         self._fixes.publish(message)
         velocity = self.message("geometry_msgs/msg/Vector3Stamped", self.classic_frame())
-        velocity.vector = vector(fix.velocity)
+        velocity.vector = vector_message(fix.velocity)
         self._velocities.publish(velocity)
 
 
@@ -75,7 +75,7 @@ class GzNavsat(_Receiver[NoParameters], OneTopic[NoParameters]):
 
     def measure(self) -> None:
         """Measure, and publish the position."""
-        self.output.publish(self.receive(self.gz_frame())[1])
+        self.output.publish(self.measure_fix(self.gz_frame())[1])
 
 
 class GzMagnetometer(OneTopic[NoParameters]):
@@ -86,7 +86,7 @@ class GzMagnetometer(OneTopic[NoParameters]):
 
     def make_sensor(self) -> None:
         """Create the magnetometer for the magnetic field of the world."""
-        noise, field = self.sensor.sensor.magnetometer, self.place.world.magnetic_field
+        noise, field = self.sensor.sensor.magnetometer, self.context.world.magnetic_field
         self._sensor = MagnetometerSensor(self.mount, noise, self.random, field)
 
     def make_topics(self) -> None:
@@ -96,7 +96,7 @@ class GzMagnetometer(OneTopic[NoParameters]):
     def measure(self) -> None:
         """Measure, and publish the magnetic field."""
         message = self.message(_MAGNETIC_FIELD_TYPE, self.gz_frame())
-        message.magnetic_field = vector(self._sensor.measure())
+        message.magnetic_field = vector_message(self._sensor.measure())
         message.magnetic_field_covariance = self._sensor.noise.covariance.copy()
         self.output.publish(message)
 

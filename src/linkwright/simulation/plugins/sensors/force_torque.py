@@ -12,7 +12,7 @@ from linkwright.geometry.single import compose, invert
 from linkwright.sdf.sensors import ForceTorque
 from linkwright.simulation.plugins.parameters import NoParameters, parameter
 from linkwright.simulation.plugins.sensors.base import SENSOR_QOS, FrameName, OneTopic
-from linkwright.simulation.plugins.sensors.contact import wrench
+from linkwright.simulation.plugins.sensors.contact import wrench_message
 from linkwright.simulation.sensors.force_torque import ForceTorqueSensor
 
 P = TypeVar("P")
@@ -38,7 +38,7 @@ class _ForceTorque(OneTopic[P], Generic[P]):
     def measure(self) -> None:
         """Measure, and publish the wrench."""
         message = self.message(_MESSAGE_TYPE, self._frame)
-        message.wrench = wrench(*self._sensor.measure())
+        message.wrench = wrench_message(*self._sensor.measure())
         self.output.publish(message)
 
 

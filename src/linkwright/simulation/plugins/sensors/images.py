@@ -26,20 +26,20 @@ ENCODINGS = {
 DEPTH_FORMATS = frozenset({"R_FLOAT16", "R_FLOAT32", "FLOAT32"})
 """The formats that depth cameras in files for gz declare.
 
-They do not determine the encoding of colours.
+They do not determine the encoding of colors.
 """
 DEFAULT_ENCODING = "bgr8"
 """The encoding of images whose format is not in `ENCODINGS`."""
-_GREY_WEIGHTS = np.array([0.299, 0.587, 0.114], np.float32)
+_GRAY_WEIGHTS = np.array([0.299, 0.587, 0.114], np.float32)
 _SURPLUS_NUMBERS = 1 << 16
 """The number of surplus random numbers, which are drawn once. The noise of each image starts at a random offset."""
 
 
 class PixelNoise:
-    """Noise on the colours of images.
+    """Noise on the colors of images.
 
     Args:
-        noise: the noise on each colour value, for colours from 0 to 1.
+        noise: the noise on each color value, for colors from 0 to 1.
         generator: the random number generator.
     """
 
@@ -49,26 +49,26 @@ class PixelNoise:
         self._positive_noise: Pixels = np.empty(0, np.uint8)  # bytes are unsigned
         self._negative_noise: Pixels = np.empty(0, np.uint8)
 
-    def apply(self, colour: Pixels) -> Pixels:
-        """Return RGB colours with noise, or the colours themselves if there is no noise.
+    def apply(self, color: Pixels) -> Pixels:
+        """Return RGB colors with noise, or the colors themselves if there is no noise.
 
-        The colours are bytes of shape (height, width, 3).
+        The colors are bytes of shape (height, width, 3).
         """
         noise = self._noise
         if noise.type == "none" or not (noise.stddev > 0 or noise.mean):
-            return colour
-        if len(self._positive_noise) < colour.size + _SURPLUS_NUMBERS:
-            noise_values = self._generator.normal(noise.mean * 255, noise.stddev * 255, colour.size + _SURPLUS_NUMBERS)
+            return color
+        if len(self._positive_noise) < color.size + _SURPLUS_NUMBERS:
+            noise_values = self._generator.normal(noise.mean * 255, noise.stddev * 255, color.size + _SURPLUS_NUMBERS)
             noise_values = np.clip(np.round(noise_values), -255, 255)
             self._positive_noise, self._negative_noise = (
                 np.maximum(array, 0).astype(np.uint8) for array in (noise_values, -noise_values)
             )
         start = int(self._generator.integers(_SURPLUS_NUMBERS))
         positive, negative = (
-            array[start : start + colour.size].reshape(colour.shape)
+            array[start : start + color.size].reshape(color.shape)
             for array in (self._positive_noise, self._negative_noise)
         )
-        noisy: Pixels = np.maximum(colour, negative)  # clipping bytes takes a sixth of the time of clipping integers
+        noisy: Pixels = np.maximum(color, negative)  # clipping bytes takes a sixth of the time of clipping integers
         noisy -= negative
         np.invert(noisy, out=noisy)  # inverted, so that the sum is clipped at white
         np.maximum(noisy, positive, out=noisy)
@@ -76,17 +76,17 @@ class PixelNoise:
         return np.invert(noisy, out=noisy)
 
 
-def fill_image(message: Any, colour: Pixels, encoding: str) -> None:
-    """Fill an Image with RGB colours, shape (height, width, 3), in an encoding of `ENCODINGS`."""
-    pixels = colour
+def fill_image(message: Any, color: Pixels, encoding: str) -> None:
+    """Fill an Image with RGB colors, shape (height, width, 3), in an encoding of `ENCODINGS`."""
+    pixels = color
     if encoding.startswith("mono"):
-        pixels = np.round(colour @ _GREY_WEIGHTS).astype(np.uint8)
+        pixels = np.round(color @ _GRAY_WEIGHTS).astype(np.uint8)
     elif encoding.startswith("bgr"):
-        pixels = np.empty_like(colour)
+        pixels = np.empty_like(color)
         for channel in range(3):  # takes an eighth of the time of reversing all channels at once
-            pixels[:, :, channel] = colour[:, :, 2 - channel]
+            pixels[:, :, channel] = color[:, :, 2 - channel]
     elif encoding.startswith("bayer"):
-        pixels = _bayer_mosaic(colour, encoding.removeprefix("bayer_")[:4])
+        pixels = _bayer_mosaic(color, encoding.removeprefix("bayer_")[:4])
     if encoding.endswith("16"):
         pixels = pixels.astype("<u2") * 257
     _fill(message, pixels, encoding)
@@ -117,15 +117,15 @@ def _fill(message: Any, pixels: Pixels, encoding: str) -> None:
     message.data = data.reshape(-1).view(np.uint8)
 
 
-def _bayer_mosaic(colour: Pixels, order: str) -> Pixels:
-    """Return a Bayer mosaic with one colour per pixel.
+def _bayer_mosaic(color: Pixels, order: str) -> Pixels:
+    """Return a Bayer mosaic with one color per pixel.
 
-    `order` names the colours of each square of 2 x 2 pixels.
+    `order` names the colors of each square of 2 x 2 pixels.
     """
-    mosaic = np.empty(colour.shape[:2], np.uint8)
+    mosaic = np.empty(color.shape[:2], np.uint8)
     for index, letter in enumerate(order):
         row, column = divmod(index, 2)
-        mosaic[row::2, column::2] = colour[row::2, column::2, "rgb".index(letter)]
+        mosaic[row::2, column::2] = color[row::2, column::2, "rgb".index(letter)]
     return mosaic
 
 

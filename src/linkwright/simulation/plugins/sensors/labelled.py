@@ -26,7 +26,7 @@ from linkwright.simulation.simulation import Simulation
 
 _LABEL_SYSTEM = "gz-sim-label-system"
 _DETECTIONS_TYPE = "vision_msgs/msg/Detection2DArray"
-_BOX_COLOUR = (0, 255, 0)
+_BOX_COLOR = (0, 255, 0)
 _LABEL_COUNT = 256
 
 
@@ -56,7 +56,7 @@ class Labels:
         return instances
 
     def _geom_labels(self, names: list[str]) -> list[float]:
-        labels = dict(self._labelled_parts())
+        labels = dict(self._labeled_parts())
         return [float(_label_of(labels, part_of(name))) for name in names]
 
     def _geom_instances(self, names: list[str]) -> list[float]:
@@ -68,8 +68,8 @@ class Labels:
                 instance_numbers.setdefault(model, len(instance_numbers) + 1)
         return [float(instance_numbers[model]) if label else 0.0 for model, label in zip(models, labels, strict=True)]
 
-    def _labelled_parts(self) -> Iterator[tuple[str, int]]:
-        """Yield the name and the label of each labelled model and visual."""
+    def _labeled_parts(self) -> Iterator[tuple[str, int]]:
+        """Yield the name and the label of each labeled model and visual."""
         for model in self._simulation.scene.models.values():
             yield from _labels_of_model(model.model, model.name)
 
@@ -114,10 +114,10 @@ class _LabellingCamera(CameraPlugin[NoParameters]):
         self.labels = Labels(self.simulation)
         self.frame = self.cameras[0].description.optical_frame_id or self.gz_frame()
 
-    def publish_colours(self, output: Output, colour: Pixels) -> None:
+    def publish_colors(self, output: Output, color: Pixels) -> None:
         """Publish an RGB image."""
         message = self.message(IMAGE, self.frame)
-        fill_image(message, colour, "rgb8")
+        fill_image(message, color, "rgb8")
         output.publish(message)
 
     def publish_info(self, output: Output, camera: MountedCamera) -> None:
@@ -129,50 +129,50 @@ class _LabellingCamera(CameraPlugin[NoParameters]):
 
 
 class GzSegmentation(_LabellingCamera):
-    """The sensor ``segmentation_camera`` of gz, which publishes a label map and a coloured map."""
+    """The sensor ``segmentation_camera`` of gz, which publishes a label map and a colored map."""
 
     def make_topics(self) -> None:
-        """Create the topics for the label map, the coloured map and the camera info."""
+        """Create the topics for the label map, the colored map and the camera info."""
         base = self.sensor.sensor.topic or self.gz_topic("segmentation")
         usual = "" if self.sensor.sensor.topic else "/segmentation"
         names = {leaf: f"{usual}/{leaf}" if usual else "" for leaf in ("labels_map", "colored_map", "camera_info")}
         self._maps = self.node.publisher(IMAGE, f"{base}/labels_map", usual=names["labels_map"])
-        self._coloured = self.node.publisher(IMAGE, f"{base}/colored_map", usual=names["colored_map"])
+        self._colored = self.node.publisher(IMAGE, f"{base}/colored_map", usual=names["colored_map"])
         self._info = self.node.publisher(INFO, f"{base}/camera_info", usual=names["camera_info"])
-        self._colours = np.random.default_rng(0).integers(40, 256, (_LABEL_COUNT, 3), dtype=np.uint8)
-        self._colours[0] = 0
+        self._colors = np.random.default_rng(0).integers(40, 256, (_LABEL_COUNT, 3), dtype=np.uint8)
+        self._colors[0] = 0
 
     def is_wanted(self) -> bool:
         """Return whether a topic has a subscription."""
-        return any(output.is_wanted for output in (self._maps, self._coloured, self._info))
+        return any(output.is_wanted for output in (self._maps, self._colored, self._info))
 
     def measure(self) -> None:
         """Render, and publish the maps and the camera info."""
         (camera, *_) = self.cameras
         self.publish_info(self._info, camera)
-        if not (self._maps.is_wanted or self._coloured.is_wanted):
+        if not (self._maps.is_wanted or self._colored.is_wanted):
             return
         geoms = self.render(camera, Channels.GEOMS).geoms
         labels, instances = self.labels.labels(geoms), self.labels.instances(geoms)  # type: ignore[arg-type]  # asked for
         if camera.description.segmentation_type in ("instance", "panoptic"):
             high, low = (instances >> 8).astype(np.uint8), (instances & 0xFF).astype(np.uint8)
-            label_map, coloured = (
+            label_map, colored = (
                 np.stack([low, high, labels], axis=-1),
-                self._colours[(labels + 31 * low) % _LABEL_COUNT],
+                self._colors[(labels + 31 * low) % _LABEL_COUNT],
             )
-            coloured[labels == 0] = 0
+            colored[labels == 0] = 0
         else:
-            label_map, coloured = np.stack([labels] * 3, axis=-1), self._colours[labels]
+            label_map, colored = np.stack([labels] * 3, axis=-1), self._colors[labels]
         if self._maps.is_wanted:
-            self.publish_colours(self._maps, label_map)
-        if self._coloured.is_wanted:
-            self.publish_colours(self._coloured, coloured)
+            self.publish_colors(self._maps, label_map)
+        if self._colored.is_wanted:
+            self.publish_colors(self._colored, colored)
 
 
 class GzBoxes(_LabellingCamera):
     """The sensor ``boundingbox_camera`` of gz.
 
-    The sensor publishes bounding boxes of the visible parts of labelled models, and an image with these boxes. Unlike
+    The sensor publishes bounding boxes of the visible parts of labeled models, and an image with these boxes. Unlike
     in gz, boxes of the types ``full_2d`` and ``3d`` also cover only the visible parts.
     """
 
@@ -195,19 +195,19 @@ class GzBoxes(_LabellingCamera):
         self.publish_info(self._info, camera)
         if not (self._boxes.is_wanted or self._images.is_wanted):
             return
-        channels = Channels.GEOMS | (Channels.COLOUR if self._images.is_wanted else Channels(0))
+        channels = Channels.GEOMS | (Channels.COLOR if self._images.is_wanted else Channels(0))
         rendered = self.render(camera, channels)
         boxes = list(self._boxes_of(rendered.geoms))
         if self._boxes.is_wanted:
             message = self.message(_DETECTIONS_TYPE, self.frame)
             message.detections = [self._detection(message.header, *box) for box in boxes]
             self._boxes.publish(message)
-        if rendered.colour is not None:
-            colour = rendered.colour.copy()
+        if rendered.color is not None:
+            color = rendered.color.copy()
             for _, left, top, right, bottom in boxes:
-                colour[[top, bottom], left : right + 1] = _BOX_COLOUR
-                colour[top : bottom + 1, [left, right]] = _BOX_COLOUR
-            self.publish_colours(self._images, colour)
+                color[[top, bottom], left : right + 1] = _BOX_COLOR
+                color[top : bottom + 1, [left, right]] = _BOX_COLOR
+            self.publish_colors(self._images, color)
 
     def _boxes_of(self, geoms: Any) -> Iterator[tuple[int, int, int, int, int]]:
         """Yield the label, left, top, right and bottom of each box, in pixels.

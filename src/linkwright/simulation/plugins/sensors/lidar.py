@@ -161,7 +161,7 @@ class ClassicRaySensor(_OneLidar[RayParameters]):
         }
         kind = self.parameters.output_type.rpartition("/")[2]
         if kind not in converters:
-            element = self.place.element
+            element = self.context.element
             message = phrase("'{type}' is not an output type of a lidar", type=self.parameters.output_type)
             hint = phrase("use sensor_msgs/LaserScan, PointCloud2, PointCloud or Range")
             span, source = (element.span(), element.source) if element is not None else (None, None)

@@ -235,7 +235,7 @@ class RtpsParticipant:
         self._wake()
         if threading.current_thread() is not self._thread:
             self._thread.join()
-        self._send_to_peers(self._spdp(gone=True))
+        self._send_to_peers(self._spdp(is_leaving=True))
         self._network.close()
         self._wake_receiver.close()
         self._wake_sender.close()
@@ -315,10 +315,10 @@ class RtpsParticipant:
 
     # --- discovery ----------------------------------------------------------------------------------------------------
 
-    def _spdp(self, *, gone: bool = False) -> bytes:
+    def _spdp(self, *, is_leaving: bool = False) -> bytes:
         self._announcement_count += 1
-        inline = key_parameters(self.prefix + v.PARTICIPANT, is_gone=gone)
-        payload = None if gone else self._self
+        inline = key_parameters(self.prefix + v.PARTICIPANT, is_gone=is_leaving)
+        payload = None if is_leaving else self._self
         return message(self.prefix, data(v.SPDP_READER, v.SPDP_WRITER, self._announcement_count, payload, inline))
 
     def _send_to_peers(self, packet: bytes) -> None:

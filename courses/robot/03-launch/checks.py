@@ -1,0 +1,148 @@
+import yaml
+
+from linkwright.learning import NotYet, check
+from linkwright.xmltree import parse_file
+
+LAUNCH = "display.launch.py"
+JOINTS = {"left_wheel_joint", "right_wheel_joint", "front_caster_joint", "back_caster_joint"}
+NEEDED = ("joint_state_publisher", "launch", "launch_ros", "robot_state_publisher", "rviz2")
+
+
+def package(work):
+    return work.package("my_robot_description")
+
+
+@check(
+    "publisher",
+    en="display.launch.py starts robot_state_publisher with the robot.",
+    zh="display.launch.py 启动 robot_state_publisher，并把机器人交给它。",
+)
+def publishes_robot(work):
+    with package(work).launch(LAUNCH) as running:
+        running.expect_node("/robot_state_publisher")
+        description = running.wait_for_message("/robot_description").data
+    if "base_footprint" not in description:
+        raise NotYet(
+            en="The published robot has no base_footprint; it is not that of mbot_base.xacro.",
+            zh="发布的机器人没有 base_footprint；它不是 mbot_base.xacro 中的机器人。",
+        )
+
+
+@check("joints", en="The positions of all four joints are published.", zh="四个关节的位置都发布了。")
+def publishes_joints(work):
+    with package(work).launch(LAUNCH) as running:
+        names = set(running.wait_for_message("/joint_states").name)
+    if missing := sorted(JOINTS - names):
+        raise NotYet(en=f"/joint_states has no {missing[0]}.", zh=f"/joint_states 中没有 {missing[0]}。")
+
+
+@check(
+    "joints",
+    en="tf knows where the left wheel is on the robot.",
+    zh="tf 知道左轮在机器人上的位置。",
+)
+def knows_wheel(work):
+    with package(work).launch(LAUNCH) as running:
+        running.expect_transform("base_link", "left_wheel_link", (0, 0.19, -0.05))
+
+
+@check(
+    "rviz",
+    en="urdf.rviz shows the robot in the frame base_footprint.",
+    zh="urdf.rviz 在坐标系 base_footprint 中显示机器人。",
+)
+def configuration_shows_robot(work):
+    path = package(work).file("rviz/urdf.rviz")
+    try:
+        manager = yaml.safe_load(path.read_text(encoding="utf-8"))["Visualization Manager"]
+        displays = {display["Class"]: display for display in manager["Displays"]}
+        frame = manager["Global Options"]["Fixed Frame"]
+    except (yaml.YAMLError, KeyError, TypeError) as error:
+        raise NotYet(
+            en=f"urdf.rviz is not an RViz configuration: {str(error).splitlines()[0]}.",
+            zh=f"urdf.rviz 不是 RViz 的配置：{str(error).splitlines()[0]}。",
+        ) from None
+    robot = displays.get("rviz_default_plugins/RobotModel")
+    if robot is None:
+        raise NotYet(en="urdf.rviz has no RobotModel display.", zh="urdf.rviz 中没有 RobotModel 显示项。")
+    if frame != "base_footprint":
+        raise NotYet(
+            en=f"The fixed frame is '{frame}', but should be 'base_footprint'.",
+            zh=f"固定坐标系是“{frame}”，应当是“base_footprint”。",
+        )
+
+
+@check("rviz", en="The launch file starts rviz2.", zh="launch 文件启动 rviz2。")
+def starts_rviz(work):
+    with package(work).launch(LAUNCH) as running:
+        running.expect_node("/rviz2")
+
+
+@check(
+    "argument",
+    en="With model:=..., the launch file shows another robot.",
+    zh="给出 model:=... 时，launch 文件显示另一个机器人。",
+)
+def shows_other_robot(work):
+    other = package(work).file("urdf/mbot_base.urdf")
+    with package(work).launch(LAUNCH, model=str(other)) as running:
+        description = running.wait_for_message("/robot_description").data
+    if "base_footprint" in description:
+        raise NotYet(
+            en="With model:=src/my_robot_description/urdf/mbot_base.urdf, the robot is still that of mbot_base.xacro.",
+            zh="给出 model:=src/my_robot_description/urdf/mbot_base.urdf 时，仍是 mbot_base.xacro 中的机器人。",
+        )
+
+
+@check("argument", en="Without the argument, it shows mbot_base.xacro.", zh="不给参数时，显示 mbot_base.xacro。")
+def shows_default(work):
+    publishes_robot(work)
+
+
+@check(
+    "dependencies",
+    en="package.xml lists the packages that the launch file uses.",
+    zh="package.xml 列出了 launch 文件用到的功能包。",
+)
+def lists_dependencies(work):
+    root = parse_file(package(work).file("package.xml")).root
+    tags = {"depend", "exec_depend"}
+    listed = {element.text().strip() for element in root.elements() if element.tag in tags}
+    if missing := sorted(set(NEEDED) - listed):
+        raise NotYet(
+            en=f"package.xml does not list '{missing[0]}' as a dependency at run time.",
+            zh=f"package.xml 没有把“{missing[0]}”列为运行时依赖。",
+        )
+
+
+@check(
+    "install",
+    en="setup.py installs the folders launch, rviz and urdf.",
+    zh="setup.py 安装文件夹 launch、rviz 和 urdf。",
+)
+def installs_folders(work):
+    package(work).expect_installed(
+        "launch/display.launch.py", "rviz/urdf.rviz", "urdf/mbot_base.xacro", "urdf/parts.xacro"
+    )
+
+
+@check("install", en="The package has no findings.", zh="功能包没有任何问题。")
+def has_no_findings(work):
+    package(work).expect_no_findings()
+
+
+@check("frame", en="The height of the wheel's frame is right.", zh="轮子坐标系的高度正确。")
+def knows_height(work):
+    slips = {
+        -0.05: NotYet(
+            en="-0.05 m is the height in the frame base_link; ask for base_footprint.",
+            zh="-0.05 m 是在 base_link 坐标系中的高度；请查询 base_footprint。",
+        ),
+        -0.06: NotYet(
+            en="-0.06 m is the height of base_footprint in the frame of the wheel: exchange the two frames.",
+            zh="-0.06 m 是 base_footprint 在轮子坐标系中的高度：请交换两个坐标系。",
+        ),
+        0.11: NotYet(en="0.11 m is the height of base_link.", zh="0.11 m 是 base_link 的高度。"),
+        0.19: NotYet(en="0.19 m is y, to the left; z is the last number.", zh="0.19 m 是 y，向左；z 是最后一个数。"),
+    }
+    work.expect_number(0.06, tolerance=0.003, slips=slips)

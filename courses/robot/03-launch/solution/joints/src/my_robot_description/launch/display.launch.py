@@ -1,0 +1,17 @@
+from ament_index_python.packages import get_package_share_path
+from launch import LaunchDescription
+from launch.substitutions import Command
+from launch_ros.actions import Node
+from launch_ros.parameter_descriptions import ParameterValue
+
+
+def generate_launch_description():
+    package = get_package_share_path('my_robot_description')
+    model = str(package / 'urdf' / 'mbot_base.xacro')
+    robot_description = ParameterValue(Command(['xacro ', model]), value_type=str)
+
+    return LaunchDescription([
+        Node(package='robot_state_publisher', executable='robot_state_publisher',
+             parameters=[{'robot_description': robot_description}]),
+        Node(package='joint_state_publisher', executable='joint_state_publisher'),
+    ])

@@ -1,0 +1,115 @@
+from linkwright.learning import Edit, right, wrong
+
+DESCRIPTION, WORLDS = "src/my_robot_description/", "src/my_worlds/"
+BASE, PARTS = DESCRIPTION + "urdf/mbot_base.xacro", DESCRIPTION + "urdf/parts.xacro"
+SIM, WORLD = DESCRIPTION + "urdf/mbot_sim.xacro", WORLDS + "worlds/yard.world"
+LAUNCH, SETUP = WORLDS + "launch/load_mbot.launch.py", WORLDS + "setup.py"
+
+WHEEL_COLLISION = """      <collision>
+        <origin xyz="0 0 0" rpy="${pi/2} 0 0"/>
+        <geometry>
+          <cylinder radius="${wheel_radius}" length="${wheel_length}"/>
+        </geometry>
+      </collision>
+"""
+FLAT_COLLISION = WHEEL_COLLISION.replace('        <origin xyz="0 0 0" rpy="${pi/2} 0 0"/>\n', "")
+BODY_INERTIA = '    <xacro:cylinder_inertial mass="5" radius="${base_radius}" length="${base_length}"/>\n'
+PLAIN_INERTIA = """    <inertial>
+      <mass value="5"/>
+      <inertia ixx="0.0607" ixy="0" ixz="0" iyy="0.0607" iyz="0" izz="0.1"/>
+    </inertial>
+"""
+GZ_DRIVE = """    <plugin name="gz::sim::systems::DiffDrive" filename="gz-sim-diff-drive-system">
+      <left_joint>left_wheel_joint</left_joint>
+      <right_joint>right_wheel_joint</right_joint>
+      <wheel_separation>0.38</wheel_separation>
+      <wheel_radius>0.06</wheel_radius>
+"""
+
+CASES = [
+    wrong("collisions", "none on the wheels", Edit(PARTS, WHEEL_COLLISION, ""), says="wheel_link' has no <collision>"),
+    wrong(
+        "collisions", "a flat wheel", Edit(PARTS, WHEEL_COLLISION, FLAT_COLLISION), says="its axis points along 0 0 1"
+    ),
+    right("masses", "numbers instead of a macro", Edit(BASE, BODY_INERTIA, PLAIN_INERTIA)),
+    right("masses", "a lighter body", Edit(BASE, 'mass="5"', 'mass="4.2"')),
+    wrong("masses", "grams", Edit(BASE, 'mass="5"', 'mass="5000"'), says="is 5000 kg"),
+    wrong(
+        "masses",
+        "no mass of the wheels",
+        Edit(PARTS, "<xacro:cylinder_inertial", "<!-- <xacro:cylinder_inertial"),
+        Edit(PARTS, 'rpy="${pi/2} 0 0"/>\n    </link>', 'rpy="${pi/2} 0 0"/> -->\n    </link>'),
+        says="has no <inertial>",
+    ),
+    wrong(
+        "drive",
+        "the radius as diameter",
+        Edit(SIM, "<wheel_diameter>0.12", "<wheel_diameter>0.06"),
+        says="wheel diameter",
+    ),
+    wrong(
+        "drive",
+        "half of the separation",
+        Edit(SIM, "<wheel_separation>0.38", "<wheel_separation>0.19"),
+        says="wheel separation",
+    ),
+    wrong(
+        "drive",
+        "left and right exchanged",
+        Edit(SIM, "<left_joint>left_", "<left_joint>right_"),
+        Edit(SIM, "<right_joint>right_", "<right_joint>left_"),
+        says="which joint is the left one",
+    ),
+    wrong(
+        "drive",
+        "a misspelt joint",
+        Edit(SIM, "<left_joint>left_wheel_joint", "<left_joint>left_whell_joint"),
+        says="does not move",
+    ),
+    right(
+        "drive",
+        "an old name of the plugin's folder",
+        Edit(SIM, '<plugin name="diff_drive"', '<plugin name="drive_of_mbot"'),
+    ),
+    wrong("laser", "another topic", Edit(SIM, "~/out:=scan", "~/out:=laser"), says="Nothing is published on /scan"),
+    wrong(
+        "laser",
+        "another frame",
+        Edit(SIM, "<frame_name>laser_link", "<frame_name>base_link"),
+        says="frame of /scan is 'base_link'",
+    ),
+    wrong(
+        "laser",
+        "turned around",
+        Edit(SIM, 'xyz="0 0 0.105" rpy="0 0 0"', 'xyz="0 0 0.105" rpy="0 0 3.14"'),
+        says="straight ahead, but the wall is at 2 m",
+    ),
+    right("laser", "more samples", Edit(SIM, "<samples>360", "<samples>720")),
+    wrong("world", "a wall that falls", Edit(WORLD, "      <static>true</static>\n", ""), says="'wall' must be static"),
+    wrong(
+        "world",
+        "a ball without collision",
+        Edit(
+            WORLD,
+            '<collision name="collision">\n          <geometry><sphere><radius>0.15</radius></sphere></geometry>\n        </collision>',
+            "",
+        ),
+        says="did not move the ball",
+    ),
+    wrong("world", "another name", Edit(WORLD, '<model name="ball">', '<model name="bal">'), says="no model 'ball'"),
+    right("world", "another color", Edit(WORLD, "0.8 0.1 0.1 1", "0.1 0.1 0.8 1")),
+    wrong(
+        "load",
+        "another topic",
+        Edit(LAUNCH, "'robot_description', '-entity'", "'robot_descripton', '-entity'"),
+        says="/odom",
+    ),
+    wrong(
+        "load",
+        "no worlds installed",
+        Edit(SETUP, "        ('share/' + package_name + '/worlds', glob('worlds/*')),\n", ""),
+        says="yard.world",
+    ),
+    wrong("wall", "the middle", says="middle of the wall", answer="3"),
+    right("wall", "with noise", answer="2.91"),
+]

@@ -1,0 +1,126 @@
+from linkwright.learning import Edit, right, wrong
+
+PACKAGE = "src/my_control/"
+MOVE, ODOMETER, SETUP = PACKAGE + "my_control/first_move.py", PACKAGE + "my_control/odometer.py", PACKAGE + "setup.py"
+
+LOOP = """import time
+
+import rclpy
+from geometry_msgs.msg import Twist
+
+
+def main():
+    rclpy.init()
+    node = rclpy.create_node('first_move')
+    publisher = node.create_publisher(Twist, '/cmd_vel', 10)
+    while rclpy.ok():
+        twist = Twist()
+        twist.linear.x, twist.angular.z = 0.2, 0.5
+        publisher.publish(twist)
+        time.sleep(0.1)
+"""
+
+RATE = """import rclpy
+from geometry_msgs.msg import Twist
+
+
+def main(args=None):
+    rclpy.init(args=args)
+    node = rclpy.create_node('mover')
+    publisher = node.create_publisher(Twist, 'cmd_vel', 1)
+    command = Twist()
+    command.linear.x = 0.2
+    command.angular.z = 0.5
+    while rclpy.ok():
+        publisher.publish(command)
+        rclpy.spin_once(node, timeout_sec=0.1)
+"""
+
+CASES = [
+    wrong(
+        "package",
+        "no executable",
+        Edit(SETUP, "'first_move = my_control.first_move:main'", ""),
+        says="declares no executable 'first_move'",
+    ),
+    wrong(
+        "package",
+        "a misspelt module",
+        Edit(SETUP, "my_control.first_move:main", "my_control.frist_move:main"),
+        says="which is missing",
+    ),
+    right("publish", "a loop with time.sleep", {MOVE: LOOP}),
+    right("publish", "a loop with spin_once", {MOVE: RATE}),
+    wrong("publish", "no spin", Edit(MOVE, "rclpy.spin(FirstMove())", "FirstMove()"), says="does main() spin the node"),
+    wrong("publish", "another topic", Edit(MOVE, "'cmd_vel'", "'cmd_val'"), says="Nothing is published on /cmd_vel"),
+    wrong(
+        "publish", "a misspelt method", Edit(MOVE, "create_publisher", "create_publihser"), says="first_move.py, line 9"
+    ),
+    wrong("publish", "to the right", Edit(MOVE, "angular.z = 0.5", "angular.z = -0.5"), says="angular.z is -0.5"),
+    wrong("publish", "once a second", Edit(MOVE, "create_timer(0.1", "create_timer(1.0"), says="messages in 2 s"),
+    wrong("publish", "an integer", Edit(MOVE, "linear.x = 0.2", "linear.x = 2"), says="first_move.py, line"),
+    wrong(
+        "publish",
+        "an indentation",
+        Edit(MOVE, "        message = Twist()", "      message = Twist()"),
+        says="first_move.py, line",
+    ),
+    wrong("circle", "the diameter", says="diameter", answer="0.8"),
+    wrong(
+        "stop",
+        "after the shutdown",
+        Edit(
+            MOVE,
+            "        node.stop()\n        rclpy.try_shutdown()",
+            "        rclpy.try_shutdown()\n        node.stop()",
+        ),
+        says="first_move.py, line 21: InvalidHandle",
+    ),
+    wrong("stop", "no stop", Edit(MOVE, "        node.stop()\n", ""), says="still has a velocity"),
+    right(
+        "stop",
+        "with contextlib",
+        Edit(MOVE, "from rclpy.node import Node\n", "from rclpy.node import Node\nfrom contextlib import suppress\n"),
+        Edit(
+            MOVE,
+            "    try:\n        rclpy.spin(node)\n    except (KeyboardInterrupt, ExternalShutdownException):\n        pass\n    finally:\n        node.stop()\n        rclpy.try_shutdown()",
+            "    with suppress(KeyboardInterrupt, ExternalShutdownException):\n        rclpy.spin(node)\n    node.stop()\n    rclpy.try_shutdown()",
+        ),
+    ),
+    wrong("parameter", "not declared", Edit(MOVE, "        self.declare_parameter('speed', 0.2)\n", ""), says="speed"),
+    wrong(
+        "parameter",
+        "declared but not used",
+        Edit(MOVE, "self.get_parameter('speed').value", "0.2"),
+        says="the speed is 0.2 m/s, but should be 0.4",
+    ),
+    wrong(
+        "subscribe",
+        "the distance from the start",
+        Edit(
+            ODOMETER,
+            "self.distance += math.hypot(position.x - self.last.x, position.y - self.last.y)",
+            "self.distance = math.hypot(position.x, position.y)",
+        ),
+        says="forward and back",
+    ),
+    wrong(
+        "subscribe",
+        "not in setup.py",
+        Edit(SETUP, "            'odometer = my_control.odometer:main'", ""),
+        says="declares no executable 'odometer'",
+    ),
+    wrong(
+        "subscribe", "the wrong topic", Edit(ODOMETER, "'odom'", "'odometry'"), says="Nothing is published on /distance"
+    ),
+    wrong("service", "no return", Edit(ODOMETER, "        return response\n", ""), says="odometer.py"),
+    wrong(
+        "service",
+        "no reset",
+        Edit(ODOMETER, "        self.distance = 0.0\n        return", "        return"),
+        says="is still",
+    ),
+    wrong("service", "another name", Edit(ODOMETER, "'reset_distance'", "'reset'"), says="no service /reset_distance"),
+    wrong("time", "milliseconds", Edit(MOVE, "nanoseconds * 1e-9", "nanoseconds * 1e-6"), says="After 3 s"),
+    wrong("time", "never", Edit(MOVE, "> self.get_parameter('duration').value", "< 0"), says="After 6 s"),
+]

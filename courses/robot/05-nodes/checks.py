@@ -1,0 +1,210 @@
+import math
+
+from linkwright import SteppedSimulation
+from linkwright.learning import NotYet, check
+from linkwright.messages import get_service
+
+SPEED, TURN = 0.2, 0.5
+
+
+def program(work, name):
+    return work.package("my_control").program(name)
+
+
+def simulate(work):
+    return SteppedSimulation("empty", work.package("my_robot_description").file("urdf/mbot_sim.xacro"))
+
+
+@check(
+    "package",
+    en="The package my_control has the executable first_move.",
+    zh="功能包 my_control 有可执行文件 first_move。",
+)
+def has_executable(work):
+    program(work, "first_move")
+
+
+def run_first_move(work, seconds, *arguments):
+    """Run the node, and return the recorded velocities."""
+    main = program(work, "first_move")
+    with simulate(work) as test:
+        commands = test.record("/cmd_vel", "geometry_msgs/msg/Twist")
+        test.start_program(main, ["--ros-args", "-p", "use_sim_time:=true", *arguments])
+        test.advance(seconds)
+        running = list(commands)
+        position = test.robot_pose()[:2]
+    return running, list(commands), position
+
+
+def expect_commands(commands):
+    if not commands:
+        raise NotYet(
+            en="Nothing is published on /cmd_vel; is the topic right, and does main() spin the node?",
+            zh="/cmd_vel 上没有消息；话题名对吗？main() 有没有让节点 spin？",
+        )
+
+
+@check(
+    "publish", en="first_move publishes on /cmd_vel ten times a second.", zh="first_move 每秒在 /cmd_vel 上发布十次。"
+)
+def publishes_at_rate(work):
+    commands, _, _ = run_first_move(work, 2.0)
+    expect_commands(commands)
+    if not 15 <= len(commands) <= 25:
+        raise NotYet(
+            en=f"The node published {len(commands)} messages in 2 s, but should publish about 20.",
+            zh=f"节点在 2 s 内发布了 {len(commands)} 条消息，应当约为 20 条。",
+        )
+
+
+@check("publish", en="It drives at 0.2 m/s and turns at 0.5 rad/s.", zh="它以 0.2 m/s 前进，以 0.5 rad/s 转弯。")
+def publishes_velocity(work):
+    commands, _, _ = run_first_move(work, 1.0)
+    expect_commands(commands)
+    last = commands[-1]
+    if abs(last.linear.x - SPEED) > 0.001 or abs(last.angular.z - TURN) > 0.001:
+        raise NotYet(
+            en=f"linear.x is {last.linear.x:g} and angular.z is {last.angular.z:g}, but should be 0.2 and 0.5.",
+            zh=f"linear.x 是 {last.linear.x:g}，angular.z 是 {last.angular.z:g}，应当是 0.2 和 0.5。",
+        )
+
+
+@check("circle", en="The radius of the circle is right.", zh="圆的半径正确。")
+def knows_radius(work):
+    slips = {
+        0.8: NotYet(en="0.8 m is the diameter.", zh="0.8 m 是直径。"),
+        0.1: NotYet(en="0.1 is the product of both; divide them.", zh="0.1 是两者的乘积；应当相除。"),
+        2.5: NotYet(en="2.5 is the turn rate divided by the speed.", zh="2.5 是角速度除以速度。"),
+    }
+    work.expect_number(0.4, tolerance=0.03, slips=slips)
+
+
+@check("stop", en="The last velocity is zero when the node has ended.", zh="节点结束后，最后的速度是零。")
+def stops_robot(work):
+    running, all_commands, _ = run_first_move(work, 1.0)
+    expect_commands(running)
+    last = all_commands[-1]
+    if last.linear.x or last.angular.z:
+        raise NotYet(
+            en="After Ctrl-C the last message still has a velocity; publish a zero Twist before rclpy shuts down.",
+            zh="按 Ctrl-C 之后，最后一条消息仍有速度；请在 rclpy 关闭之前发布零 Twist。",
+        )
+
+
+def expect_speed(work, speed, *arguments):
+    commands, _, _ = run_first_move(work, 1.0, *arguments)
+    expect_commands(commands)
+    actual = commands[-1].linear.x
+    if abs(actual - speed) > 0.001:
+        what = " ".join(arguments) or "no arguments"
+        raise NotYet(
+            en=f"With {what}, the speed is {actual:g} m/s, but should be {speed:g}.",
+            zh=f"参数为“{' '.join(arguments) or '无'}”时，速度是 {actual:g} m/s，应当是 {speed:g}。",
+        )
+
+
+@check("parameter", en="Without arguments the speed is 0.2 m/s.", zh="不带参数时，速度是 0.2 m/s。")
+def has_default(work):
+    expect_speed(work, SPEED)
+
+
+@check("parameter", en="With speed:=0.4 it is 0.4 m/s.", zh="speed:=0.4 时，速度是 0.4 m/s。")
+def obeys_parameter(work):
+    expect_speed(work, 0.4, "-p", "speed:=0.4")
+
+
+def drive_with_odometer(work, test):
+    """Drive forward and back, and return the recorded distances and the way driven."""
+    distances = test.record("/distance", "std_msgs/msg/Float64")
+    test.start_program(program(work, "odometer"), ["--ros-args", "-p", "use_sim_time:=true"])
+    test.advance(0.5)
+    way, last = 0.0, test.robot_pose()[:2]
+    for speed in (0.4, -0.4):
+        test.drive(speed)
+        for _ in range(20):
+            test.advance(0.1)
+            here = test.robot_pose()[:2]
+            way += math.dist(last, here)
+            last = here
+    if not len(distances):
+        raise NotYet(en="Nothing is published on /distance.", zh="/distance 上没有消息。")
+    return distances, way
+
+
+@check(
+    "subscribe",
+    en="odometer publishes the distance driven on /distance.",
+    zh="odometer 在 /distance 上发布走过的路程。",
+)
+def publishes_distance(work):
+    with simulate(work) as test:
+        distances, way = drive_with_odometer(work, test)
+        distance = distances.last.data
+    if abs(distance - way) > 0.1 * way + 0.02:
+        raise NotYet(
+            en=f"The robot drove {way:.2f} m forward and back, but /distance says {distance:.2f} m.",
+            zh=f"机器人前进又后退，共走了 {way:.2f} m，但 /distance 是 {distance:.2f} m。",
+        )
+
+
+@check("service", en="/reset_distance answers with success.", zh="/reset_distance 回答成功。")
+def service_answers(work):
+    with simulate(work) as test:
+        drive_with_odometer(work, test)
+        if not call_reset(test).success:
+            raise NotYet(en="The answer has success = False.", zh="回答中 success = False。")
+
+
+@check("service", en="It sets the distance back to zero.", zh="它把路程归零。")
+def service_resets(work):
+    with simulate(work) as test:
+        distances, _ = drive_with_odometer(work, test)
+        test.drive(0.0)
+        test.advance(0.5)
+        call_reset(test)
+        test.advance(0.5)
+        distance = distances.last.data
+    if distance > 0.05:
+        raise NotYet(
+            en=f"After the call, /distance is still {distance:.2f} m.",
+            zh=f"调用之后，/distance 仍是 {distance:.2f} m。",
+        )
+
+
+def call_reset(test):
+    try:
+        return test.call("/reset_distance", get_service("std_srvs/srv/Trigger").Request(), timeout=2.0)
+    except LookupError:
+        raise NotYet(en="There is no service /reset_distance.", zh="没有服务 /reset_distance。") from None
+    except TimeoutError:
+        raise NotYet(
+            en="The service /reset_distance does not answer; does the callback return the response?",
+            zh="服务 /reset_distance 没有回答；回调函数返回 response 了吗？",
+        ) from None
+
+
+@check("time", en="The robot drives during the four seconds.", zh="机器人在四秒之内行驶。")
+def drives_during_time(work):
+    commands, _, _ = run_first_move(work, 3.0)
+    expect_commands(commands)
+    if not commands[-1].linear.x:
+        raise NotYet(en="After 3 s the robot has stopped already.", zh="3 s 之后机器人已经停下了。")
+
+
+@check("time", en="It stands still after them.", zh="四秒之后静止。")
+def stands_after_time(work):
+    commands, _, _ = run_first_move(work, 6.0)
+    expect_commands(commands)
+    if commands[-1].linear.x or commands[-1].angular.z:
+        raise NotYet(en="After 6 s the robot still drives.", zh="6 s 之后机器人仍在行驶。")
+
+
+@check("time", en="With duration:=1.0 it stops sooner.", zh="duration:=1.0 时更早停下。")
+def obeys_duration(work):
+    commands, _, _ = run_first_move(work, 2.0, "-p", "duration:=1.0")
+    expect_commands(commands)
+    if commands[-1].linear.x:
+        raise NotYet(
+            en="With duration:=1.0 the robot still drives after 2 s.",
+            zh="duration:=1.0 时，2 s 之后机器人仍在行驶。",
+        )

@@ -1,0 +1,162 @@
+import math
+from itertools import pairwise
+
+from linkwright import SteppedSimulation
+from linkwright.learning import NotYet, check
+
+STARTS = ((0.0, 0.0, 0.0), (1.0, -2.0, 2.0))
+BODY = 0.2
+
+
+class Run:
+    """A learner's program that drives mbot through a world."""
+
+    def __init__(self, work, name, *, world="empty", start=(0.0, 0.0, 0.0), seed=0):
+        x, y, yaw = start
+        robot = work.package("my_robot_description").file("urdf/mbot_sim.xacro")
+        self.main = work.package("my_control").program(name)
+        self.test = SteppedSimulation(world, robot, pose=(x, y, 0, 0, 0, yaw), seed=seed)
+        self.start = x, y
+
+    def __enter__(self):
+        self.test.__enter__()
+        self.test.advance(0.2)
+        self.test.start_program(self.main, ["--ros-args", "-p", "use_sim_time:=true"])
+        return self
+
+    def __exit__(self, *error):
+        return self.test.__exit__(*error)
+
+    @property
+    def position(self):
+        return self.test.robot_pose()[:2]
+
+    def drive(self, seconds, period=0.1):
+        """Advance, and return the positions."""
+        positions = []
+        for _ in range(round(seconds / period)):
+            self.test.advance(period)
+            positions.append(self.position)
+        return positions
+
+
+def expect_meter(work, tolerance):
+    for start in STARTS:
+        with Run(work, "drive_meter", start=start) as run:
+            positions = run.drive(12.0)
+            driven = math.dist(run.start, positions[-1])
+            still = math.dist(positions[-10], positions[-1]) < 0.005
+        if driven < 0.05:
+            raise NotYet(en="The robot does not move.", zh="机器人没有动。")
+        if not still:
+            raise NotYet(
+                en=f"After 12 s the robot still drives; it is {driven:.2f} m from its start.",
+                zh=f"12 s 之后机器人仍在行驶；离出发点 {driven:.2f} m。",
+            )
+        if abs(driven - 1.0) > tolerance:
+            raise NotYet(
+                en=f"From x = {start[0]:g}, y = {start[1]:g}, the robot drove {driven:.3f} m instead of 1 m.",
+                zh=f"从 x = {start[0]:g}，y = {start[1]:g} 出发，机器人走了 {driven:.3f} m，而不是 1 m。",
+            )
+
+
+@check(
+    "meter", en="The robot stops after one meter, wherever it begins.", zh="无论从哪里出发，机器人都在一米之后停下。"
+)
+def drives_meter(work):
+    expect_meter(work, 0.08)
+
+
+@check("brake", en="It stops within 5 mm of one meter.", zh="它停在与一米处相差 5 mm 以内。")
+def brakes(work):
+    expect_meter(work, 0.005)
+
+
+@check("square", en="The robot passes the four corners in order.", zh="机器人依次经过四个角。")
+def drives_square(work):
+    corners = [(1, 0), (1, 1), (0, 1), (0, 0)]
+    with Run(work, "drive_square") as run:
+        positions = iter(run.drive(60.0))
+        for x, y in corners:
+            if not any(math.dist(position, (x, y)) < 0.15 for position in positions):
+                raise NotYet(
+                    en=f"The robot did not reach the corner ({x}, {y}) within 60 s.",
+                    zh=f"机器人在 60 s 内没有到达角 ({x}, {y})。",
+                )
+
+
+@check("square", en="It stops where it began.", zh="它停在出发的地方。")
+def ends_square(work):
+    with Run(work, "drive_square") as run:
+        positions = run.drive(60.0)
+    if math.dist(positions[-20], positions[-1]) > 0.01 or math.dist(positions[-1], (0, 0)) > 0.15:
+        x, y = positions[-1]
+        raise NotYet(
+            en=f"After 60 s the robot is at x = {x:.2f}, y = {y:.2f}, and should stand at 0, 0.",
+            zh=f"60 s 之后机器人在 x = {x:.2f}，y = {y:.2f}，应当停在 0, 0。",
+        )
+
+
+@check("wall", en="The robot stops 0.3 to 0.7 m before a wall.", zh="机器人停在墙前 0.3 到 0.7 m 处。")
+def stops_at_wall(work):
+    for start in ((0.0, 0.0, 0.0), (0.0, 0.0, math.pi)):
+        with Run(work, "stop_at_wall", world=work.lesson / "room.world", start=start) as run:
+            positions = run.drive(14.0)
+        gap = 3.0 - abs(positions[-1][0])
+        if math.dist(positions[-10], positions[-1]) > 0.01:
+            raise NotYet(en="After 14 s the robot still drives.", zh="14 s 之后机器人仍在行驶。")
+        if gap < BODY + 0.02:
+            raise NotYet(en="The robot drove into the wall.", zh="机器人撞上了墙。")
+        if not 0.3 < gap < 0.75:
+            raise NotYet(
+                en=f"The robot stands {gap:.2f} m before the wall.",
+                zh=f"机器人停在墙前 {gap:.2f} m 处。",
+            )
+
+
+def touches(position):
+    """Return whether the body touches a wall, the box or the column of the room."""
+    x, y = position
+    dx, dy = max(abs(x - 1.5) - 0.4, 0), max(abs(y - 1.5) - 0.4, 0)
+    return (
+        max(abs(x), abs(y)) > 3.0 - BODY - 0.005
+        or math.hypot(dx, dy) < BODY + 0.005
+        or math.dist(position, (-1.2, -1.4)) < 0.3 + BODY + 0.005
+    )
+
+
+@check("wander", en="The robot touches nothing for a minute.", zh="机器人一分钟内不碰到任何东西。")
+def touches_nothing(work):
+    for start in ((0.0, 0.0, 0.0), (0.0, 1.0, -2.0)):
+        with Run(work, "wander", world=work.lesson / "room.world", start=start) as run:
+            for index, position in enumerate(run.drive(60.0)):
+                if touches(position):
+                    x, y = position
+                    raise NotYet(
+                        en=f"After {index / 10:.0f} s the robot touches something at x = {x:.1f}, y = {y:.1f}.",
+                        zh=f"{index / 10:.0f} s 之后，机器人在 x = {x:.1f}，y = {y:.1f} 处碰到了东西。",
+                    )
+
+
+@check("wander", en="It drives at least 6 m in this time.", zh="在这段时间里至少走 6 m。")
+def drives_far(work):
+    with Run(work, "wander", world=work.lesson / "room.world") as run:
+        positions = run.drive(60.0)
+    way = sum(math.dist(*pair) for pair in pairwise(positions))
+    if way < 6.0:
+        raise NotYet(
+            en=f"The robot drove only {way:.1f} m in a minute.",
+            zh=f"机器人一分钟只走了 {way:.1f} m。",
+        )
+
+
+@check("drift", en="The error is right.", zh="误差正确。")
+def knows_drift(work):
+    slips = {
+        0.05: NotYet(en="0.05 is 5 % of one meter; the robot drove 10 m.", zh="0.05 是一米的 5 %；机器人走了 10 m。"),
+        10.5: NotYet(
+            en="10.5 m is how far the robot really drove; the question is the difference.",
+            zh="10.5 m 是机器人实际走的距离；问的是差值。",
+        ),
+    }
+    work.expect_number(0.5, tolerance=0.03, slips=slips)

@@ -1,0 +1,28 @@
+from setuptools import find_packages, setup
+
+package_name = 'my_control'
+
+setup(
+    name=package_name,
+    version='0.0.0',
+    packages=find_packages(exclude=['test']),
+    data_files=[
+        ('share/ament_index/resource_index/packages',
+            ['resource/' + package_name]),
+        ('share/' + package_name, ['package.xml']),
+    ],
+    install_requires=['setuptools'],
+    zip_safe=True,
+    maintainer='learner',
+    maintainer_email='learner@example.org',
+    description='Nodes that drive mbot',
+    license='MIT',
+    entry_points={
+        'console_scripts': [
+            'first_move = my_control.first_move:main',
+            'odometer = my_control.odometer:main',
+            'drive_meter = my_control.drive_meter:main',
+            'drive_square = my_control.drive_square:main',
+        ],
+    },
+)

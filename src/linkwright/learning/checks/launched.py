@@ -1,0 +1,288 @@
+"""A launch of the learner's package, and the graph that it starts."""
+
+from __future__ import annotations
+
+import asyncio
+import io
+import math
+import threading
+import time
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
+from types import TracebackType
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import numpy as np
+
+from linkwright.diagnostics import LinkwrightError, Phrase, nearest, phrase
+from linkwright.learning.checks.not_yet import NotYet
+
+if TYPE_CHECKING:
+    from typing_extensions import Self
+
+    from linkwright.graph import Node
+    from linkwright.graph.transforms.waiting import Buffer
+    from linkwright.launch.engine.session import LaunchSession
+    from linkwright.packages import PackageFinder
+
+T = TypeVar("T")
+
+_WAIT_SECONDS = 15.0
+"""The seconds that a condition may take. Processes start slowly on a loaded machine."""
+
+_QUIET_SECONDS = 1.2
+"""The seconds without a new node or topic after which nothing more is expected of the nodes of this process."""
+
+_QUIET_SECONDS_OF_PROCESSES = 6.0
+"""The same, if the launch has started the learner's programs, each in a process of its own."""
+
+_PERIOD_SECONDS = 0.02
+_NODE = "lesson_check"
+
+
+class LaunchCheck:
+    """A launch of the learner's package that runs inside a ``with`` block.
+
+    Linkwright's own nodes run in this process, the learner's programs in processes of their own.
+
+    Args:
+        package: the name of the package.
+        file: the name of the launch file.
+        arguments: the launch arguments.
+        finder: the finder of the workspace's packages.
+    """
+
+    def __init__(self, package: str, file: str, arguments: Mapping[str, str], finder: PackageFinder) -> None:
+        self._package = package
+        self._file = file
+        self._arguments = arguments
+        self._finder = finder
+        self._loop = asyncio.new_event_loop()
+        self._thread = threading.Thread(target=self._loop.run_forever, daemon=True)
+        self._output = io.StringIO()
+        self._session: LaunchSession | None = None
+        self._run: Any = None
+        self._node: Node | None = None
+        self._buffer: Buffer | None = None
+
+    def __enter__(self) -> Self:
+        from linkwright import standins
+
+        standins.activate()
+        self._thread.start()
+        try:
+            self._run = asyncio.run_coroutine_threadsafe(self._launch(), self._loop)
+            self._wait_until(
+                lambda: self._node is not None, phrase("the launch file '{file}' did not start", file=self._file)
+            )
+        except BaseException:
+            self.__exit__(None, None, None)
+            raise
+        return self
+
+    async def _launch(self) -> bool:
+        from linkwright.hosting.launch_log import LaunchLog
+        from linkwright.hosting.signals import own_environment
+        from linkwright.hosting.xacro_calls import Descriptions, use_descriptions
+        from linkwright.launch.engine.session import LaunchSession
+        from linkwright.launch.engine.supervisor import SessionOptions
+        from linkwright.launch.frontend.launch_file import load_launch_file
+        from linkwright.launch.model.context import LaunchContext
+        from linkwright.launch.target import LaunchTarget
+
+        path = LaunchTarget(self._file, self._package).resolve(self._finder)
+        with own_environment(self._finder), use_descriptions(Descriptions(self._finder)):
+            description = load_launch_file(path)
+            argv = [f"{name}:={value}" for name, value in self._arguments.items()]
+            context = LaunchContext(argv=argv, noninteractive=True)
+            context.launch_configurations.update(self._arguments)
+            options = SessionOptions("127.0.0.1", None, False, self._file, history=0)
+            self._session = LaunchSession(self._finder, options, LaunchLog(self._output, self._output), context)
+            self._node = self._session.host.graph.create_node(_NODE)
+            self._session.host.network.join_soon(with_viewer=False)
+            places = {"current_launch_file_path": str(path), "current_launch_file_directory": str(path.parent)}
+            return await self._session.run(description, places)
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        from linkwright.launch.model import events
+
+        session = self._session
+        if session is not None and not self._run.done():
+            self._loop.call_soon_threadsafe(session.context.emit_event_sync, events.Shutdown(reason="the check ended"))
+            with suppress(Exception):
+                self._run.result(_WAIT_SECONDS)
+        self._loop.call_soon_threadsafe(self._loop.stop)
+        self._thread.join(_WAIT_SECONDS)
+        if not self._thread.is_alive():
+            self._loop.close()
+
+    def expect_node(self, name: str) -> None:
+        """Require a node to run.
+
+        Args:
+            name: the full name, such as ``/robot_state_publisher``.
+
+        Raises:
+            NotYet: the node did not start in time.
+        """
+        self._wait_until(lambda: name in self._nodes(), lambda: _missing("node", name, self._nodes()))
+
+    def wait_for_message(self, topic: str, accept: Callable[[Any], bool] | None = None) -> Any:
+        """Return the next message of a topic.
+
+        Args:
+            topic: the full name of the topic.
+            accept: returns whether a message is the one to wait for; None to accept any.
+
+        Raises:
+            NotYet: no node publishes the topic, or no such message came in time.
+        """
+        from linkwright.graph import DurabilityPolicy, QoSProfile
+        from linkwright.messages import get_message
+
+        node = self._checker
+        self._wait_until(lambda: node.count_publishers(topic) > 0, lambda: _missing("topic", topic, self._topics()))
+        received: list[Any] = []
+
+        def subscribe() -> None:
+            types = dict(node.get_topic_names_and_types())[topic]
+            profile = (
+                QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL) if _is_latched(node, topic) else 10
+            )
+            node.create_subscription(get_message(types[0]), topic, received.append, profile)
+
+        self._call(subscribe)
+        matching: list[Any] = []
+
+        def has_match() -> bool:
+            matching.extend(message for message in received if accept is None or accept(message))
+            received.clear()
+            return bool(matching)
+
+        self._wait_until(has_match, phrase("no fitting message came on {topic}", topic=topic))
+        return matching[0]
+
+    def expect_transform(
+        self, frame: str, child: str, position: Sequence[float] | None = None, *, tolerance: float = 0.005
+    ) -> None:
+        """Require a transform between two frames.
+
+        Args:
+            frame: the frame in which the position is given.
+            child: the frame whose position is expected.
+            position: x, y and z in m; None for any.
+            tolerance: the greatest distance that passes, in m.
+
+        Raises:
+            NotYet: there is no transform in time, or the position differs.
+        """
+        found: list[Sequence[float]] = []
+
+        def has_transform() -> bool:
+            found[:] = self._call(lambda: self._lookup(frame, child))
+            return bool(found) and (position is None or math.dist(found[0], position) <= tolerance)
+
+        def problem() -> Phrase:
+            if not found or position is None:
+                return phrase("there is no transform from '{frame}' to '{child}'", frame=frame, child=child)
+            return phrase(
+                "'{child}' is at {actual} in '{frame}', but should be at {expected}",
+                child=child,
+                frame=frame,
+                actual=" ".join(f"{value:g}" for value in np.round(found[0], 4)),
+                expected=" ".join(f"{value:g}" for value in position),
+            )
+
+        self._wait_until(has_transform, problem)
+
+    @property
+    def _checker(self) -> Node:
+        assert self._node is not None, "the launch has started"
+        return self._node
+
+    def _lookup(self, frame: str, child: str) -> list[Sequence[float]]:
+        from linkwright.graph import Time
+        from linkwright.graph.transforms.errors import TransformException
+        from linkwright.graph.transforms.listener import TransformListener
+        from linkwright.graph.transforms.waiting import Buffer
+
+        if self._buffer is None:
+            self._buffer = Buffer()
+            TransformListener(self._buffer, self._checker)
+        try:
+            translation = self._buffer.lookup_transform(frame, child, Time()).transform.translation
+        except TransformException:
+            return []
+        return [(translation.x, translation.y, translation.z)]
+
+    def _nodes(self) -> list[str]:
+        return [
+            f"{namespace.rstrip('/')}/{name}"
+            for name, namespace in self._call(self._checker.get_node_names_and_namespaces)
+            if name != _NODE
+        ]
+
+    def _topics(self) -> list[str]:
+        return [name for name, _ in self._call(self._checker.get_topic_names_and_types)]
+
+    def _call(self, function: Callable[[], T]) -> T:
+        """Call a function on the event loop of the launch."""
+
+        async def call() -> T:
+            return function()
+
+        return asyncio.run_coroutine_threadsafe(call(), self._loop).result(_WAIT_SECONDS)
+
+    def _wait_until(self, condition: Callable[[], bool], problem: Phrase | Callable[[], Phrase]) -> None:
+        """Wait for a condition.
+
+        Raises:
+            NotYet: the launch failed, or the condition did not become true in time.
+        """
+        deadline = time.monotonic() + _WAIT_SECONDS
+        last_change, last_graph = time.monotonic(), self._graph()
+        while not condition():
+            if self._run.done():
+                raise NotYet(self._failure())
+            graph = self._graph()
+            if graph != last_graph:
+                last_change, last_graph = time.monotonic(), graph
+            if time.monotonic() > min(deadline, last_change + self._quiet_seconds):
+                raise NotYet(problem() if callable(problem) else problem)
+            time.sleep(_PERIOD_SECONDS)
+
+    def _graph(self) -> tuple[Sequence[str], Sequence[str]]:
+        """Return the nodes and topics of the graph; both are empty before the launch starts."""
+        return ([], []) if self._node is None or self._run.done() else (self._nodes(), self._topics())
+
+    @property
+    def _quiet_seconds(self) -> float:
+        if self._session is None or not self._graph()[0]:
+            return _WAIT_SECONDS
+        return _QUIET_SECONDS_OF_PROCESSES if self._session.processes.names else _QUIET_SECONDS
+
+    def _failure(self) -> Phrase:
+        """Return why the launch ended before the check did."""
+        try:
+            self._run.result()
+        except LinkwrightError as error:
+            return phrase("{file}: {message}", file=self._file, message=error.diagnostics[0].message)
+        lines = [line for line in self._output.getvalue().splitlines() if "error" in line.casefold()]
+        if lines:
+            return phrase("{file}: {message}", file=self._file, message=lines[0])
+        return phrase("the launch of '{file}' ended by itself", file=self._file)
+
+
+def _is_latched(node: Node, topic: str) -> bool:
+    """Return whether a publisher of a topic keeps its last messages for new subscriptions."""
+    infos = node.get_publishers_info_by_topic(topic)
+    return any(info.qos_profile.durability.name == "TRANSIENT_LOCAL" for info in infos)
+
+
+def _missing(kind: str, name: str, names: Sequence[str]) -> Phrase:
+    similar = nearest(name, names, 1)
+    if similar:
+        return phrase("there is no {kind} '{name}'; there is '{similar}'", kind=kind, name=name, similar=similar[0])
+    return phrase("there is no {kind} '{name}'", kind=kind, name=name)

@@ -1,0 +1,74 @@
+"""Checks of a launch see its nodes, messages and transforms, and say what is missing without a long wait."""
+
+import shutil
+import time
+
+import pytest
+
+from linkwright.learning import NotYet, Work
+from tests.domains import own_domain
+from tests.places import PACKAGE
+
+PROGRAM = """import rclpy
+from std_msgs.msg import String
+
+rclpy.init()
+node = rclpy.create_node("talker")
+publisher = node.create_publisher(String, "greeting", 10)
+node.create_timer(0.1, lambda: publisher.publish(String(data="hello")))
+rclpy.spin(node)
+"""
+
+LAUNCH = """from launch import LaunchDescription
+from launch.actions import ExecuteProcess
+import sys
+
+def generate_launch_description():
+    return LaunchDescription([ExecuteProcess(cmd=[sys.executable, {program!r}])])
+"""
+
+
+@pytest.fixture
+def package(tmp_path, monkeypatch):
+    monkeypatch.setenv("ROS_DOMAIN_ID", str(own_domain()))
+    monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
+    shutil.copytree(PACKAGE, tmp_path / "src" / PACKAGE.name)
+    return Work(tmp_path, lesson=tmp_path).package(PACKAGE.name)
+
+
+def test_nodes_messages_and_transforms_are_waited_for(package):
+    with package.launch("display.launch.py") as running:
+        running.expect_node("/robot_state_publisher")
+        assert "left_wheel_joint" in running.wait_for_message("/joint_states").name
+        assert "<robot" in running.wait_for_message("/robot_description").data
+        running.expect_transform("base_link", "left_wheel_link", (0, 0.19, -0.05))
+        begin = time.monotonic()
+        with pytest.raises(NotYet, match="no node '/robot_state_publishr'; there is '/robot_state_publisher'"):
+            running.expect_node("/robot_state_publishr")
+        with pytest.raises(NotYet, match="no topic '/jont_states'; there is '/joint_states'"):
+            running.wait_for_message("/jont_states")
+        with pytest.raises(NotYet, match=r"is at 0 0\.19 -0\.05 in 'base_link', but should be at 0 1 0"):
+            running.expect_transform("base_link", "left_wheel_link", (0, 1, 0))
+        with pytest.raises(NotYet, match="no transform from 'base_link' to 'arm'"):
+            running.expect_transform("base_link", "arm")
+        with pytest.raises(NotYet, match="no fitting message came on /joint_states"):
+            running.wait_for_message("/joint_states", lambda message: not message.name)
+        assert time.monotonic() - begin < 60
+
+
+def test_a_launch_file_that_fails_is_said(package):
+    (package.folder / "launch" / "bad.launch.py").write_text("import nonsense_module\n")
+    with pytest.raises(NotYet, match=r"bad\.launch\.py"), package.launch("bad.launch.py"):
+        pass
+    with pytest.raises(NotYet, match=r"has no file 'launch/displai\.launch\.py'"):
+        package.launch("displai.launch.py")
+
+
+@pytest.mark.slow
+def test_a_program_of_the_learner_is_seen_over_the_network(package, tmp_path):
+    program = tmp_path / "talker.py"
+    program.write_text(PROGRAM)
+    (package.folder / "launch" / "talk.launch.py").write_text(LAUNCH.format(program=str(program)))
+    with package.launch("talk.launch.py") as running:
+        running.expect_node("/talker")
+        assert running.wait_for_message("/greeting").data == "hello"
