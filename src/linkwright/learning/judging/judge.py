@@ -80,7 +80,7 @@ class Judge:
 
     def at_time_limit(self) -> None:
         """Decide what a run is worth that has not ended in time: by default, the task is not done."""
-        self.fail(en="the time is over", zh="时间到了")
+        self.fail(en="the task is not done", zh="任务没有完成")
 
     # --- methods for judges to call -----------------------------------------------------------------------------------
 
