@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from linkwright.cli.endings import FINE, print_message
+from linkwright.cli.exit_status import FINE, print_message
 from linkwright.cli.numbers import positive_int
 from linkwright.diagnostics import Diagnostic, LinkwrightError, counted, display_path, joined, phrase, print_diagnostics
 from linkwright.diagnostics.translation import localized

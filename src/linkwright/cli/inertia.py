@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from linkwright.cli.endings import print_message
+from linkwright.cli.exit_status import print_message
 from linkwright.cli.model_arguments import add_model
 from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, has_errors, phrase, print_diagnostics
 from linkwright.diagnostics.translation import localized
