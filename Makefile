@@ -150,6 +150,7 @@ check: $(VENV)/.dev
 	MYPYPATH=src $(BIN)/mypy
 	$(BIN)/lint-imports
 	$(BIN)/python tools/lock.py check
+	$(BIN)/python tools/pack_wheels.py --check
 	$(BIN)/python tools/protocol_types.py --check
 	$(BIN)/python tools/message_stubs.py --check
 	$(BIN)/python tools/compatibility.py --check
@@ -210,6 +211,7 @@ page: $(VENV)/.dev
 
 lock: | $(UV)
 	$(PYTHON) tools/lock.py update $(ARGS)
+	@echo "Now run python tools/pack_wheels.py in the environment"
 
 format: $(VENV)/.dev
 	$(BIN)/ruff check --fix

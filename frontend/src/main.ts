@@ -38,6 +38,7 @@ import { livePanels } from "./panels/monitor/live-panels";
 import { showTopic } from "./panels/monitor/show-topic";
 import { ScenePanel } from "./panels/over-scene/scene-panel";
 import type { PanelId } from "./panels/panel";
+import { TerminalPanel } from "./panels/terminal/terminal-panel";
 import { TimeFold } from "./panels/timeline/time-fold";
 import { TimePanel } from "./panels/timeline/time-panel";
 import { TimelineBar } from "./panels/timeline/timeline-bar";
@@ -108,6 +109,7 @@ function start(app: HTMLElement): void {
   app.append(dockBox);
   const [source, diagram] = [new SourcePanel(session), new DiagramPanel(session)];
   const voice = new VoicePanel(session.voice, session.words);
+  const terminal = new TerminalPanel(session.terminals, theme);
   const panels = [
     scene,
     new DisplaysPanel(session),
@@ -126,6 +128,7 @@ function start(app: HTMLElement): void {
     new ComparisonPanel(session, () => stage?.fit()),
     new EditingPanel(session),
     voice,
+    terminal,
     ...livePanels(session.monitor, (id) => dock.open(id), (topic) => showTopic(session, topic)),
   ];
   preserveSearches(panels, session.memory);
@@ -174,6 +177,7 @@ function start(app: HTMLElement): void {
     monitor: () => session.monitor.inspect(),
     voice: () => session.voice.inspect(),
     editing: () => handles?.inspect() ?? {},
+    terminal: () => terminal.inspect(),
   });
 }
 
@@ -191,6 +195,7 @@ function followAvailability(dock: Dock, session: Session): void {
   const followJoints = openWhile(dock, "joints", () => session.joints.controls !== null);
   const followWorld = openWhile(dock, "world", () => session.modelling.active);
   const followComparison = openWhile(dock, "comparison", () => session.comparison.compared !== null);
+  const followTerminals = openWhile(dock, "terminal", () => session.terminals.isAvailable);
   const { displays } = session;
   const pruneDisplayPanels = (): void => dock.displayPanels.prune(displays.displays.map(({ id }) => id));
   const countFindings = (): void => dock.setCount("diagnostics", session.diagnostics.length + displays.failingCount);
@@ -198,6 +203,7 @@ function followAvailability(dock: Dock, session: Session): void {
   session.joints.controlsChanged.on(followJoints);
   session.modelling.changed.on(followWorld);
   session.comparison.changed.on(followComparison);
+  session.terminals.availabilityChanged.on(followTerminals);
   displays.treeChanged.on(pruneDisplayPanels);
   session.diagnosticsChanged.on(countFindings);
   displays.treeChanged.on(countBeforePaint);
@@ -207,6 +213,7 @@ function followAvailability(dock: Dock, session: Session): void {
     followJoints();
     followWorld();
     followComparison();
+    followTerminals();
     pruneDisplayPanels();
     countFindings();
   });
@@ -275,7 +282,7 @@ function bindFileKeys(session: Session, files: FileCommands): void {
   const onKeyDown = (event: KeyboardEvent): void => {
     const target = event.target instanceof Element ? event.target : null;
     const found = keys.find(({ shortcut }) => matches(event, shortcut));
-    if (!found || target?.closest("dialog, .source-editor")) return;
+    if (!found || target?.closest("dialog, .source-editor, .terminal-screen")) return;
     if (found.text === true && target?.matches("input[type=text], textarea")) return;
     event.preventDefault();
     event.stopPropagation();

@@ -149,6 +149,19 @@ import type {
   UnsavedTextShown,
   WriteSourceFile,
 } from "./source-editor";
+import type {
+  AcknowledgeTerminal,
+  CloseTerminal,
+  LeaveTerminal,
+  OpenTerminal,
+  ResizeTerminal,
+  RestartTerminal,
+  ShowTerminal,
+  TerminalInputLost,
+  TerminalOutput,
+  Terminals,
+  WriteTerminal,
+} from "./terminal";
 import type { EditorAttached, ElementSelected, ShowElement } from "./text-editor";
 import type {
   Clock,
@@ -218,6 +231,7 @@ export * from "./points";
 export * from "./robot";
 export * from "./simulation";
 export * from "./source-editor";
+export * from "./terminal";
 export * from "./text-editor";
 export * from "./time";
 export * from "./views-and-tools";
@@ -288,6 +302,9 @@ export type ServerMessage =
   | SourceFolder
   | TakeJudged
   | TeleopState
+  | TerminalInputLost
+  | TerminalOutput
+  | Terminals
   | TimeReset
   | TimeState
   | Timeline
@@ -308,6 +325,7 @@ export type ServerMessage =
   | VoiceWordsFile;
 
 export type PageMessage =
+  | AcknowledgeTerminal
   | AddDisplay
   | AddEntity
   | AddTool
@@ -333,6 +351,7 @@ export type PageMessage =
   | CenterJoints
   | ChangeEntities
   | ChangeSavedView
+  | CloseTerminal
   | CommandNavigation
   | ControlSimulation
   | CopyEntities
@@ -352,6 +371,7 @@ export type PageMessage =
   | ImageSize
   | ImportWords
   | LeaveSourceFile
+  | LeaveTerminal
   | LoadConfiguration
   | MarkerFeedback
   | MeshStatus
@@ -359,6 +379,7 @@ export type PageMessage =
   | NewConfiguration
   | OpenConfiguration
   | OpenEditor
+  | OpenTerminal
   | Play
   | PointChosen
   | PoseChosen
@@ -377,6 +398,8 @@ export type PageMessage =
   | RenameDisplay
   | RenameWord
   | ResetTime
+  | ResizeTerminal
+  | RestartTerminal
   | RevertConfiguration
   | RobotMeasured
   | SaveConfiguration
@@ -394,6 +417,7 @@ export type PageMessage =
   | SetTime
   | SetToolProperty
   | ShowPanels
+  | ShowTerminal
   | ShowUnsavedText
   | SpawnModel
   | StepTime
@@ -413,7 +437,8 @@ export type PageMessage =
   | WatchTopics
   | WatchVoice
   | WatchWords
-  | WriteSourceFile;
+  | WriteSourceFile
+  | WriteTerminal;
 
 export type DataContent =
   | CellGrid

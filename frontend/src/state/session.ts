@@ -26,6 +26,7 @@ import { SimulationState } from "./simulation";
 import { SlowConnection } from "./slow-connection";
 import { Slowness } from "./slowness";
 import { TextEditorLink } from "./text-editor";
+import { TerminalsState } from "./terminals";
 import { TimeControlState } from "./time";
 import { TimelineState } from "./timeline";
 import { ToolsState } from "./tools";
@@ -73,6 +74,7 @@ export class Session {
   readonly voice: VoiceState;
   readonly words: WordsState;
   readonly textEditor: TextEditorLink;
+  readonly terminals: TerminalsState;
   diagnostics: readonly DiagnosticItem[] = [];
   private program: Hello | null = null;
 
@@ -96,6 +98,7 @@ export class Session {
     this.voice = new VoiceState(connection, browserStorage());
     this.words = new WordsState(connection, this.voice);
     this.textEditor = new TextEditorLink(connection, this.focus);
+    this.terminals = new TerminalsState(connection);
     this.listen(connection);
     const followFixedFrame = (): void => {
       this.frames.fixedFrame = this.displays.fixedFrame;

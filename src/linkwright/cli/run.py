@@ -6,7 +6,7 @@ import argparse
 import shlex
 
 from linkwright.cli.process_replacement import replace_process
-from linkwright.cli.view import add_viewer_options
+from linkwright.cli.view import add_viewer_options, terminal_folder
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -44,6 +44,7 @@ def run(arguments: argparse.Namespace) -> int:
             not arguments.no_open,
             foxglove=arguments.foxglove,
             history=arguments.history,
+            terminal=terminal_folder(arguments),
         )
         return run_viewer(program_arguments, options)
     standins.activate()

@@ -266,6 +266,9 @@ class PageGroup:
     def __contains__(self, page: Page) -> bool:
         return page in self._pages
 
+    def __iter__(self) -> Iterator[Page]:
+        return iter(tuple(self._pages))
+
     def add(self, page: Page) -> None:
         """Add a page to the group."""
         self._pages[page] = None

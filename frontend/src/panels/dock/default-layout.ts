@@ -18,7 +18,7 @@ const RIGHT: Placement["beside"] = [
 ];
 
 /** Wide panels that are read line by line share one place below the scene. */
-const BOTTOM: readonly PanelId[] = ["source", "diagram", "joint-table", "editing", "plot", "topics", "graph", "parameters", "log"];
+const BOTTOM: readonly PanelId[] = ["terminal", "source", "diagram", "joint-table", "editing", "plot", "topics", "graph", "parameters", "log"];
 const BELOW: Placement = { beside: [...BOTTOM.map((id) => [id, "within"] as const), ["scene", "below"]], height: 300 };
 /** The largest share of the dock's height that a panel requests. */
 const MAX_HEIGHT_SHARE = 0.4;
@@ -66,6 +66,7 @@ const PLACEMENTS: Readonly<Record<PanelId, Placement>> = {
   links: { beside: [["displays", "within"], ["scene", "left"]], width: 320, inactive: true },
   comparison: { beside: [["displays", "within"], ["links", "within"], ["scene", "left"]], width: 320 },
   world: { beside: [["displays", "within"], ["links", "within"], ["scene", "left"]], width: 320 },
+  terminal: BELOW,
   source: BELOW,
   diagram: BELOW,
   "joint-table": BELOW,

@@ -12,6 +12,7 @@ import { recording } from "./recording";
 import { sharing } from "./sharing";
 import { shell } from "./shell";
 import { simulation } from "./simulation";
+import { terminal } from "./terminal";
 import { timeline } from "./timeline";
 import { tools } from "./tools";
 import { values } from "./values";
@@ -32,6 +33,7 @@ export const en = {
     comparison: comparison.panel,
     voice: voice.panel,
     editing: editing.panel,
+    terminal: terminal.panel,
   },
   shell,
   sharing,
@@ -45,6 +47,7 @@ export const en = {
   sourceEditor,
   modelling,
   voice,
+  terminal,
   details,
   displays,
   tree: {
