@@ -67,7 +67,7 @@ def run(arguments: argparse.Namespace) -> int:
     from linkwright.descriptions import examine
     from linkwright.inertia import MeshLibrary, estimate
     from linkwright.inertia.reports import as_json, as_text
-    from linkwright.inertia.writing import Written, write_inertials
+    from linkwright.inertia.writing import WriteResult, write_inertials
     from linkwright.packages import PackageFinder
 
     folder = Path(arguments.file).absolute().parent
@@ -91,7 +91,7 @@ def run(arguments: argparse.Namespace) -> int:
         )
         for name in link_names
     ]
-    result: Written | None = None
+    result: WriteResult | None = None
     if arguments.write:
         properties = {estimate.link: estimate.properties for estimate in estimates if estimate.properties is not None}
         result = write_inertials(robot, properties)
