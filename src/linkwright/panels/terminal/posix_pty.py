@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 import asyncio
-import fcntl
 import os
 import struct
 import subprocess
 import sys
-import termios
 import threading
 from contextlib import suppress
 from pathlib import Path
 
 from linkwright.panels.terminal.process_session import end_session
 from linkwright.panels.terminal.pty import Ended, Receive, TerminalProgram, TerminalSize
+
+if sys.platform != "win32":
+    import fcntl
+    import termios
 
 _STARTER = Path(__file__).with_name("take_terminal.py")
 
@@ -24,8 +26,8 @@ _BLOCK_SIZE = 64 * 1024
 _GRACE_SECONDS = 0.5
 """Seconds for which the children of a shell may continue after its end."""
 
-_UTF8_INPUT: int = getattr(termios, "IUTF8", 0x4000)
-"""The flag with which Backspace erases a character in UTF-8, not a byte. It has this value on Linux and macOS."""
+_UTF8_INPUT = 0x4000
+"""The flag with which Backspace erases a character in UTF-8, not a byte. IUTF8 has this value on Linux and macOS."""
 
 
 class PosixPty:
