@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from importlib import import_module
 
 from linkwright._version import __version__
-from linkwright.cli.endings import FINE, USAGE, status_of
+from linkwright.cli.exit_status import FINE, USAGE, status_of
 from linkwright.cli.language import LANGUAGE_HELP, take_language, translate_help
 from linkwright.diagnostics import did_you_mean
 from linkwright.diagnostics.translation import set_language

@@ -11,7 +11,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from linkwright.cli.endings import print_message
+from linkwright.cli.exit_status import print_message
 from linkwright.cli.model_arguments import add_model
 from linkwright.cli.simulation_options import add_simulation_options, recording
 from linkwright.cli.view import add_viewer_options, terminal_folder

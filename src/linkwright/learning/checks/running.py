@@ -29,6 +29,9 @@ TIME_LIMIT = 120.0
 _DOMAINS = 100
 """The number of ROS domains among which the process of a check selects its own, without domain 0, the default."""
 
+PYTHON = [sys.executable]
+"""The command that runs Python for checks. Tests measure the coverage of its processes."""
+
 MODULE = "linkwright.learning.checks.running"
 
 
@@ -78,7 +81,7 @@ def _without_repetition(results: Sequence[CheckResult]) -> list[CheckResult]:
 
 def check_command(step: Step, workspace: Path, output: Path, *, answer: str | None = None) -> list[str]:
     """Return the command that runs the checks of a step and writes the result as JSON to a file."""
-    words = [sys.executable, "-m", MODULE, str(step.lesson.folder), step.id, str(workspace), str(output)]
+    words = [*PYTHON, "-m", MODULE, str(step.lesson.folder), step.id, str(workspace), str(output)]
     return words if answer is None else [*words, answer]
 
 

@@ -97,6 +97,8 @@ def _advance_to_end(test: SteppedSimulation, judge: Judge, program: Program, tim
     error = program.error or next(iter(test.errors), None)
     if error is not None:
         judge.note(en=f"the program ended with an error: {error}", zh=f"程序因错误而结束：{error}")
+    elif not judge.is_finished and not program.is_running:
+        judge.note(en="the program ended before the task was done", zh="任务完成之前程序就结束了")
     if not judge.is_finished:
         judge.at_time_limit()
     return error
@@ -110,5 +112,5 @@ def _find_judge(test: SteppedSimulation) -> Judge:
 def _user_traceback(error: BaseException, program: Path) -> list[str]:
     """Return the lines of a traceback from the program's file on."""
     frames = traceback.extract_tb(error.__traceback__)
-    first = next((i for i, frame in enumerate(frames) if frame.filename == str(program.resolve())), 0)
+    first = next((i for i, frame in enumerate(frames) if frame.filename == str(program.resolve())), len(frames))
     return [*traceback.format_list(list(frames)[first:]), *traceback.format_exception_only(error)]

@@ -194,7 +194,7 @@ class SourceEditorFeature(PageFeature):
             outcome = await self._unsaved.remove(_PageTexts(page), message.path)
         else:
             text = with_line_ends(message.text, on_disk)
-            outcome = await self._unsaved.put(UnsavedText(_PageTexts(page), message.path, message.number, text))
+            outcome = await self._unsaved.store(UnsavedText(_PageTexts(page), message.path, message.number, text))
         page.send(messages.UnsavedTextShown(message.number, message.path, outcome))
 
     async def _change(
