@@ -125,7 +125,7 @@ def test_a_link_out_of_the_workspace_is_not_followed(file: Path, tmp_path: Path)
 
 async def test_a_page_elsewhere_edits_nothing(file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(Page, "is_here", False, raising=False)
-    monkeypatch.setattr("linkwright.page.server._is_from_here", lambda _: False)
+    monkeypatch.setattr("linkwright.page.server.is_from_here", lambda _: False)
     async with world() as scene, page(scene.viewer) as client:
         answer = await opened(scene, client, file)
         assert "only in pages that are open on the machine" in answer["why_not"]

@@ -111,11 +111,22 @@ async def test_a_page_that_opens_without_permission_hears_nothing_of_terminals()
 
 
 async def test_pages_of_other_machines_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(server, "_is_from_here", lambda _: False)
+    monkeypatch.setattr(server, "is_from_here", lambda _: False)
     async with enabled(tmp_path) as scene, page(scene.viewer) as client:
         await client.until("terminals")
         await client.send("open_terminal", **SIZE)
         assert "on the machine of the program" in (await client.until("terminals"))["why_not"]
+        assert scene.viewer.add_feature(TerminalFeature)._terminals == {}
+
+
+async def test_pages_of_other_users_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(server, "may_be_own_user", lambda _: False)
+    async with enabled(tmp_path) as scene, page(scene.viewer) as client:
+        await client.until("terminals")
+        await client.send("open_terminal", **SIZE)
+        assert "the user who started the program" in (await client.until("terminals"))["why_not"]
+        await client.send("write_terminal", terminal=1, text="touch x\r", is_binary=False)
+        assert "the user who started the program" in (await client.until("terminals"))["why_not"]
         assert scene.viewer.add_feature(TerminalFeature)._terminals == {}
 
 

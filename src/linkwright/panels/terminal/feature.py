@@ -43,7 +43,7 @@ class _NotShownError(Exception):
 class TerminalFeature(PageFeature):
     """The feature that runs shells for pages, in terminals that remain when a page is reloaded.
 
-    All requests are refused before `enable`, and requests of pages on other machines always.
+    All requests are refused before `enable`, and requests of pages on other machines or of other users always.
     """
 
     def __init__(self, viewer: FeatureHost) -> None:
@@ -65,7 +65,7 @@ class TerminalFeature(PageFeature):
         }
 
     def enable(self, folder: Path, command: tuple[str, ...] = _SHELL) -> None:
-        """Let pages of this machine run a shell.
+        """Let this user's pages on this machine run a shell.
 
         Call it only for a server that no other machine can reach.
 
@@ -119,6 +119,8 @@ class TerminalFeature(PageFeature):
             return phrase("this program was started without a terminal in the page: start it again with `--terminal`")
         if not page.is_here:
             return phrase("the terminal can be used only in pages on the machine of the program")
+        if not page.may_be_own_user():
+            return phrase("the terminal can be used only in a browser of the user who started the program")
         return None
 
     def _open(self, page: Page, message: messages.OpenTerminal) -> None:
