@@ -243,7 +243,7 @@ async def test_no_manager_waits_for_what_a_launch_file_of_a_user_starts_and_is_n
 
 def test_no_composed_manager_waits_for_it_either() -> None:
     messages: list[str] = []
-    log = SimpleNamespace(warning_line=lambda _name, text: messages.append(text))
+    log = SimpleNamespace(write_warning=lambda _name, text: messages.append(text))
     context = SimpleNamespace(session=SimpleNamespace(left_out={"docking_server"}, log=log))
     request = get_service("composition_interfaces/srv/LoadNode").Request(package_name="nav2_lifecycle_manager")
     parameter = get_message("rcl_interfaces/msg/Parameter")(name="node_names")

@@ -7,7 +7,6 @@ import os
 import signal
 import subprocess
 import sys
-import tempfile
 import time
 from collections.abc import Sequence
 from contextlib import suppress
@@ -15,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from linkwright.diagnostics import LinkwrightError, foreign, phrase
+from linkwright.files.scratch_folders import ScratchFolder
 from linkwright.learning.checks.declaring import Check, load_checks
 from linkwright.learning.checks.not_yet import NotYet
 from linkwright.learning.checks.programs import describe_failure
@@ -118,7 +118,7 @@ class CheckProcess:
     def run(self) -> StepResult:
         """Run the checks, and return their results."""
         begin = time.monotonic()
-        with tempfile.TemporaryDirectory(prefix="linkwright-check-") as scratch:
+        with ScratchFolder("check") as scratch:
             output = Path(scratch) / "result.json"
             reason = self._run_command(check_command(self._step, self._workspace, output, answer=self._answer))
             data = _read(output)
