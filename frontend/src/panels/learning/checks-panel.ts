@@ -26,7 +26,7 @@ export class ChecksPanel implements Panel {
       "div",
       { class: "checks" },
       h("header", { class: "checks-head" }, this.status, h("span", { class: "spacer" }), check, this.next),
-      h("div", { class: "scroll", tabIndex: 0, aria: { label: words.checks } }, this.list),
+      h("div", { class: "scroll", role: "group", tabIndex: 0, aria: { label: words.checks } }, this.list),
     );
     this.element = h("div", { class: "panel checks-panel" }, this.empty, this.content);
     state.changed.on(coalesced(() => this.update()));
