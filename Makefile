@@ -141,7 +141,7 @@ test-train: .build/train/.ready
 .build/train/.ready: pyproject.toml | $(UV)
 	$(UV) venv --quiet --clear --python $(or $(VERSION),3.12) .build/train
 	$(UV) pip install --quiet --python .build/train/bin/python --no-sources -e ./core -e '.[train]' \
-		babel hypothesis psutil pytest pytest-asyncio pytest-xdist
+		babel hypothesis psutil pytest pytest-asyncio pytest-timeout pytest-xdist
 	touch $@
 
 check: $(VENV)/.dev
@@ -150,6 +150,7 @@ check: $(VENV)/.dev
 	MYPYPATH=src $(BIN)/mypy
 	$(BIN)/lint-imports
 	$(BIN)/python tools/lock.py check
+	$(BIN)/python tools/pack_wheels.py --check
 	$(BIN)/python tools/protocol_types.py --check
 	$(BIN)/python tools/message_stubs.py --check
 	$(BIN)/python tools/compatibility.py --check
@@ -210,6 +211,7 @@ page: $(VENV)/.dev
 
 lock: | $(UV)
 	$(PYTHON) tools/lock.py update $(ARGS)
+	@echo "Now run python tools/pack_wheels.py in the environment"
 
 format: $(VENV)/.dev
 	$(BIN)/ruff check --fix

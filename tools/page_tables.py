@@ -21,7 +21,10 @@ from packaging.requirements import Requirement
 from linkwright.cli.command import groups, help_texts, parser_for
 from linkwright.cli.language import translate_help
 from linkwright.descriptions import load
-from linkwright.diagnostics.translation import set_language
+from linkwright.diagnostics.translation import set_language, translate_phrase
+from linkwright.learning.packing import targets
+from linkwright.learning.packing.locked_files import locked_packages
+from linkwright.learning.packing.optional_parts import PARTS, missing_parts
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 from command_reference import describe
@@ -29,7 +32,9 @@ from command_reference import describe
 ROOT = Path(__file__).resolve().parent.parent
 DOCS = ROOT / "docs"
 PAGES = tuple(
-    DOCS / folder / name for folder in ("", "zh") for name in ("index.md", "getting-started.md", "gallery.md")
+    DOCS / folder / name
+    for folder in ("", "zh")
+    for name in ("index.md", "getting-started.md", "gallery.md", "howto-class.md")
 )
 
 tomllib: Any = import_module("tomllib" if sys.version_info >= (3, 11) else "tomli")
@@ -76,7 +81,11 @@ EXTRAS = {
     "bag": Extra(
         "rosbags", "recordings: `linkwright bag`, recordings in the page", "录制：`linkwright bag`，在页面里回放"
     ),
-    "learn": Extra("markdown-it-py", "courses: `linkwright learn`", "课程：`linkwright learn`"),
+    "learn": Extra(
+        "markdown-it-py",
+        "courses: `linkwright learn`, with all that they need",
+        "课程 `linkwright learn`，以及课程需要的一切",
+    ),
     "lsp": Extra("pygls", "the language server: `linkwright lsp`", "语言服务器：`linkwright lsp`"),
     "image": Extra(
         "pillow", "compressed images in the page, textures in exports", "页面里的压缩图像，导出文件里的纹理"
@@ -194,11 +203,31 @@ def gallery(chinese: bool) -> str:
     )
 
 
+def pack(chinese: bool) -> str:
+    """The parts of a course that some systems lack in a pack, with the versions of Python that have them."""
+    language = "zh" if chinese else "en"
+    labels = [system.label for system in targets.SYSTEMS.values()]
+    rows = [f"| {'部分' if chinese else 'part'} | {' | '.join(labels)} |", f"| --- |{' --- |' * len(labels)}"]
+    for part in PARTS:
+        cells = []
+        for system in targets.SYSTEMS:
+            have = [
+                target.python
+                for target in targets.select_targets([system], ())
+                if part not in missing_parts(target, ["learn"], locked_packages())
+            ]
+            is_span = have == list(targets.PYTHONS[: len(have)])
+            cells.append(f"{have[0]}–{have[-1]}" if have and is_span else ("、" if chinese else ", ").join(have) or "–")
+        rows.append(f"| {_capital(translate_phrase(part.purpose, language))} | {' | '.join(cells)} |")
+    return "\n".join(rows)
+
+
 TABLES: dict[str, Callable[[bool], str]] = {
     "commands": commands,
     "extras": extras,
     "systems": systems,
     "gallery": gallery,
+    "pack": pack,
 }
 
 

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from linkwright.cli import main
-from linkwright.cli.endings import FINDINGS, USAGE
+from linkwright.cli.exit_status import FINDINGS, USAGE
 from tests.waiting import SECONDS
 
 COMMAND = [sys.executable, "-c", "import sys; from linkwright.cli import main; sys.exit(main())", "run"]

@@ -29,10 +29,10 @@ def texts_of(unsaved: UnsavedTexts) -> dict[str, str]:
 async def test_of_two_editors_the_newer_text_counts_and_without_it_the_other_one(tmp_path: Path) -> None:
     unsaved, path = UnsavedTexts([]), str(tmp_path / "a.urdf")
     real = real_path(path)
-    await unsaved.put(UnsavedText(ONE, path, 1, "first"))
-    await unsaved.put(UnsavedText(TWO, path, 1, "second"))
+    await unsaved.store(UnsavedText(ONE, path, 1, "first"))
+    await unsaved.store(UnsavedText(TWO, path, 1, "second"))
     assert texts_of(unsaved) == {real: "second"}
-    await unsaved.put(UnsavedText(ONE, path, 2, "third"))
+    await unsaved.store(UnsavedText(ONE, path, 2, "third"))
     assert texts_of(unsaved) == {real: "third"}
     await unsaved.remove(ONE, path)
     assert texts_of(unsaved) == {real: "second"}
@@ -43,7 +43,7 @@ async def test_of_two_editors_the_newer_text_counts_and_without_it_the_other_one
 async def test_listeners_tell_what_descriptions_make_of_a_text(tmp_path: Path) -> None:
     listeners: list[Listener] = []
     unsaved, path = UnsavedTexts(listeners), str(tmp_path / "a.urdf")
-    assert await unsaved.put(UnsavedText(ONE, path, 1, "")) == "elsewhere"
+    assert await unsaved.store(UnsavedText(ONE, path, 1, "")) == "elsewhere"
     heard: list[str] = []
 
     def listener(outcome: Outcome) -> None:
@@ -55,7 +55,7 @@ async def test_listeners_tell_what_descriptions_make_of_a_text(tmp_path: Path) -
 
     listener("elsewhere")
     listener("shown")
-    assert await unsaved.put(UnsavedText(ONE, path, 2, "")) == "shown"
+    assert await unsaved.store(UnsavedText(ONE, path, 2, "")) == "shown"
     listener("errors")
     assert await unsaved.remove(ONE, path) == "errors"
     assert await unsaved.remove(ONE, path) == "elsewhere"  # it was removed before

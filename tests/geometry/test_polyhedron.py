@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from linkwright.geometry.hull import convex_hull
-from linkwright.geometry.polyhedron import is_closed, merged, polyhedron_properties
+from linkwright.geometry.polyhedron import is_closed, merge_corners, polyhedron_properties
 
 pytestmark = pytest.mark.extra("mesh")
 
@@ -52,15 +52,15 @@ def test_a_flat_surface_has_no_mass():
 def test_corners_at_one_place_become_one():
     mesh = trimesh.creation.icosphere(1)
     loose = mesh.vertices[mesh.faces].reshape(-1, 3)
-    vertices, faces = merged(loose, np.arange(len(loose)).reshape(-1, 3))
+    vertices, faces = merge_corners(loose, np.arange(len(loose)).reshape(-1, 3))
     assert len(vertices) == len(mesh.vertices)
     assert is_closed(faces)
 
 
 def test_triangles_without_area_are_dropped():
     vertices = np.array(((0, 0, 0), (1, 0, 0), (1, 0, 0), (0, 1, 0)), dtype=float)
-    assert len(merged(vertices, np.array(((0, 1, 2), (0, 1, 3))))[1]) == 1
-    assert len(merged(np.zeros((3, 3)), np.array(((0, 1, 2),)))[1]) == 0
+    assert len(merge_corners(vertices, np.array(((0, 1, 2), (0, 1, 3))))[1]) == 1
+    assert len(merge_corners(np.zeros((3, 3)), np.array(((0, 1, 2),)))[1]) == 0
 
 
 def test_a_hole_or_a_turned_triangle_opens_a_surface():

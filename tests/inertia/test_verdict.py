@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from linkwright.inertia import MeshLibrary, estimate
-from linkwright.inertia.verdict import Standing, judge
+from linkwright.inertia.verdict import Grade, assess
 from linkwright.packages import PackageFinder
 from linkwright.urdf import read
 from linkwright.urdf.bodies import Bodies
@@ -22,7 +22,7 @@ def verdict_on(tmp_path, inertial, shapes=BALL, more=""):
     )
     robot = read(parse(text, "r.urdf")).robot
     found = estimate(robot.links["a"], MeshLibrary(PackageFinder(start=[tmp_path]), tmp_path))
-    return judge(robot.links["a"], found, Bodies(robot))
+    return assess(robot.links["a"], found, Bodies(robot))
 
 
 def inertial(mass=4.0, moment=0.016, origin="0 0 0"):
@@ -33,38 +33,38 @@ def inertial(mass=4.0, moment=0.016, origin="0 0 0"):
 
 
 @pytest.mark.parametrize(
-    ("block", "standing", "words"),
+    ("block", "grade", "words"),
     [
-        (inertial(), Standing.FITS, "it matches its shapes"),
-        (inertial(mass=-1), Standing.IMPOSSIBLE, "the mass is not positive"),
-        (inertial(moment=-1), Standing.IMPOSSIBLE, "the inertia tensor is not positive definite"),
-        (inertial(mass=1e40), Standing.IMPOSSIBLE, "its numbers are out of range"),
+        (inertial(), Grade.FITS, "it matches its shapes"),
+        (inertial(mass=-1), Grade.IMPOSSIBLE, "the mass is not positive"),
+        (inertial(moment=-1), Grade.IMPOSSIBLE, "the inertia tensor is not positive definite"),
+        (inertial(mass=1e40), Grade.IMPOSSIBLE, "its numbers are out of range"),
         (
             inertial(mass=400, moment=1.6),
-            Standing.IMPOSSIBLE,
+            Grade.IMPOSSIBLE,
             "it is denser than any solid: osmium has 22 600 kg/m3",
         ),
-        (inertial(mass=0.004, moment=0.000016), Standing.DOUBTFUL, "it is lighter than air"),
-        (inertial(moment=16), Standing.DOUBTFUL, "its moments are 1 000 times the moments of a solid with its shapes"),
+        (inertial(mass=0.004, moment=0.000016), Grade.DOUBTFUL, "it is lighter than air"),
+        (inertial(moment=16), Grade.DOUBTFUL, "its moments are 1 000 times the moments of a solid with its shapes"),
         (
             inertial(moment=0.00016),
-            Standing.DOUBTFUL,
+            Grade.DOUBTFUL,
             "its moments are 1/100 of the moments of a solid with its shapes",
         ),
-        (inertial(moment=0.064), Standing.ROUGH, "its moments are 4 times the moments of a solid with its shapes"),
-        (inertial(origin="0 0.5 0"), Standing.DOUBTFUL, "its centre of mass is 500 mm from the centre of its shapes"),
-        (inertial(origin="0 0.05 0"), Standing.ROUGH, "its centre of mass is 50 mm from the centre of its shapes"),
-        ("", Standing.MISSING, "it has no <inertial>"),
+        (inertial(moment=0.064), Grade.ROUGH, "its moments are 4 times the moments of a solid with its shapes"),
+        (inertial(origin="0 0.5 0"), Grade.DOUBTFUL, "its centre of mass is 500 mm from the centre of its shapes"),
+        (inertial(origin="0 0.05 0"), Grade.ROUGH, "its centre of mass is 50 mm from the centre of its shapes"),
+        ("", Grade.MISSING, "it has no <inertial>"),
     ],
 )
-def test_a_ball(tmp_path, block, standing, words):
+def test_a_ball(tmp_path, block, grade, words):
     verdict = verdict_on(tmp_path, block)
-    assert (verdict.standing, verdict.reason) == (standing, words)
+    assert (verdict.grade, verdict.reason) == (grade, words)
 
 
 def test_the_worst_is_said_and_sorts_first(tmp_path):
     verdict = verdict_on(tmp_path, inertial(mass=-1, moment=16))
-    assert verdict.standing is Standing.IMPOSSIBLE
+    assert verdict.grade is Grade.IMPOSSIBLE
     worse = verdict_on(tmp_path, inertial(moment=16))
     bad = verdict_on(tmp_path, inertial(moment=1.6))
     fine = verdict_on(tmp_path, inertial())
@@ -74,14 +74,14 @@ def test_the_worst_is_said_and_sorts_first(tmp_path):
 def test_a_mass_of_next_to_nothing_in_a_large_shape_has_a_density_of_zero(tmp_path):
     large = BALL.replace("0.1", "1e5")
     verdict = verdict_on(tmp_path, inertial(mass=1e-320, moment=1.0), large)
-    assert (verdict.standing, verdict.density) == (Standing.DOUBTFUL, 0.0)
+    assert (verdict.grade, verdict.density) == (Grade.DOUBTFUL, 0.0)
     assert verdict.reason.startswith("it is lighter than air")
 
 
 def test_a_part_of_the_shapes_tells_nothing(tmp_path):
     shapes = BALL + '<visual><geometry><mesh filename="package://nowhere/a.stl"/></geometry></visual>'
     verdict = verdict_on(tmp_path, inertial(mass=400), shapes)
-    assert (verdict.standing, verdict.density) == (Standing.UNJUDGED, None)
+    assert (verdict.grade, verdict.density) == (Grade.UNJUDGED, None)
 
 
 def test_a_mass_may_be_that_of_a_neighbour_without_one(tmp_path):
@@ -89,9 +89,9 @@ def test_a_mass_may_be_that_of_a_neighbour_without_one(tmp_path):
     through_a_frame = joint.format("a", "frame", "frame", "") + joint.format("frame", "cover", "cover", BALL).replace(
         '"f"', '"g"'
     )
-    assert verdict_on(tmp_path, inertial(mass=400), more=through_a_frame).standing is Standing.UNJUDGED
+    assert verdict_on(tmp_path, inertial(mass=400), more=through_a_frame).grade is Grade.UNJUDGED
     heavy = joint.format("a", "cover", "cover", BALL + inertial())
-    assert verdict_on(tmp_path, inertial(mass=400), more=heavy).standing is Standing.IMPOSSIBLE
+    assert verdict_on(tmp_path, inertial(mass=400), more=heavy).grade is Grade.IMPOSSIBLE
 
 
 def test_a_link_without_an_inertial_that_needs_none(tmp_path):

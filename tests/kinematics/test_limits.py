@@ -15,7 +15,7 @@ WANTED = some.lists(some.floats(-5.0, 5.0), min_size=1, max_size=60)
 
 
 def followed(limiter: SpeedLimiter, wanted: list[float]) -> list[float]:
-    return [limiter.follow(each, STEP) for each in wanted]
+    return [limiter.approach(each, STEP) for each in wanted]
 
 
 @given(WANTED)
@@ -36,12 +36,12 @@ def test_the_jerk_is_bounded(wanted):
 
 def test_each_direction_has_its_own_bounds_for_speeding_up_and_braking():
     limiter = SpeedLimiter(acceleration=(-4.0, 2.0), reverse_acceleration=(-8.0, 10.0))
-    assert limiter.follow(1.0, 0.1) == pytest.approx(0.2)
-    assert limiter.follow(1.0, 0.1) == pytest.approx(0.4)
-    assert limiter.follow(-1.0, 0.1) == pytest.approx(0.0)
-    assert limiter.follow(-9.0, 0.1) == pytest.approx(-0.8)
-    assert limiter.follow(-9.0, 0.1) == pytest.approx(-1.6)
-    assert limiter.follow(9.0, 0.1) == pytest.approx(-0.6)
+    assert limiter.approach(1.0, 0.1) == pytest.approx(0.2)
+    assert limiter.approach(1.0, 0.1) == pytest.approx(0.4)
+    assert limiter.approach(-1.0, 0.1) == pytest.approx(0.0)
+    assert limiter.approach(-9.0, 0.1) == pytest.approx(-0.8)
+    assert limiter.approach(-9.0, 0.1) == pytest.approx(-1.6)
+    assert limiter.approach(9.0, 0.1) == pytest.approx(-0.6)
 
 
 def test_braking_may_be_free_of_the_bound_of_the_jerk():
@@ -49,11 +49,11 @@ def test_braking_may_be_free_of_the_bound_of_the_jerk():
     free = SpeedLimiter(jerk=(-1.0, 1.0), brakes_freely=True)
     for limiter in (bound, free):
         for _ in range(100):
-            limiter.follow(9.0, STEP)
+            limiter.approach(9.0, STEP)
     assert free.speed == bound.speed
     speed = free.speed
-    assert free.follow(speed, STEP) == speed
-    assert bound.follow(speed, STEP) > speed
+    assert free.approach(speed, STEP) == speed
+    assert bound.approach(speed, STEP) > speed
 
 
 def test_without_bounds_every_velocity_is_reached_at_once():

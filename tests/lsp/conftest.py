@@ -13,6 +13,7 @@ import pytest_asyncio
 from lsprotocol import types
 from pygls.lsp.client import LanguageClient
 
+from tests.measuring import coverage_options
 from tests.waiting import SECONDS
 
 MAIN = """<robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro">
@@ -145,7 +146,7 @@ async def connected(
             if registrations is not None:
                 registrations.put_nowait(registration)
 
-    await client.start_io(sys.executable, *_coverage_options(), "-m", "linkwright", "lsp", *options)
+    await client.start_io(sys.executable, *coverage_options(), "-m", "linkwright", "lsp", *options)
     await client.initialize_async(
         types.InitializeParams(capabilities, workspace_folders=[types.WorkspaceFolder(package.as_uri(), package.name)])
     )
@@ -154,16 +155,6 @@ async def connected(
     await client.shutdown_async(None)
     client.exit(None)
     await client.stop()
-
-
-def _coverage_options() -> list[str]:
-    """Return the options that measure the coverage of the server's process, if that of the tests is measured."""
-    coverage = sys.modules.get("coverage")
-    measuring = None if coverage is None else coverage.Coverage.current()
-    if measuring is None:
-        return []
-    data_file = Path(measuring.get_option("run:data_file")).resolve()
-    return ["-m", "coverage", "run", "--parallel-mode", f"--data-file={data_file}"]
 
 
 @pytest_asyncio.fixture

@@ -57,10 +57,10 @@ def mecanum(more: str = "", name: str = "robot") -> str:
 
 def test_limits_hold_for_velocity_acceleration_and_jerk():
     limiter = SpeedLimits(max_velocity=1.0, max_linear_acceleration=2.0, min_acceleration=-4.0).limiter("linear")
-    assert [limiter.follow(5.0, 0.1) for _ in range(7)] == pytest.approx([0.2, 0.4, 0.6, 0.8, 1.0, 1.0, 1.0])
-    assert [limiter.follow(0.0, 0.1) for _ in range(3)] == pytest.approx([0.6, 0.2, 0.0])
+    assert [limiter.approach(5.0, 0.1) for _ in range(7)] == pytest.approx([0.2, 0.4, 0.6, 0.8, 1.0, 1.0, 1.0])
+    assert [limiter.approach(0.0, 0.1) for _ in range(3)] == pytest.approx([0.6, 0.2, 0.0])
     slow = SpeedLimits(max_jerk=10.0, max_linear_velocity=0.1).limiter("angular")
-    assert [slow.follow(5.0, 0.1) for _ in range(3)] == pytest.approx([0.1, 0.3, 0.6])
+    assert [slow.approach(5.0, 0.1) for _ in range(3)] == pytest.approx([0.1, 0.3, 0.6])
 
 
 async def test_a_car_drives_the_circle_that_a_command_says_and_knows_where_it_is():

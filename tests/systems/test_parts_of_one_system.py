@@ -39,11 +39,32 @@ KNOWN: dict[str, str] = {
     "launch/engine/guardian_program.py": "/proc /proc/ SIGHUP SIGKILL getpgid killpg",
     "launch/engine/process_table.py": "SIGKILL",
     "launch/engine/processes.py": "SIGKILL killpg openpty",
+    "learning/checks/running.py": "SIGKILL killpg platform start_new_session",
+    "learning/packing/installer/install.py": "/bin/activate'",
+    "learning/sandbox/contents.py": "chown geteuid",
+    "learning/sandbox/identity.py": "/proc /proc/self/gid_map /proc/self/uid_map geteuid platform pwd",
+    "learning/sandbox/landlock.py": "O_CLOEXEC",
+    "learning/sandbox/limits_of_process.py": "/proc /proc/self/oom_score_adj getuid nice platform resource sched_setaffinity",  # noqa: E501
+    "learning/sandbox/linux.py": "/proc/self/status CDLL kill",
+    "learning/sandbox/namespaces.py": "/proc /proc/self/uid_map fcntl getegid geteuid platform",
+    "learning/sandbox/new_root.py": "/dev/ /dev/ptmx /dev/pts /dev/shm /proc /proc/ /proc/self/ /proc/self/fd/ /tmp O_CLOEXEC O_NOFOLLOW",  # noqa: E501
+    "learning/sandbox/processes.py": "/proc /proc/ SIGKILL fork kill platform sysconf",
+    "learning/sandbox/readable.py": "/proc/cpuinfo /proc/filesystems /proc/meminfo /proc/stat /proc/version /sys/devices/system",  # noqa: E501
+    "learning/sandbox/run.py": "platform start_new_session",
+    "learning/sandbox/seccomp.py": "AF_UNIX uname",
+    "learning/sandbox/starting.py": "/dev/ /dev/pts /dev/shm /proc /tmp SIGKILL fork geteuid platform pthread_sigmask setsid uname",  # noqa: E501
+    "learning/sandbox/supervisor.py": "SIGKILL fork platform poll set_blocking",
+    "learning/sandbox/usage.py": "getegid geteuid platform",
     "lsp/large_files.py": "get_context",
     "nodes/process.py": "SIGHUP add_signal_handler",
     "packages/readers/cmake_language.py": "platform",
     "page/access.py": "O_NOFOLLOW O_NONBLOCK getuid",
     "page/server.py": "O_NONBLOCK",
+    "panels/terminal/environment.py": "platform",
+    "panels/terminal/opening.py": "platform",
+    "panels/terminal/posix_pty.py": "add_reader add_writer fcntl openpty platform remove_reader remove_writer set_blocking start_new_session termios",  # noqa: E501
+    "panels/terminal/process_session.py": "/proc /proc/ /proc/self/stat SIGHUP SIGKILL kill",
+    "panels/terminal/take_terminal.py": "fcntl pthread_sigmask termios",
     "process/interruption.py": "kill platform",
     "process/processors.py": "sched_getaffinity",
     "shell/programs.py": "platform",

@@ -390,7 +390,8 @@ def test_random_numbers_are_the_same_in_each_run(write):
         rclpy.init()
         publisher = Node("talker").create_publisher(String, "chatter", 10)
         time.sleep(0.1)
-        publisher.publish(String(data=str(random.random())))
+        import numpy as np
+        publisher.publish(String(data=f"{random.random()} {np.random.random()}"))
     """)
     random.seed()
     first = run(program)[0]

@@ -16,7 +16,7 @@ UNKNOWN = 3.0  # m: the error without an estimate
 class Localize(Judge):
     """The figure is the mean distance between the estimate and the robot in the last 15 s."""
 
-    TOPICS = {"/estimate": "geometry_msgs/msg/PoseStamped"}
+    TOPICS = (("/estimate", "geometry_msgs/msg/PoseStamped"),)
 
     def arrange(self, scene):
         for number, (x1, y1, x2, y2) in enumerate(WALLS, start=1):

@@ -14,18 +14,14 @@ NEAR = 0.2  # m between a wall and the occupied cell that shows it
 class MapHouse(Judge):
     """The figure is how well the last map agrees with the house, in percent."""
 
-    TOPICS = {"/map": "nav_msgs/msg/OccupancyGrid"}
+    TOPICS = (("/map", "nav_msgs/msg/OccupancyGrid"),)
 
     def arrange(self, scene):
         length, width = self.random.uniform(5.5, 6.5), self.random.uniform(4.5, 5.5)
         across, along = self.random.uniform(2.6, 3.0), width / 2 + self.random.uniform(-0.2, 0.2)
         door_x, door_1, door_2 = across + 0.8, *self.random.uniform(0.9, 1.2, 2)
-        walls = [
-            ((0, 0), (length, 0)),
-            ((length, 0), (length, width)),
-            ((length, width), (0, width)),
-            ((0, width), (0, 0)),
-        ]
+        corners = [(0.0, 0.0), (length, 0.0), (length, width), (0.0, width)]
+        walls = [(corner, corners[number - 3]) for number, corner in enumerate(corners)]
         # A wall across with two doors, and one along the right half with one.
         walls += [((across, 0), (across, door_1 - 0.6)), ((across, door_1 + 0.5), (across, width - door_2 - 0.5))]
         walls += [((across, width - door_2 + 0.6), (across, width)), ((door_x + 0.8, along), (length, along))]

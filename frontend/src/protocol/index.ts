@@ -68,6 +68,17 @@ import type {
   Screw,
 } from "./geometry";
 import type { ImageFrame, ImageSize, OccupancyMap } from "./images";
+import type {
+  AnswerStep,
+  CheckStep,
+  Course,
+  CourseProblem,
+  CourseStep,
+  OpenStep,
+  StepChecks,
+  TakeHint,
+  TakeSolution,
+} from "./learning";
 import type { InteractiveMarkerMoved, InteractiveMarkerShape, MarkerFeedback, MarkersChanged } from "./markers";
 import type { DisplayForgotten, FrameTable, Hello, ProgramIsLate, Received } from "./message";
 import type {
@@ -149,6 +160,19 @@ import type {
   UnsavedTextShown,
   WriteSourceFile,
 } from "./source-editor";
+import type {
+  AcknowledgeTerminal,
+  CloseTerminal,
+  LeaveTerminal,
+  OpenTerminal,
+  ResizeTerminal,
+  RestartTerminal,
+  ShowTerminal,
+  TerminalInputLost,
+  TerminalOutput,
+  Terminals,
+  WriteTerminal,
+} from "./terminal";
 import type { EditorAttached, ElementSelected, ShowElement } from "./text-editor";
 import type {
   Clock,
@@ -210,6 +234,7 @@ export * from "./editing";
 export * from "./export";
 export * from "./geometry";
 export * from "./images";
+export * from "./learning";
 export * from "./markers";
 export * from "./message";
 export * from "./monitor";
@@ -218,6 +243,7 @@ export * from "./points";
 export * from "./robot";
 export * from "./simulation";
 export * from "./source-editor";
+export * from "./terminal";
 export * from "./text-editor";
 export * from "./time";
 export * from "./views-and-tools";
@@ -234,6 +260,9 @@ export type ServerMessage =
   | ConfigurationSaved
   | ConfigurationText
   | ConversationText
+  | Course
+  | CourseProblem
+  | CourseStep
   | Description
   | DescriptionChanged
   | DescriptionText
@@ -286,8 +315,12 @@ export type ServerMessage =
   | SourceFile
   | SourceFileWritten
   | SourceFolder
+  | StepChecks
   | TakeJudged
   | TeleopState
+  | TerminalInputLost
+  | TerminalOutput
+  | Terminals
   | TimeReset
   | TimeState
   | Timeline
@@ -308,10 +341,12 @@ export type ServerMessage =
   | VoiceWordsFile;
 
 export type PageMessage =
+  | AcknowledgeTerminal
   | AddDisplay
   | AddEntity
   | AddTool
   | AimTeleop
+  | AnswerStep
   | ApplyEdit
   | AskConfigurationText
   | AskDescription
@@ -333,6 +368,8 @@ export type PageMessage =
   | CenterJoints
   | ChangeEntities
   | ChangeSavedView
+  | CheckStep
+  | CloseTerminal
   | CommandNavigation
   | ControlSimulation
   | CopyEntities
@@ -352,6 +389,7 @@ export type PageMessage =
   | ImageSize
   | ImportWords
   | LeaveSourceFile
+  | LeaveTerminal
   | LoadConfiguration
   | MarkerFeedback
   | MeshStatus
@@ -359,6 +397,8 @@ export type PageMessage =
   | NewConfiguration
   | OpenConfiguration
   | OpenEditor
+  | OpenStep
+  | OpenTerminal
   | Play
   | PointChosen
   | PoseChosen
@@ -377,6 +417,8 @@ export type PageMessage =
   | RenameDisplay
   | RenameWord
   | ResetTime
+  | ResizeTerminal
+  | RestartTerminal
   | RevertConfiguration
   | RobotMeasured
   | SaveConfiguration
@@ -394,10 +436,13 @@ export type PageMessage =
   | SetTime
   | SetToolProperty
   | ShowPanels
+  | ShowTerminal
   | ShowUnsavedText
   | SpawnModel
   | StepTime
   | StopRecording
+  | TakeHint
+  | TakeSolution
   | Talk
   | Undo
   | UndoEdit
@@ -413,7 +458,8 @@ export type PageMessage =
   | WatchTopics
   | WatchVoice
   | WatchWords
-  | WriteSourceFile;
+  | WriteSourceFile
+  | WriteTerminal;
 
 export type DataContent =
   | CellGrid

@@ -117,6 +117,7 @@ export class TitleBar {
     return [
       ...dock.ids
         .filter((id) => id !== "joints" || this.session.joints.controls !== null)
+        .filter((id) => id !== "terminal" || this.session.terminals.isAvailable)
         .map((id) => ({
           label: strings.panels[id],
           checked: dock.isOpen(id),

@@ -5,6 +5,7 @@ import { browserStorage } from "../storage";
 import { AngleUnits } from "./angle-unit";
 import { ComparisonState } from "./comparison";
 import { ConfigurationState } from "./configuration";
+import { CourseState } from "./course";
 import { DescriptionState } from "./description";
 import { DisplayDataStore } from "./display-data";
 import { DisplaysState } from "./displays";
@@ -26,6 +27,7 @@ import { SimulationState } from "./simulation";
 import { SlowConnection } from "./slow-connection";
 import { Slowness } from "./slowness";
 import { TextEditorLink } from "./text-editor";
+import { TerminalsState } from "./terminals";
 import { TimeControlState } from "./time";
 import { TimelineState } from "./timeline";
 import { ToolsState } from "./tools";
@@ -73,6 +75,8 @@ export class Session {
   readonly voice: VoiceState;
   readonly words: WordsState;
   readonly textEditor: TextEditorLink;
+  readonly terminals: TerminalsState;
+  readonly course: CourseState;
   diagnostics: readonly DiagnosticItem[] = [];
   private program: Hello | null = null;
 
@@ -96,6 +100,8 @@ export class Session {
     this.voice = new VoiceState(connection, browserStorage());
     this.words = new WordsState(connection, this.voice);
     this.textEditor = new TextEditorLink(connection, this.focus);
+    this.terminals = new TerminalsState(connection);
+    this.course = new CourseState(connection);
     this.listen(connection);
     const followFixedFrame = (): void => {
       this.frames.fixedFrame = this.displays.fixedFrame;

@@ -141,10 +141,10 @@ def run_send_goal(arguments: argparse.Namespace) -> int:
             )
         print(f"Sending goal:\n     {to_yaml(goal)}")
 
-        def feedback(message: Any) -> None:
+        def print_feedback(message: Any) -> None:
             print(f"Feedback:\n    {to_yaml(message.feedback)}")
 
-        goal_future = client.send_goal_async(goal, session.guarded(feedback) if arguments.feedback else None)
+        goal_future = client.send_goal_async(goal, session.guarded(print_feedback) if arguments.feedback else None)
         handle = await session.wait_for_result(goal_future)
         if handle is None or not handle.accepted:
             print("Goal was rejected.")

@@ -26,7 +26,7 @@ async def call(
     request: Any,
     *,
     timeout: float | None = None,
-    longer: float = 0.0,
+    extra_wait: float = 0.0,
 ) -> Any:
     """Call a service and return its response.
 
@@ -36,8 +36,8 @@ async def call(
         service_name: the absolute name.
         request: the request message.
         timeout: the time to wait for the response, in seconds; None for no limit.
-        longer: the time to wait for the service in addition to `APPEARS_WITHIN`, in seconds; a line on standard error
-            announces this wait.
+        extra_wait: the time to wait for the service in addition to `APPEARS_WITHIN`, in seconds; a line on standard
+            error announces this wait.
 
     Raises:
         NoAnswerError: CLI421, the service does not exist; CLI422, it does not respond in time.
@@ -47,9 +47,9 @@ async def call(
     client = session.node.create_client(get_service(service_type), service_name)
     try:
         is_ready = await session.wait_until(client.service_is_ready, APPEARS_WITHIN)
-        if not is_ready and longer > 0:
+        if not is_ready and extra_wait > 0:
             print(f"waiting for service '{service_name}' to become available...", file=sys.stderr, flush=True)
-            is_ready = await session.wait_until(client.service_is_ready, longer)
+            is_ready = await session.wait_until(client.service_is_ready, extra_wait)
         if not is_ready:
             raise NoAnswerError(
                 Diagnostic(

@@ -10,7 +10,7 @@ from functools import partial
 from pathlib import Path
 from types import SimpleNamespace
 
-from linkwright.cli.endings import print_message
+from linkwright.cli.exit_status import print_message
 from linkwright.diagnostics import (
     Diagnostic,
     LinkwrightError,
@@ -97,14 +97,14 @@ def run(arguments: argparse.Namespace | SimpleNamespace) -> int:
     """
     paths = [Path(word) for word in arguments.words if ":=" not in word]
     if not paths:
-        return _usage("pass a file or folder to check")
+        return _report_usage_error("pass a file or folder to check")
     select = None if arguments.select is None else _split_selectors(arguments.select)
     ignore = _split_selectors(arguments.ignore or ())
     usage_error = _unknown_selector((*(select or ()), *ignore))
     if usage_error:
-        return _usage(usage_error)
+        return _report_usage_error(usage_error)
     if arguments.config is not None and not Path(arguments.config).is_file():
-        return _usage(phrase("no such file: '{path}'", path=arguments.config))
+        return _report_usage_error(phrase("no such file: '{path}'", path=arguments.config))
 
     from linkwright.lint.checking import Checker
 
@@ -117,17 +117,17 @@ def run(arguments: argparse.Namespace | SimpleNamespace) -> int:
     )
     fix_results: list[FixResult] = []
     if arguments.diff or arguments.fix or arguments.unsafe_fixes:
-        fix_results = _fix(
+        fix_results = _apply_fixes(
             paths,
             checker,
-            around=arguments.package,
+            with_packages=arguments.package,
             unsafe=arguments.unsafe_fixes,
             write=not arguments.diff,
         )
     if arguments.diff:
         return _print_diff(fix_results)
-    diagnostics, checked_file = _check(paths, checker, around=arguments.package)
-    _print(diagnostics, arguments.format, everything=arguments.all)
+    diagnostics, checked_file = _find_and_check(paths, checker, with_packages=arguments.package)
+    _print_findings(diagnostics, arguments.format, everything=arguments.all)
     if arguments.format == "text":
         if checked_file is not None:
             sys.stdout.write(_contents_text(checked_file))
@@ -153,7 +153,9 @@ def _contents_text(checked_file: Checked) -> str:
     return ""
 
 
-def _check(paths: Sequence[Path], checker: Checker, *, around: bool) -> tuple[list[Diagnostic], Checked | None]:
+def _find_and_check(
+    paths: Sequence[Path], checker: Checker, *, with_packages: bool
+) -> tuple[list[Diagnostic], Checked | None]:
     """Return all findings without duplicates, and the parsed file if the only path is a file.
 
     Raises:
@@ -161,7 +163,7 @@ def _check(paths: Sequence[Path], checker: Checker, *, around: bool) -> tuple[li
     """
     from linkwright.lint.targets import find_targets
 
-    targets = find_targets(paths, with_packages=around)
+    targets = find_targets(paths, with_packages=with_packages)
     if not targets.files and not targets.packages:
         path_list = ", ".join(f"'{path}'" for path in paths)
         hint = phrase(
@@ -185,23 +187,25 @@ def _unknown_selector(words: Iterable[str]) -> str | None:
     return None
 
 
-def _fix(paths: Sequence[Path], checker: Checker, *, around: bool, unsafe: bool, write: bool) -> list[FixResult]:
+def _apply_fixes(
+    paths: Sequence[Path], checker: Checker, *, with_packages: bool, unsafe: bool, write: bool
+) -> list[FixResult]:
     from linkwright.lint.apply import fix_file
     from linkwright.lint.targets import find_targets
     from linkwright.packages.manifest import MANIFEST
     from linkwright.xmltree import Overlay
 
-    def file_again(file: Path, text: str | None) -> Iterable[Diagnostic]:
+    def recheck_file(file: Path, text: str | None) -> Iterable[Diagnostic]:
         overlay = None if text is None else Overlay({file: text})
         return checker.check_file(file, targets, overlay)[0].diagnostics
 
-    def package_again(folder: Path, text: str | None) -> Iterable[Diagnostic]:
+    def recheck_package(folder: Path, text: str | None) -> Iterable[Diagnostic]:
         overlay = None if text is None else Overlay({folder / MANIFEST: text})
         return checker.check_package(folder, overlay)[0]
 
-    targets = find_targets(paths, with_packages=around)
-    checks = [(file, partial(file_again, file)) for file in targets.files]
-    checks += [(folder / MANIFEST, partial(package_again, folder)) for folder in targets.packages]
+    targets = find_targets(paths, with_packages=with_packages)
+    checks = [(file, partial(recheck_file, file)) for file in targets.files]
+    checks += [(folder / MANIFEST, partial(recheck_package, folder)) for folder in targets.packages]
     return [fix_file(path, check, unsafe=unsafe, write=write) for path, check in checks]
 
 
@@ -214,7 +218,7 @@ def _print_diff(fix_results: Sequence[FixResult]) -> int:
     return 1 if printed_files else 0
 
 
-def _print(diagnostics: Sequence[Diagnostic], form: str, *, everything: bool) -> None:
+def _print_findings(diagnostics: Sequence[Diagnostic], form: str, *, everything: bool) -> None:
     if form == "text":
         with suppress(OSError):  # a failure to write must not change the exit status, as in `print_message`
             print_diagnostics(diagnostics if everything else group_similar(diagnostics), sys.stderr)
@@ -256,6 +260,6 @@ def _split_selectors(words: Iterable[str]) -> tuple[str, ...]:
     return tuple(name for word in words for name in word.replace(",", " ").split())
 
 
-def _usage(message: str) -> int:
+def _report_usage_error(message: str) -> int:
     print(f"linkwright check: {message}", file=sys.stderr)
     return _USAGE_ERROR

@@ -41,7 +41,7 @@ _SECTIONS = {
 }
 
 
-def _common(parser: argparse.ArgumentParser) -> None:
+def _add_common_arguments(parser: argparse.ArgumentParser) -> None:
     add_session_arguments(parser)
     parser.add_argument(
         "-c",
@@ -53,13 +53,13 @@ def _common(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--include-hidden-nodes", action="store_true", help="accepted for compatibility with ros2")
 
 
-def _controller(parser: argparse.ArgumentParser) -> None:
+def _add_controller_argument(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("controller_name", metavar="CONTROLLER", help="the name of the controller")
-    _common(parser)
+    _add_common_arguments(parser)
 
 
 def _run(job: Callable[[argparse.Namespace, Ask], Coroutine[Any, Any, int]], arguments: argparse.Namespace) -> int:
-    async def work(session: Session) -> int:
+    async def run_job(session: Session) -> int:
         from linkwright.messages import get_service
 
         manager = f"/{arguments.controller_manager.strip('/')}"
@@ -67,14 +67,14 @@ def _run(job: Callable[[argparse.Namespace, Ask], Coroutine[Any, Any, int]], arg
         async def ask(service: str, **fields: Any) -> Any:
             service_type = "controller_manager_msgs/srv/" + "".join(word.capitalize() for word in service.split("_"))
             name, request = f"{manager}/{service}", get_service(service_type).Request(**fields)
-            return await call(session, service_type, name, request, longer=MANAGER_WITHIN)
+            return await call(session, service_type, name, request, extra_wait=MANAGER_WITHIN)
 
         return await job(arguments, ask)
 
-    return run_in_graph(arguments, work)
+    return run_in_graph(arguments, run_job)
 
 
-def _fail(text: str) -> int:
+def _report_failure(text: str) -> int:
     print(text, file=sys.stderr)
     return 1
 
@@ -86,7 +86,7 @@ def _configure_list_controllers(parser: argparse.ArgumentParser) -> None:
     for name in _SECTIONS:
         parser.add_argument(f"--{name.replace('_', '-')}", action="store_true", help="also print these interfaces")
     parser.add_argument("-v", "--verbose", action="store_true", help="also print all of these interfaces")
-    _common(parser)
+    _add_common_arguments(parser)
 
 
 async def _list_controllers(arguments: argparse.Namespace, ask: Ask) -> int:
@@ -123,7 +123,7 @@ async def _list_types(_: argparse.Namespace, ask: Ask) -> int:
 
 def _configure_list_hardware(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("-v", "--verbose", action="store_true", help="also print state interfaces, or data types")
-    _common(parser)
+    _add_common_arguments(parser)
 
 
 async def _list_components(arguments: argparse.Namespace, ask: Ask) -> int:
@@ -167,16 +167,16 @@ def _configure_chains(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--save", action="store_true", help="accepted for compatibility with ros2; the diagram is always saved"
     )
-    _common(parser)
+    _add_common_arguments(parser)
 
 
 async def _view_chains(_: argparse.Namespace, ask: Ask) -> int:
-    text = _diagram((await ask("list_controllers")).controller)
-    _save(text)
+    text = _graphviz_text((await ask("list_controllers")).controller)
+    _save_diagram(text)
     return 0
 
 
-def _save(text: str) -> None:
+def _save_diagram(text: str) -> None:
     from linkwright.urdf.diagram import render
 
     gv, diagram = Path("controller_diagram.gv"), Path("controller_diagram.pdf")
@@ -185,7 +185,7 @@ def _save(text: str) -> None:
     print(f"Saved controller diagram to {diagram.resolve()}")
 
 
-def _diagram(controllers: Sequence[Any]) -> str:
+def _graphviz_text(controllers: Sequence[Any]) -> str:
     """Return a Graphviz diagram of controllers and hardware, connected by their interfaces."""
     names = {controller.name for controller in controllers}
     lines = ["digraph g {", "rankdir=LR;", "node [shape=box, style=rounded];"]
@@ -221,20 +221,20 @@ def _configure_load(parser: argparse.ArgumentParser) -> None:
         choices=("unconfigured", "inactive", "active", "configured"),
         help="the state to switch the controller to after loading",
     )
-    _common(parser)
+    _add_common_arguments(parser)
 
 
 async def _load(arguments: argparse.Namespace, ask: Ask) -> int:
     name, state = arguments.controller_name, arguments.set_state
     if not (await ask("load_controller", name=name)).ok:
-        return _fail(f"Error loading controller, {_LOGS_HINT}")
+        return _report_failure(f"Error loading controller, {_LOGS_HINT}")
     if state in (None, "unconfigured"):
         print(f"Successfully loaded controller {name}")
         return 0
     if not (await ask("configure_controller", name=name)).ok:
-        return _fail("Error configuring controller")
+        return _report_failure("Error configuring controller")
     if state == "active" and not (await _switch(ask, [name], [])).ok:
-        return _fail(f"Error activating controller, {_LOGS_HINT}")
+        return _report_failure(f"Error activating controller, {_LOGS_HINT}")
     print(f"Successfully loaded controller {name} into state {'active' if state == 'active' else 'inactive'}")
     return 0
 
@@ -252,7 +252,7 @@ async def _switch(ask: Ask, activate: Sequence[str], deactivate: Sequence[str], 
 async def _unload(arguments: argparse.Namespace, ask: Ask) -> int:
     name = arguments.controller_name
     if not (await ask("unload_controller", name=name)).ok:
-        return _fail(f"Error unloading controller {name}, {_LOGS_HINT}")
+        return _report_failure(f"Error unloading controller {name}, {_LOGS_HINT}")
     print(f"Successfully unloaded controller {name}")
     return 0
 
@@ -262,7 +262,7 @@ def _configure_set_state(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "state", type=_current_state_name, choices=("unconfigured", "inactive", "active"), help="the target state"
     )
-    _common(parser)
+    _add_common_arguments(parser)
 
 
 async def _set_state(arguments: argparse.Namespace, ask: Ask) -> int:
@@ -271,7 +271,7 @@ async def _set_state(arguments: argparse.Namespace, ask: Ask) -> int:
         (controller for controller in (await ask("list_controllers")).controller if controller.name == name), None
     )
     if loaded_controller is None:
-        return _fail(f"controller {name} does not seem to be loaded")
+        return _report_failure(f"controller {name} does not seem to be loaded")
     steps: dict[tuple[str, str], tuple[str, str, Callable[[], Coroutine[Any, Any, Any]]]] = {
         ("inactive", "unconfigured"): ("cleaning up", "cleaned up", lambda: ask("cleanup_controller", name=name)),
         ("unconfigured", "inactive"): ("configuring", "configured", lambda: ask("configure_controller", name=name)),
@@ -282,10 +282,10 @@ async def _set_state(arguments: argparse.Namespace, ask: Ask) -> int:
     if step is None:
         verb = {"active": "activate", "unconfigured": "cleanup"}.get(target_state)
         action = f"cannot {verb} {name}" if verb else f"cannot put {name} in '{target_state}' state"
-        return _fail(f"{action} from its current state {loaded_controller.state}")
+        return _report_failure(f"{action} from its current state {loaded_controller.state}")
     progress_text, success_text, send_request = step
     if not (await send_request()).ok:
-        return _fail(f"Error {progress_text} controller, {_LOGS_HINT}")
+        return _report_failure(f"Error {progress_text} controller, {_LOGS_HINT}")
     print(f"Successfully {success_text} {name}")
     return 0
 
@@ -302,25 +302,25 @@ def _configure_switch(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--switch-timeout", metavar="SECONDS", type=float, default=5.0, help="accepted for compatibility with ros2"
     )
-    _common(parser)
+    _add_common_arguments(parser)
 
 
 async def _switch_controllers(arguments: argparse.Namespace, ask: Ask) -> int:
-    answer = await _switch(ask, arguments.activate, arguments.deactivate, 2 if arguments.strict else 1)
-    if not answer.ok:
-        return _fail(f"Error switching controllers, {_LOGS_HINT}")
+    response = await _switch(ask, arguments.activate, arguments.deactivate, 2 if arguments.strict else 1)
+    if not response.ok:
+        return _report_failure(f"Error switching controllers, {_LOGS_HINT}")
     print("Successfully switched controllers")
     return 0
 
 
 def _configure_reload(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--force-kill", action="store_true", help="deactivate active controllers first")
-    _common(parser)
+    _add_common_arguments(parser)
 
 
 async def _reload(arguments: argparse.Namespace, ask: Ask) -> int:
     if not (await ask("reload_controller_libraries", force_kill=arguments.force_kill)).ok:
-        return _fail(f"Error reloading libraries, {_LOGS_HINT}")
+        return _report_failure(f"Error reloading libraries, {_LOGS_HINT}")
     print("Reload successful")
     return 0
 
@@ -328,7 +328,7 @@ async def _reload(arguments: argparse.Namespace, ask: Ask) -> int:
 def _configure_set_hardware(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("hardware_component_name", metavar="HARDWARE", help="the name of the hardware component")
     parser.add_argument("state", choices=("unconfigured", "inactive", "active"), help="the target state")
-    _common(parser)
+    _add_common_arguments(parser)
 
 
 async def _set_hardware(arguments: argparse.Namespace, ask: Ask) -> int:
@@ -336,22 +336,24 @@ async def _set_hardware(arguments: argparse.Namespace, ask: Ask) -> int:
 
     name = arguments.hardware_component_name
     if name not in [component.name for component in (await ask("list_hardware_components")).component]:
-        return _fail(f"component {name} does not seem to be loaded")
+        return _report_failure(f"component {name} does not seem to be loaded")
     target_state = get_message("lifecycle_msgs/msg/State")(label=arguments.state)
-    answer = await ask("set_hardware_component_state", name=name, target_state=target_state)
-    if not answer.ok:
-        return _fail(f"Error setting hardware component to {arguments.state}, {_LOGS_HINT}")
-    print(f"Successfully set {name} to state {answer.state}")
+    response = await ask("set_hardware_component_state", name=name, target_state=target_state)
+    if not response.ok:
+        return _report_failure(f"Error setting hardware component to {arguments.state}, {_LOGS_HINT}")
+    print(f"Successfully set {name} to state {response.state}")
     return 0
 
 
 VERBS = {
     "cleanup_controller": SubVerb(
-        _controller,
+        _add_controller_argument,
         partial(_run, lambda arguments, ask: _set_state(_with_state(arguments, "unconfigured"), ask)),
         help="clean up an inactive controller, so that it is unconfigured",
     ),
-    "list_controller_types": SubVerb(_common, partial(_run, _list_types), help="list the available controller types"),
+    "list_controller_types": SubVerb(
+        _add_common_arguments, partial(_run, _list_types), help="list the available controller types"
+    ),
     "list_controllers": SubVerb(
         _configure_list_controllers, partial(_run, _list_controllers), help="list the loaded controllers"
     ),
@@ -374,7 +376,9 @@ VERBS = {
     "switch_controllers": SubVerb(
         _configure_switch, partial(_run, _switch_controllers), help="deactivate controllers and activate others"
     ),
-    "unload_controller": SubVerb(_controller, partial(_run, _unload), help="unload a controller that is not active"),
+    "unload_controller": SubVerb(
+        _add_controller_argument, partial(_run, _unload), help="unload a controller that is not active"
+    ),
     "view_controller_chains": SubVerb(
         _configure_chains, partial(_run, _view_chains), help="draw the controllers and the interfaces that they claim"
     ),

@@ -8,7 +8,7 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from linkwright.cli.endings import FINE, print_message
+from linkwright.cli.exit_status import FINE, print_message
 from linkwright.cli.numbers import positive_int, unsigned_int
 from linkwright.diagnostics import counted, display_path, phrase
 from linkwright.diagnostics.translation import localized

@@ -11,10 +11,10 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from linkwright.cli.endings import print_message
+from linkwright.cli.exit_status import print_message
 from linkwright.cli.model_arguments import add_model
 from linkwright.cli.simulation_options import add_simulation_options, recording
-from linkwright.cli.view import add_viewer_options
+from linkwright.cli.view import add_viewer_options, terminal_folder
 from linkwright.diagnostics import (
     Phrase,
     Severity,
@@ -116,7 +116,13 @@ def run(arguments: argparse.Namespace) -> int:
         headless=arguments.headless,
         rate=arguments.rate,
     )
-    options = HostOptions(arguments.host, arguments.port, not arguments.no_open, history=arguments.history)
+    options = HostOptions(
+        arguments.host,
+        arguments.port,
+        not arguments.no_open,
+        history=arguments.history,
+        terminal=terminal_folder(arguments),
+    )
     with recording(arguments) as writer:
         status = run_simulated(world, finder, options, foxglove=arguments.foxglove, writer=writer)
     return status or int(has_errors(description.diagnostics))

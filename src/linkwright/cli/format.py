@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from linkwright.cli.endings import FINE, print_message
+from linkwright.cli.exit_status import FINE, print_message
 from linkwright.cli.numbers import positive_int
 from linkwright.diagnostics import Diagnostic, LinkwrightError, counted, display_path, joined, phrase, print_diagnostics
 from linkwright.diagnostics.translation import localized
@@ -93,10 +93,10 @@ def _format_file(file: Path, arguments: argparse.Namespace, *, dry_run: bool) ->
 
 def _format_or_raise(file: Path, arguments: argparse.Namespace, *, dry_run: bool) -> bool:
     from linkwright.lint.apply import unified_changes, write_text
-    from linkwright.xmltree.decoding import decoded
+    from linkwright.xmltree.decoding import decode_with_encoding
     from linkwright.xmltree.reader import read_bytes
 
-    old_text, encoding = decoded(read_bytes(file), str(file))
+    old_text, encoding = decode_with_encoding(read_bytes(file), str(file))
     new_text = _format_text(old_text, file, arguments)
     if new_text == old_text:
         return False
@@ -111,10 +111,10 @@ def _format_or_raise(file: Path, arguments: argparse.Namespace, *, dry_run: bool
 
 def _format_stdin(arguments: argparse.Namespace) -> int:
     from linkwright.lint.apply import unified_changes
-    from linkwright.xmltree.decoding import decoded
+    from linkwright.xmltree.decoding import decode_with_encoding
 
     name = arguments.stdin_filename or "<stdin>"
-    old_text = decoded(sys.stdin.buffer.read(), name).text
+    old_text = decode_with_encoding(sys.stdin.buffer.read(), name).text
     new_text = _format_text(old_text, Path(arguments.stdin_filename or Path.cwd() / "stdin.xacro"), arguments, name)
     if arguments.diff:
         sys.stdout.write(unified_changes(name, old_text, new_text))

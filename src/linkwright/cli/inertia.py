@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from linkwright.cli.endings import print_message
+from linkwright.cli.exit_status import print_message
 from linkwright.cli.model_arguments import add_model
 from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, has_errors, phrase, print_diagnostics
 from linkwright.diagnostics.translation import localized
@@ -67,7 +67,7 @@ def run(arguments: argparse.Namespace) -> int:
     from linkwright.descriptions import examine
     from linkwright.inertia import MeshLibrary, estimate
     from linkwright.inertia.reports import as_json, as_text
-    from linkwright.inertia.writing import Written, write_inertials
+    from linkwright.inertia.writing import WriteResult, write_inertials
     from linkwright.packages import PackageFinder
 
     folder = Path(arguments.file).absolute().parent
@@ -91,7 +91,7 @@ def run(arguments: argparse.Namespace) -> int:
         )
         for name in link_names
     ]
-    result: Written | None = None
+    result: WriteResult | None = None
     if arguments.write:
         properties = {estimate.link: estimate.properties for estimate in estimates if estimate.properties is not None}
         result = write_inertials(robot, properties)

@@ -7,7 +7,7 @@ import gc
 import logging
 import sys
 
-from linkwright.cli.endings import FINE
+from linkwright.cli.exit_status import FINE
 from linkwright.diagnostics import Diagnostic, LinkwrightError, missing_extra, phrase
 
 _LOOPBACK = "127.0.0.1"

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from linkwright.cli.endings import FINE, print_message
+from linkwright.cli.exit_status import FINE, print_message
 from linkwright.cli.nested import SubVerb, configure_nested, run_nested
 from linkwright.cli.progress import ProgressLine
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, phrase, term
@@ -96,7 +96,7 @@ def run_get(arguments: argparse.Namespace) -> int:
     line = ProgressLine()
     try:
         path = install(
-            entry, arguments.source, arguments.to, lambda done, total: line.show(_progress(entry, done, total))
+            entry, arguments.source, arguments.to, lambda done, total: line.show(_progress_text(entry, done, total))
         )
     finally:
         line.end()
@@ -104,7 +104,7 @@ def run_get(arguments: argparse.Namespace) -> int:
     return FINE
 
 
-def _progress(entry: ModelEntry, done_bytes: int, total_bytes: int | None) -> Phrase:
+def _progress_text(entry: ModelEntry, done_bytes: int, total_bytes: int | None) -> Phrase:
     size = total_bytes or entry.megabytes * _BYTES_PER_MB
     filled_width = min(_BAR_WIDTH, done_bytes * _BAR_WIDTH // max(size, 1))
     return phrase(

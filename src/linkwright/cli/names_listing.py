@@ -40,10 +40,10 @@ class Kind:
             InvalidNameError: the name is not valid.
         """
         name = absolute(requested_name)
-        found = dict(visible(self.find_names(session), hidden=hidden))
-        if name not in found:
-            raise unknown_name_error(self.code, self.missing_message(requested_name), name, found, self.hint)
-        return found[name]
+        types_by_name = dict(visible(self.find_names(session), hidden=hidden))
+        if name not in types_by_name:
+            raise unknown_name_error(self.code, self.missing_message(requested_name), name, types_by_name, self.hint)
+        return types_by_name[name]
 
     def print_types(self, arguments: argparse.Namespace, requested_name: str, *, hidden: bool = True) -> int:
         """Print the types of a name from the command line, one per line, and return the exit status."""
@@ -59,8 +59,8 @@ class Kind:
         """Print the names that have the type `type_name`, and return the exit status."""
 
         async def job(session: Session) -> int:
-            found = visible(self.find_names(session), hidden=hidden)
-            print_names([name for name, types in found if type_name in types], arguments)
+            types_by_name = visible(self.find_names(session), hidden=hidden)
+            print_names([name for name, types in types_by_name if type_name in types], arguments)
             return 0
 
         return run_in_graph(arguments, job, read_only=True)

@@ -164,13 +164,13 @@ def run_describe(arguments: argparse.Namespace) -> int:
         parameters = await RemoteParameters.of(session, arguments)
         await parameters.check_declared(arguments.parameter_names)
         for descriptor in await parameters.descriptors(arguments.parameter_names):
-            print("\n".join(_description(descriptor)))
+            print("\n".join(_description_lines(descriptor)))
         return 0
 
     return run_in_graph(arguments, job)
 
 
-def _description(descriptor: Any) -> list[str]:
+def _description_lines(descriptor: Any) -> list[str]:
     """Return the output lines of ``param describe`` for a ParameterDescriptor message."""
     lines = [f"Parameter name: {descriptor.name}", f"  Type: {TYPE_NAMES.get(descriptor.type, 'unknown')}"]
     if descriptor.description:

@@ -132,17 +132,17 @@ def _maintainer(name: str | None, email: str | None) -> Maintainer:
     from linkwright.packages.creation.request import Maintainer
     from linkwright.packages.naming import is_email
 
-    login = _login()
+    login = _login_name()
     if not name:
-        name = _git("user.name") or login
+        name = _git_setting("user.name") or login
     if not email:
         # reject an address without a domain, which git may generate and colcon does not accept
-        configured = _git("user.email")
+        configured = _git_setting("user.email")
         email = configured if is_email(configured) else f"{_address_part(login)}@todo.todo"
     return Maintainer(name, email)
 
 
-def _git(key: str) -> str:
+def _git_setting(key: str) -> str:
     """Return a value of git's configuration, or an empty string if the value or git is missing."""
     try:
         result = subprocess.run(  # noqa: S603 - fixed words, no shell
@@ -158,7 +158,7 @@ def _git(key: str) -> str:
     return result.stdout.strip()
 
 
-def _login() -> str:
+def _login_name() -> str:
     import getpass
 
     try:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import argparse
 import shlex
 
-from linkwright.cli.becoming import become
-from linkwright.cli.view import add_viewer_options
+from linkwright.cli.process_replacement import replace_process
+from linkwright.cli.view import add_viewer_options, terminal_folder
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -44,6 +44,7 @@ def run(arguments: argparse.Namespace) -> int:
             not arguments.no_open,
             foxglove=arguments.foxglove,
             history=arguments.history,
+            terminal=terminal_folder(arguments),
         )
         return run_viewer(program_arguments, options)
     standins.activate()
@@ -53,4 +54,4 @@ def run(arguments: argparse.Namespace) -> int:
         from linkwright.nodes.process import main
 
         return main(arguments.package, arguments.executable, program_arguments)
-    return become([*prefix, *program.command, *program_arguments], program.environment)
+    return replace_process([*prefix, *program.command, *program_arguments], program.environment)

@@ -113,13 +113,13 @@ class Session:
         """
         guarded = self.guarded(callback)
 
-        def take(message: Any) -> None:
+        def pass_message(message: Any) -> None:
             guarded(message)
 
-        def take_both(message: Any, info: Any) -> None:
+        def pass_message_and_info(message: Any, info: Any) -> None:
             guarded(message, info)
 
-        return take if len(signature(callback).parameters) == 1 else take_both
+        return pass_message if len(signature(callback).parameters) == 1 else pass_message_and_info
 
     def every(self, period: float, callback: Callable[[], object]) -> None:
         """Call a function every `period` seconds until the command ends."""

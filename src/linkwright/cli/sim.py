@@ -14,7 +14,7 @@ from linkwright.cli.simulation_options import (
     positive,
     recording,
 )
-from linkwright.cli.view import add_viewer_options
+from linkwright.cli.view import add_viewer_options, terminal_folder
 from linkwright.process.assignments import parse_assignments
 
 
@@ -72,6 +72,12 @@ def run(arguments: argparse.Namespace) -> int:
         world = replace(
             world, description=model.description, text=model.text, name=model.name, arguments=tuple(values.items())
         )
-    options = HostOptions(arguments.host, arguments.port, not arguments.no_open, history=arguments.history)
+    options = HostOptions(
+        arguments.host,
+        arguments.port,
+        not arguments.no_open,
+        history=arguments.history,
+        terminal=terminal_folder(arguments),
+    )
     with recording(arguments) as writer:
         return run_simulated(world, finder, options, foxglove=arguments.foxglove, writer=writer)

@@ -9,7 +9,7 @@ import traceback
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from linkwright.cli.endings import FINDINGS, FINE, print_message
+from linkwright.cli.exit_status import FINDINGS, FINE, print_message
 from linkwright.cli.model_arguments import add_values
 from linkwright.cli.numbers import positive_int
 from linkwright.cli.progress import ProgressLine
@@ -83,12 +83,12 @@ def run(arguments: argparse.Namespace) -> int:
     start_time = time.monotonic()
     sweep = Sweep(scenario, table_path, command)
     progress = _Progress()
-    table = sweep.run(_runner(arguments, path), resume=arguments.resume, progress=progress.show)
+    table = sweep.run(_choose_runner(arguments, path), resume=arguments.resume, progress=progress.show)
     progress.end()
     missing = len(plan_runs(scenario)) - len(table)
     _print_summary(table, time.monotonic() - start_time, progress.run_count)
-    for written in (sweep.table, sweep.page):
-        print(localized(phrase("Created file {file}", file=display_path(written))))
+    for created_file in (sweep.table, sweep.page):
+        print(localized(phrase("Created file {file}", file=display_path(created_file))))
     if missing:
         missing_runs = counted("{count} run is left", "{count} runs are left", missing)
         print_message(localized(phrase("{left}; `--resume` continues the sweep", left=missing_runs)))
@@ -96,7 +96,7 @@ def run(arguments: argparse.Namespace) -> int:
     return FINDINGS if table.failed else FINE
 
 
-def _runner(arguments: argparse.Namespace, path: Path) -> Runner:
+def _choose_runner(arguments: argparse.Namespace, path: Path) -> Runner:
     if arguments.ray is not None:
         from linkwright.sweep.ray_workers import run_on_ray
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import os
 
-from linkwright.cli.becoming import become
+from linkwright.cli.process_replacement import replace_process
 
 _LAUNCH_TEST_CODE = "from launch_testing.launch_test import main; main()"
 
@@ -41,4 +41,4 @@ def run(arguments: argparse.Namespace) -> int:
         if getattr(arguments, name) is not None:
             options += [f"--{name.replace('_', '-')}", getattr(arguments, name)]
     command = process.python_command(["-c", _LAUNCH_TEST_CODE, arguments.file, *arguments.words, *options])
-    return become(command, process.environment(workspace_environment(PackageFinder(), os.environ)))
+    return replace_process(command, process.environment(workspace_environment(PackageFinder(), os.environ)))

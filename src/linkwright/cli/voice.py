@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from linkwright.cli.endings import FINE, print_message
+from linkwright.cli.exit_status import FINE, print_message
 from linkwright.cli.nested import SubVerb, configure_nested, run_nested
 from linkwright.cli.output import cannot_write
 from linkwright.diagnostics import (
@@ -62,7 +62,7 @@ def run_try(arguments: argparse.Namespace) -> int:
     trial = _Trial(engine, commands, partials=arguments.partials)
     try:
         for file, samples in zip(arguments.files, sounds, strict=True):
-            trial.hear(file, samples)
+            trial.feed(file, samples)
     finally:
         engine.close()
     return FINE
@@ -81,7 +81,7 @@ class _Trial:
         self._engine, self._commands, self._partials = engine, commands, partials
         self._fed_samples = 0  # the number of samples fed to the engine
 
-    def hear(self, file: str, samples: Samples) -> None:
+    def feed(self, file: str, samples: Samples) -> None:
         """Feed a recording to the engine, and print the results, one per line."""
         import numpy as np
 
@@ -95,25 +95,25 @@ class _Trial:
             self._fed_samples += len(block)
             computation_start = time.perf_counter()
             results = self._engine.hear(block)
-            final_count += self._print(
+            final_count += self._print_results(
                 file, results, recording_start, self._fed_samples / RATE + time.perf_counter() - computation_start
             )
         computation_start = time.perf_counter()
         results = self._engine.finish()
-        final_count += self._print(
+        final_count += self._print_results(
             file, results, recording_start, self._fed_samples / RATE + time.perf_counter() - computation_start
         )
         if not final_count:
             print(localized(phrase("{file}: nothing recognized", file=file)))
 
-    def _print(self, file: str, results: Sequence[Heard], recording_start: float, now: float) -> int:
+    def _print_results(self, file: str, results: Sequence[Heard], recording_start: float, current_time: float) -> int:
         """Print results, and return how many of them are final.
 
         Args:
             file: the name of the recording.
             results: the results of one block.
             recording_start: the time at which the recording begins, in seconds since the first recording began.
-            now: the current time on the same scale, which includes the time of computation.
+            current_time: the time of the print on the same scale, which includes the time of computation.
         """
         for result in results:
             if result.final or self._partials:
@@ -123,7 +123,8 @@ class _Trial:
                 }
                 print(localized(phrase(
                     "{file}: {what}, {start} s to {end} s, recognized {latency} s later",
-                    file=file, what=self._result_text(result), latency=f"{max(0.0, now - result.end):.2f}", **times,
+                    file=file, what=self._result_text(result), latency=f"{max(0.0, current_time - result.end):.2f}",
+                    **times,
                 )))  # fmt: skip
         return sum(result.final for result in results)
 
@@ -145,7 +146,7 @@ def configure_enrol(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "files", metavar="WAV", nargs="+", help="recordings that each contain the word once; three are best"
     )
-    _add_file(parser)
+    _add_file_argument(parser)
 
 
 def run_enrol(arguments: argparse.Namespace) -> int:
@@ -154,8 +155,8 @@ def run_enrol(arguments: argparse.Namespace) -> int:
     from linkwright.speech.enrolled.words import RECOMMENDED_TAKES
     from linkwright.speech.sound.wav import read_wav
 
-    path = _path(arguments)
-    words = _read(path)
+    path = _words_path(arguments)
+    words = _read_words(path)
     diagnostics: list[Diagnostic] = []
     for file in arguments.files:
         note = Note(phrase("in '{path}'", path=file))
@@ -163,7 +164,7 @@ def run_enrol(arguments: argparse.Namespace) -> int:
         diagnostics += [diagnostic.with_changes(notes=(*diagnostic.notes, note)) for diagnostic in new_diagnostics]
     if diagnostics:
         raise LinkwrightError(*diagnostics)
-    _write(words, path)
+    _write_words(words, path)
     count = len(words.takes(arguments.word))
     takes = counted("{count} recording", "{count} recordings", count)
     print(localized(phrase("'{word}': {takes}", word=arguments.word, takes=takes)))
@@ -176,13 +177,13 @@ def run_enrol(arguments: argparse.Namespace) -> int:
 
 def configure_words(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments of ``voice words``."""
-    _add_file(parser)
+    _add_file_argument(parser)
 
 
 def run_words(arguments: argparse.Namespace) -> int:
     """Print the enrolled words."""
-    path = _path(arguments)
-    words = _read(path)
+    path = _words_path(arguments)
+    words = _read_words(path)
     for name in words.names:
         takes = counted("{count} recording", "{count} recordings", len(words.takes(name)))
         print(localized(phrase("'{word}': {takes}", word=name, takes=takes)))
@@ -194,18 +195,18 @@ def run_words(arguments: argparse.Namespace) -> int:
 def configure_forget(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments of ``voice forget``."""
     parser.add_argument("word", metavar="WORD", help="the word, as `linkwright voice words` prints it")
-    _add_file(parser)
+    _add_file_argument(parser)
 
 
 def run_forget(arguments: argparse.Namespace) -> int:
     """Remove an enrolled word."""
-    path = _path(arguments)
-    words = _read(path)
+    path = _words_path(arguments)
+    words = _read_words(path)
     if arguments.word not in words.names:
         message = phrase("the word '{word}' is not enrolled", word=arguments.word)
         raise LinkwrightError(Diagnostic("VOICE210", message, hint=did_you_mean(arguments.word, words.names)))
     words.remove(arguments.word)
-    _write(words, path)
+    _write_words(words, path)
     print(localized(phrase("Removed {path}", path=arguments.word)))
     return FINE
 
@@ -220,11 +221,11 @@ def run_engines(_: argparse.Namespace) -> int:
 
     for name in engine_names():
         for language, text in _LANGUAGES.items():
-            print(f"{name} {language}: {localized(_state(name, language, text))}")
+            print(f"{name} {language}: {localized(_engine_status(name, language, text))}")
     return FINE
 
 
-def _state(name: str, language: str, text: str) -> Phrase:
+def _engine_status(name: str, language: str, text: str) -> Phrase:
     from linkwright.speech.engine import EngineOptions, make_engine
 
     try:
@@ -235,26 +236,26 @@ def _state(name: str, language: str, text: str) -> Phrase:
     return phrase("ready")
 
 
-def _add_file(parser: argparse.ArgumentParser) -> None:
+def _add_file_argument(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--file", metavar="FILE", type=Path, help="the file of enrolled words to use instead of the user's own"
     )
 
 
-def _path(arguments: argparse.Namespace) -> Path:
+def _words_path(arguments: argparse.Namespace) -> Path:
     from linkwright.speech.enrolled.words import words_path
 
     path: Path | None = arguments.file
     return path or words_path()
 
 
-def _read(path: Path) -> Words:
+def _read_words(path: Path) -> Words:
     from linkwright.speech.enrolled.words import Words
 
     return Words.read(path) if path.exists() else Words()
 
 
-def _write(words: Words, path: Path) -> None:
+def _write_words(words: Words, path: Path) -> None:
     try:
         words.write(path)
     except OSError as error:

@@ -179,7 +179,7 @@ def _arguments_output(inputs: Inputs, verbosity: int, form: str) -> str:
 
     examination = examine_arguments(inputs)
     if verbosity > _QUIET:
-        print_diagnostics([*incompleteness_remarks(examination), *examination.unused], sys.stderr)
+        print_diagnostics([*incompleteness_remarks(examination), *examination.unused_warnings], sys.stderr)
     if form == "json":
         return _json_text({"arguments": arguments_data(examination.arguments)})
     return arguments_text(examination.arguments)

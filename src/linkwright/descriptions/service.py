@@ -486,12 +486,12 @@ def _unexpanded_description(
     """
     reading = read(document)
     diagnostics = tuple(
-        diagnostic for diagnostic in reading.diagnostics if not is_reported or _holds_unexpanded(diagnostic)
+        diagnostic for diagnostic in reading.diagnostics if not is_reported or _has_unexpanded_text(diagnostic)
     )
     return Description(name, document, Reading(reading.robot, (*remarks, *diagnostics)), overlay=overlay)
 
 
-def _holds_unexpanded(diagnostic: Diagnostic) -> bool:
+def _has_unexpanded_text(diagnostic: Diagnostic) -> bool:
     return diagnostic.severity is Severity.ERROR or (
         diagnostic.code in HOLDS_FOR_PARTS and diagnostic.code != _UNEVALUATED_TAG
     )

@@ -81,12 +81,12 @@ class UnsavedTexts:
         """The texts by the real paths of their files."""
         return {key.real_path: unsaved for key, unsaved in self._texts.items()}
 
-    async def put(self, unsaved: UnsavedText) -> Outcome:
+    async def store(self, unsaved: UnsavedText) -> Outcome:
         """Replace the editor's text of a file, and return the effect on the descriptions."""
         key = _key(unsaved.owner, unsaved.path)
         self._texts.pop(key, None)  # the newest text is the last one
         self._texts[key] = unsaved
-        return await self._changed(key.real_path)
+        return await self._notify_listeners(key.real_path)
 
     async def remove(self, owner: TextOwner, path: str) -> Outcome:
         """Remove the editor's text of a file, and return the effect on the descriptions.
@@ -94,16 +94,16 @@ class UnsavedTexts:
         If no other editor has a text of the file, the text on the disk is used again.
         """
         key = _key(owner, path)
-        return "elsewhere" if self._texts.pop(key, None) is None else await self._changed(key.real_path)
+        return "elsewhere" if self._texts.pop(key, None) is None else await self._notify_listeners(key.real_path)
 
     async def remove_all(self, owner: TextOwner) -> None:
         """Remove all texts of an editor."""
         paths = [key.real_path for key in self._texts if key.owner == owner]
         self._texts = {key: unsaved for key, unsaved in self._texts.items() if key.owner != owner}
         for path in paths:
-            await self._changed(path)
+            await self._notify_listeners(path)
 
-    async def _changed(self, real_path: str) -> Outcome:
+    async def _notify_listeners(self, real_path: str) -> Outcome:
         import asyncio  # imported here because the import of asyncio is slow
 
         outcomes = await asyncio.gather(*(listener(real_path) for listener in self._listeners))

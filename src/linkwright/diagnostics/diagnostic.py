@@ -203,12 +203,12 @@ class Diagnostic:
         Raises:
             TypeError: a name is not an attribute.
         """
-        return type(self)(**{**self._all(), **changes})
+        return type(self)(**{**self._all_fields(), **changes})
 
     def _fields(self) -> dict[str, Any]:
         return {name: getattr(self, name) for name in Diagnostic.__slots__}
 
-    def _all(self) -> dict[str, Any]:
+    def _all_fields(self) -> dict[str, Any]:
         return self._fields()
 
     @property

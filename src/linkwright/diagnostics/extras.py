@@ -35,7 +35,12 @@ EXTRAS = {
 }
 """The extras, each with a module that is missing without it."""
 
-_EXTRA_BY_MODULE = {**{module: extra for extra, module in EXTRAS.items()}, "cv2": "vision", "lsprotocol": "lsp"}
+_EXTRA_BY_MODULE = {
+    **{module: extra for extra, module in EXTRAS.items()},
+    "cv2": "vision",
+    "lsprotocol": "lsp",
+    "winpty": "learn",
+}
 
 
 _VERSION = sys.version_info[:2]

@@ -23,25 +23,25 @@ def find_misspelt(name: str, names: Iterable[str]) -> str | None:
     return candidates[0] if len({"".join(words_of(item)) for item in candidates}) == 1 else None
 
 
-def _is_misspelling(name: str, known: str) -> bool:
+def _is_misspelling(name: str, known_name: str) -> bool:
     """Return whether two names differ only in case, separators, or a typing error in one word."""
-    words, others = words_of(name), words_of(known)
+    words, others = words_of(name), words_of(known_name)
     if not words or not others:
         return False
     if "".join(words) == "".join(others):
         return True
     if len(words) != len(others):
         # Either a separator is missing, or there is also a typing error.
-        return _is_misspelt_word("".join(words), "".join(others)) and not any(map(str.isdigit, name + known))
+        return _is_misspelt_word("".join(words), "".join(others)) and not any(map(str.isdigit, name + known_name))
     differing_pairs = [pair for pair in zip(words, others, strict=True) if pair[0] != pair[1]]
     return len(differing_pairs) == 1 and _is_misspelt_word(*differing_pairs[0])
 
 
-def _is_misspelt_word(word: str, known: str) -> bool:
+def _is_misspelt_word(word: str, known_name: str) -> bool:
     return (
-        min(len(word), len(known)) >= _MIN_LENGTH
+        min(len(word), len(known_name)) >= _MIN_LENGTH
         and not word.isdigit()
-        and not known.isdigit()
-        and word[0] == known[0]
-        and is_misspelt(word, [known])
+        and not known_name.isdigit()
+        and word[0] == known_name[0]
+        and is_misspelt(word, [known_name])
     )

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from linkwright.geometry.arrays import Array
 from linkwright.geometry.collada_scene import ColladaFile, Limits, UnsupportedContent, read_scene
-from linkwright.geometry.plain import PlainMesh, fans, parse_numbers
+from linkwright.geometry.plain import PlainMesh, parse_numbers, triangulate_fans
 from linkwright.geometry.polyhedron import Faces
 
 
@@ -45,7 +45,7 @@ class Arrays:
         for offset, limit in limits:
             if len(indices) and not 0 <= indices[:, offset].min() <= indices[:, offset].max() < limit:
                 raise UnsupportedContent
-        return fans(indices[:, column], counts)
+        return triangulate_fans(indices[:, column], counts)
 
     def mesh(self, text: str, faces: list[Faces]) -> PlainMesh:
         """Return a mesh from the text of its vertices and the triangles of its elements."""

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from linkwright.geometry.arrays import Array
 from linkwright.geometry.hull import convex_hull
-from linkwright.geometry.polyhedron import Faces, is_closed, merged, polyhedron_properties
+from linkwright.geometry.polyhedron import Faces, is_closed, merge_corners, polyhedron_properties
 
 THICKNESS = 0.02
 """The thickness, in m, of a face that becomes a separate piece."""
@@ -36,7 +36,7 @@ def convex_pieces(vertices: Array, faces: Faces, max_pieces: int) -> list[Array]
     Returns:
         The corners of each piece, shape (corners, 3).
     """
-    vertices, faces = merged(vertices, faces)
+    vertices, faces = merge_corners(vertices, faces)
     if not len(faces):
         return []
     components = [faces[component] for component in _components(faces, len(vertices))]

@@ -47,7 +47,7 @@ class MassProperties:
     center: Array = field(default_factory=lambda: np.zeros(3))
     inertia: Array = field(default_factory=lambda: np.zeros((3, 3)))
 
-    def times(self, factor: float) -> MassProperties:
+    def with_scaled_density(self, factor: float) -> MassProperties:
         """Return the mass properties of the same body with its density multiplied by a factor."""
         return MassProperties(self.mass * factor, self.center, self.inertia * factor)
 
@@ -59,7 +59,7 @@ class MassProperties:
         """
         if not self.mass > MIN_MASS:
             raise ValueError("a body without mass cannot be scaled to another mass")
-        return self.times(mass / self.mass)
+        return self.with_scaled_density(mass / self.mass)
 
     def moved(self, pose: Pose) -> MassProperties:
         """Return the mass properties in a parent frame, in which the body's frame has a pose."""

@@ -22,7 +22,7 @@ from linkwright.geometry.hull import convex_hull
 from linkwright.geometry.mass import MassProperties
 from linkwright.geometry.mesh_files import MESH_ENDINGS, BadMeshError, file_resolver, placed_meshes
 from linkwright.geometry.outlines import COLLADA_PADDING
-from linkwright.geometry.polyhedron import Faces, is_closed, merged, polyhedron_properties
+from linkwright.geometry.polyhedron import Faces, is_closed, merge_corners, polyhedron_properties
 from linkwright.geometry.shapes import MAX_COORDINATE, Bounds
 from linkwright.geometry.single import Vector3
 from linkwright.loading.lean_typing import Any
@@ -96,7 +96,7 @@ class TriangleMesh:
 
     @cached_property
     def _merged_surface(self) -> tuple[Array, Faces]:
-        return merged(self.vertices, self.faces)
+        return merge_corners(self.vertices, self.faces)
 
 
 def read_mesh(path: Path) -> TriangleMesh:

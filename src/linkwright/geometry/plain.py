@@ -49,7 +49,7 @@ def parse_numbers(text: str | None, kind: type[Any]) -> Any:
     return numbers
 
 
-def fans(corners: Faces, counts: Faces) -> Faces:
+def triangulate_fans(corners: Faces, counts: Faces) -> Faces:
     """Split polygons into triangles of shape (n, 3).
 
     Each triangle joins the first corner of its polygon and two neighbouring other corners.

@@ -49,7 +49,7 @@ def polyhedron_properties(vertices: Array, faces: Faces) -> MassProperties:
     return MassProperties(volume, center + shift, inertia)
 
 
-def merged(vertices: Array, faces: Faces) -> tuple[Array, Faces]:
+def merge_corners(vertices: Array, faces: Faces) -> tuple[Array, Faces]:
     """Merge corners at the same position, and remove triangles that then have no area.
 
     STL has no shared corners at all, and other formats split corners where normals or textures differ.

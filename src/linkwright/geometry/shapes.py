@@ -12,7 +12,7 @@ from math import acos, hypot, pi, prod
 from linkwright.geometry.single import (
     Pose,
     Vector3,
-    added,
+    add_vectors,
     dot,
     pose_quaternion,
     rotation_matrix,
@@ -169,7 +169,7 @@ class Bounds(NamedTuple):
     @property
     def center(self) -> Vector3:
         """The centre in m."""
-        return scaled(added(self.low, self.high), 0.5)
+        return scaled(add_vectors(self.low, self.high), 0.5)
 
     @property
     def diagonal(self) -> float:

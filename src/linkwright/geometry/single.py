@@ -13,7 +13,7 @@ from linkwright.loading.lean_dataclasses import dataclass
 Vector3 = tuple[float, float, float]
 
 
-def added(first: Vector3, second: Vector3) -> Vector3:
+def add_vectors(first: Vector3, second: Vector3) -> Vector3:
     """Return the sum of two vectors."""
     return first[0] + second[0], first[1] + second[1], first[2] + second[2]
 

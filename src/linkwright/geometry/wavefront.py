@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from linkwright.geometry.collada_scene import UnsupportedContent
-from linkwright.geometry.plain import PlainMesh, fans, parse_numbers
+from linkwright.geometry.plain import PlainMesh, parse_numbers, triangulate_fans
 from linkwright.geometry.polyhedron import Faces
 from linkwright.loading.deferred import lazy_pattern
 
@@ -50,4 +50,4 @@ def _faces(polygons: list[bytes]) -> Faces:
     corners = parse_numbers(_TEXTURE_AND_NORMAL.sub(b"", b" ".join(polygons)).decode(), np.int64)
     if counts.min() < 3 or counts.sum() != len(corners):
         raise UnsupportedContent
-    return fans(corners - 1, counts)
+    return triangulate_fans(corners - 1, counts)

@@ -141,6 +141,7 @@ class HostOptions:
         history: the maximum number of bytes of messages that a viewer stores; 0 to store none.
         rviz: the path of the viewer's configuration file; None for the default configuration.
         follows_editor: whether a text editor is connected, see `linkwright.hosting.text_editor`.
+        terminal: the folder in which pages of this machine can run shells; None to let no page run one.
     """
 
     host: str = "127.0.0.1"
@@ -151,6 +152,7 @@ class HostOptions:
     history: int = DEFAULT_HISTORY
     rviz: Path | None = None
     follows_editor: bool = False
+    terminal: Path | None = None
 
 
 class Supervisor(Protocol):

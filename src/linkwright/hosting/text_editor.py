@@ -82,7 +82,7 @@ class TextEditorConnection:
         if not isinstance(content, dict):
             return await self._unsaved.remove(self, path)
         number, text = content.get("number"), str(content.get("text", ""))
-        return await self._unsaved.put(UnsavedText(self, path, number if isinstance(number, int) else 0, text))
+        return await self._unsaved.store(UnsavedText(self, path, number if isinstance(number, int) else 0, text))
 
     def _open_in_editor(self, source_range: SourceRange) -> None:
         _write({"open": {"file": source_range.file, "line": source_range.line, "column": source_range.column}})

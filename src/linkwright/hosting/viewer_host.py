@@ -70,11 +70,9 @@ class ViewerHost:
         The browser can then load the page while the viewer is created.
 
         Raises:
-            LinkwrightError: VIEW101 to VIEW103, the server cannot listen on the address.
+            LinkwrightError: VIEW101 to VIEW104, the server cannot listen on the address.
         """
-        from linkwright.page.page_server import PageServer
-
-        server = PageServer(self._session.options.host, self._port_for(plan))
+        server = self._create_server(plan)
         try:
             await server.open()
         except LinkwrightError:
@@ -82,6 +80,12 @@ class ViewerHost:
             raise
         self._servers[plan.process_name] = server
         self._announce(server)
+
+    def _create_server(self, plan: HostedPlan) -> PageServer:
+        from linkwright.page.page_server import PageServer
+
+        options = self._session.options
+        return PageServer(options.host, self._port_for(plan), only_loopback=options.terminal is not None)
 
     def _announce(self, server: PageServer) -> None:
         self._session.log.announce(f"Viewer: {server.url}")
@@ -102,7 +106,6 @@ class ViewerHost:
         Raises:
             LinkwrightError: the viewer cannot be started.
         """
-        from linkwright.page.page_server import PageServer
         from linkwright.rviz import find_unsaved
         from linkwright.viewer import Viewer
         from linkwright.viewer.guests import GuestRecordings
@@ -122,7 +125,7 @@ class ViewerHost:
         server = self._servers.get(plan.process_name)  # If creating the viewer fails, the server must be closed here.
         is_announced = server is not None
         if server is None:
-            server = PageServer(session.options.host, self._port_for(plan))
+            server = self._create_server(plan)
         viewer = Viewer(
             graph,
             library=session.descriptions.library,
@@ -135,6 +138,10 @@ class ViewerHost:
         )
         self._servers.pop(plan.process_name, None)
         viewer.guests = GuestRecordings(viewer)
+        if session.options.terminal is not None:
+            from linkwright.panels.terminal.feature import TerminalFeature
+
+            viewer.add_feature(TerminalFeature).enable(session.options.terminal)
         await viewer.start()
         self._viewers[plan.process_name] = plan, viewer
         if plan.viewer_started is not None:

@@ -91,7 +91,7 @@ def estimate(
     if mass is not None:
         properties = solid.with_mass(mass)
     else:
-        properties = solid.times(DEFAULT_DENSITY if density is None else density)
+        properties = solid.with_scaled_density(DEFAULT_DENSITY if density is None else density)
     return Estimate(link.name, properties, kind, len(solids), basis, properties.mass / solid.mass, tuple(notes))
 
 

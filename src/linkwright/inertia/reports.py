@@ -13,8 +13,8 @@ from linkwright.geometry.mass import MassProperties
 from linkwright.inertia.blocks import inertial_block
 from linkwright.inertia.estimation import Estimate
 from linkwright.inertia.inertial import to_inertial
-from linkwright.inertia.verdict import Standing, Verdict, grouped_digits, judge
-from linkwright.inertia.writing import Written
+from linkwright.inertia.verdict import Grade, Verdict, assess, grouped_digits
+from linkwright.inertia.writing import WriteResult
 from linkwright.loading.lean_typing import Any
 from linkwright.urdf import Robot
 from linkwright.urdf.bodies import Bodies
@@ -27,11 +27,11 @@ _COLUMN_TITLES = (
     phrase("principal moments (kg m2)"),
     phrase("verdict"),
 )
-_STANDING_NAMES = {
-    Standing.IMPOSSIBLE: phrase("impossible"),
-    Standing.DOUBTFUL: phrase("doubtful"),
-    Standing.MISSING: phrase("missing"),
-    Standing.ROUGH: phrase("rough"),
+_GRADE_NAMES = {
+    Grade.IMPOSSIBLE: phrase("impossible"),
+    Grade.DOUBTFUL: phrase("doubtful"),
+    Grade.MISSING: phrase("missing"),
+    Grade.ROUGH: phrase("rough"),
 }
 """The first words of verdicts that require a change."""
 
@@ -45,7 +45,7 @@ _BASIS_PHRASES = {
 def as_text(
     robot: Robot,
     estimates: Sequence[Estimate],
-    write_result: Written | None = None,
+    write_result: WriteResult | None = None,
     detailed_links: Collection[str] = (),
 ) -> str:
     """Return a table of the links' mass properties with verdicts, the worst first.
@@ -87,7 +87,7 @@ def _row(estimate: Estimate, verdict: Verdict) -> tuple[str, ...]:
         "-" if file_properties is None else " ".join(f"{moment:.3g}" for moment in file_properties.principal().moments)
     )
     density = "-" if verdict.density is None else grouped_digits(verdict.density)
-    name = _STANDING_NAMES.get(verdict.standing)
+    name = _GRADE_NAMES.get(verdict.grade)
     text = verdict.reason if name is None else phrase("{standing}: {words}", standing=name, words=verdict.reason)
     return estimate.link, mass, density, moments, localized(text)
 
@@ -101,10 +101,10 @@ def _detail_lines(estimate: Estimate) -> Iterator[str]:
 
 def _verdicts(robot: Robot, estimates: Sequence[Estimate]) -> Mapping[str, Verdict]:
     bodies = Bodies(robot)
-    return {estimate.link: judge(robot.links[estimate.link], estimate, bodies) for estimate in estimates}
+    return {estimate.link: assess(robot.links[estimate.link], estimate, bodies) for estimate in estimates}
 
 
-def as_json(robot: Robot, estimates: Sequence[Estimate], write_result: Written | None = None) -> str:
+def as_json(robot: Robot, estimates: Sequence[Estimate], write_result: WriteResult | None = None) -> str:
     """Return the data of `as_text` as JSON, with the links in the order of the estimates.
 
     Units are SI, and floats are written in full.
@@ -132,7 +132,7 @@ def _summary(estimate: Estimate) -> Phrase:
     )
 
 
-def _link_data(estimate: Estimate, verdict: Verdict, write_result: Written | None) -> dict[str, Any]:
+def _link_data(estimate: Estimate, verdict: Verdict, write_result: WriteResult | None) -> dict[str, Any]:
     data: dict[str, Any] = {
         "link": estimate.link,
         "from": estimate.kind,
@@ -143,7 +143,7 @@ def _link_data(estimate: Estimate, verdict: Verdict, write_result: Written | Non
     if estimate.properties is not None:
         data |= _properties_data(estimate.properties)
     data["present"] = None if verdict.comparison is None else asdict(verdict.comparison)
-    data |= {"verdict": verdict.standing.value, "why": str.__str__(verdict.reason), "present_density": verdict.density}
+    data |= {"verdict": verdict.grade.value, "why": str.__str__(verdict.reason), "present_density": verdict.density}
     if write_result is not None:
         data["written"] = estimate.link in write_result.links
         data["refused"] = write_result.refusals.get(estimate.link)

@@ -26,7 +26,7 @@ _ROUGH_DISTANCE = 0.1
 """The thresholds for doubtful and for rough centres of mass, as distances in fractions of the diagonal."""
 
 
-class Standing(Enum):
+class Grade(Enum):
     """The grades of an ``<inertial>``, the worst first."""
 
     IMPOSSIBLE = "impossible"
@@ -37,7 +37,7 @@ class Standing(Enum):
     UNJUDGED = "unjudged"
 
 
-_ORDER = tuple(Standing)
+_ORDER = tuple(Grade)
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,17 +45,17 @@ class Verdict:
     """The verdict on a link's ``<inertial>``.
 
     Attributes:
-        standing: the grade.
+        grade: the grade.
         reason: the reason, as a clause.
-        badness: the size of the error; comparable between verdicts with the same standing.
+        error_size: the size of the error; comparable between verdicts with the same grade.
         file_properties: the values of the file, in the link frame; None if they are missing or unusable.
         density: the density of the link's shapes with the file's mass, in kg/m3; None if it is unknown.
         comparison: the comparison of the file with the shapes; None if there is nothing to compare.
     """
 
-    standing: Standing
+    grade: Grade
     reason: Phrase
-    badness: float = 0.0
+    error_size: float = 0.0
     file_properties: MassProperties | None = None
     density: float | None = None
     comparison: Comparison | None = None
@@ -63,19 +63,19 @@ class Verdict:
     @property
     def sort_key(self) -> tuple[int, float]:
         """The sort key that puts the worst verdict first."""
-        return _ORDER.index(self.standing), -self.badness
+        return _ORDER.index(self.grade), -self.error_size
 
 
 @dataclass(frozen=True, slots=True)
 class _Reason:
     """A problem of an ``<inertial>``, with its grade."""
 
-    standing: Standing
+    grade: Grade
     words: Phrase
-    badness: float = 0.0
+    error_size: float = 0.0
 
 
-def judge(link: Link, estimate: Estimate, bodies: Bodies) -> Verdict:
+def assess(link: Link, estimate: Estimate, bodies: Bodies) -> Verdict:
     """Return the verdict on a link's ``<inertial>``.
 
     Args:
@@ -86,7 +86,7 @@ def judge(link: Link, estimate: Estimate, bodies: Bodies) -> Verdict:
     if link.inertial is None:
         return _verdict_without_inertial(link, bodies)
     if not link.inertial.is_computable:
-        return Verdict(Standing.IMPOSSIBLE, phrase("its numbers are out of range"))
+        return Verdict(Grade.IMPOSSIBLE, phrase("its numbers are out of range"))
     file_properties = from_inertial(link.inertial)
     shapes = link.collisions if estimate.kind == "collision" else link.visuals
     comparison = None if estimate.properties is None else compare(file_properties, estimate.properties)
@@ -94,7 +94,7 @@ def judge(link: Link, estimate: Estimate, bodies: Bodies) -> Verdict:
         estimate.properties if estimate.shapes == len(shapes) else None
     )  # A part of the shapes is not conclusive.
     is_alone = not bodies.includes_massless_links(link)
-    reasons = [_Reason(Standing.IMPOSSIBLE, words) for words in problems(file_properties)]
+    reasons = [_Reason(Grade.IMPOSSIBLE, words) for words in problems(file_properties)]
     density = None
     if is_alone and computed is not None and comparison is not None:
         if file_properties.mass > 0:
@@ -102,19 +102,19 @@ def judge(link: Link, estimate: Estimate, bodies: Bodies) -> Verdict:
             reasons += _density_reasons(density, has_mesh=any(isinstance(shape.geometry, Mesh) for shape in shapes))
         reasons += _comparison_reasons(comparison, computed)
     if reasons:
-        worst_standing = min(reasons, key=lambda reason: _ORDER.index(reason.standing)).standing
-        worst_reasons = [reason for reason in reasons if reason.standing is worst_standing]
-        words, badness = (
+        worst_grade = min(reasons, key=lambda reason: _ORDER.index(reason.grade)).grade
+        worst_reasons = [reason for reason in reasons if reason.grade is worst_grade]
+        words, error_size = (
             joined([reason.words for reason in worst_reasons], "; "),
-            max(reason.badness for reason in worst_reasons),
+            max(reason.error_size for reason in worst_reasons),
         )
-        return Verdict(worst_standing, words, badness, file_properties, density, comparison)
+        return Verdict(worst_grade, words, error_size, file_properties, density, comparison)
     if computed is None:
-        return Verdict(Standing.UNJUDGED, phrase("there is no shape to compare with"), 0.0, file_properties)
+        return Verdict(Grade.UNJUDGED, phrase("there is no shape to compare with"), 0.0, file_properties)
     if not is_alone:
         words = phrase("its mass includes links that are fixed to it")
-        return Verdict(Standing.UNJUDGED, words, 0.0, file_properties, None, comparison)
-    return Verdict(Standing.FITS, phrase("it matches its shapes"), 0.0, file_properties, density, comparison)
+        return Verdict(Grade.UNJUDGED, words, 0.0, file_properties, None, comparison)
+    return Verdict(Grade.FITS, phrase("it matches its shapes"), 0.0, file_properties, density, comparison)
 
 
 def _verdict_without_inertial(link: Link, bodies: Bodies) -> Verdict:
@@ -125,21 +125,21 @@ def _verdict_without_inertial(link: Link, bodies: Bodies) -> Verdict:
         (member.name for member in members if member.inertial is not None and member.inertial.mass > 0), None
     )
     if link_with_mass is not None:
-        return Verdict(Standing.UNJUDGED, phrase("it is fixed to '{link}', which has a mass", link=link_with_mass))
+        return Verdict(Grade.UNJUDGED, phrase("it is fixed to '{link}', which has a mass", link=link_with_mass))
     if link.visuals or link.collisions or (body is not None and body.joint is not None and members[0] is link):
-        return Verdict(Standing.MISSING, phrase("it has no <inertial>"))
-    return Verdict(Standing.UNJUDGED, phrase("it is only a frame"))
+        return Verdict(Grade.MISSING, phrase("it has no <inertial>"))
+    return Verdict(Grade.UNJUDGED, phrase("it is only a frame"))
 
 
 def _density_reasons(density: float, *, has_mesh: bool) -> list[_Reason]:
     if density > MAX_DENSITY:
         # A mesh may be a thin skin around a heavy interior.
-        standing = Standing.DOUBTFUL if has_mesh else Standing.IMPOSSIBLE
+        grade = Grade.DOUBTFUL if has_mesh else Grade.IMPOSSIBLE
         words = phrase("it is denser than any solid: osmium has {density} kg/m3", density=grouped_digits(MAX_DENSITY))
-        return [_Reason(standing, words, log(density / MAX_DENSITY))]
+        return [_Reason(grade, words, log(density / MAX_DENSITY))]
     if density < MIN_DENSITY:
-        badness = log(MIN_DENSITY / density) if density > 0 else inf  # The density is 0 for a negligible mass.
-        return [_Reason(Standing.DOUBTFUL, phrase("it is lighter than air"), badness)]
+        error_size = log(MIN_DENSITY / density) if density > 0 else inf  # The density is 0 for a negligible mass.
+        return [_Reason(Grade.DOUBTFUL, phrase("it is lighter than air"), error_size)]
     return []
 
 
@@ -151,7 +151,7 @@ def _comparison_reasons(comparison: Comparison, computed: MassProperties) -> lis
         words = phrase("its centre of mass is {length} from the centre of its shapes", length=_length_text(comparison))
         reasons.append(
             _Reason(
-                Standing.DOUBTFUL if relative_distance > _DOUBTFUL_DISTANCE else Standing.ROUGH,
+                Grade.DOUBTFUL if relative_distance > _DOUBTFUL_DISTANCE else Grade.ROUGH,
                 words,
                 log(relative_distance / _ROUGH_DISTANCE),
             )
@@ -167,7 +167,7 @@ def _comparison_reasons(comparison: Comparison, computed: MassProperties) -> lis
                 if ratio > 1
                 else phrase("its moments are 1/{times} of the moments of a solid with its shapes", times=times_text)
             )
-            reasons.append(_Reason(Standing.DOUBTFUL if times > _DOUBTFUL_RATIO else Standing.ROUGH, words, log(times)))
+            reasons.append(_Reason(Grade.DOUBTFUL if times > _DOUBTFUL_RATIO else Grade.ROUGH, words, log(times)))
     return reasons
 
 

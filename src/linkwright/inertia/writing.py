@@ -19,7 +19,7 @@ _BYTE_ORDER_MARK = "\ufeff"
 
 
 @dataclass(frozen=True, slots=True)
-class Written:
+class WriteResult:
     """The result of writing.
 
     Attributes:
@@ -33,7 +33,7 @@ class Written:
     refusals: Mapping[str, str]
 
 
-def write_inertials(robot: Robot, properties: Mapping[str, MassProperties]) -> Written:
+def write_inertials(robot: Robot, properties: Mapping[str, MassProperties]) -> WriteResult:
     """Write mass properties to the source files of links, without changing any other text.
 
     Args:
@@ -63,7 +63,7 @@ def edits_of_link(robot: Robot, name: str, properties: MassProperties) -> tuple[
     return edits_for(robot.links[name], properties)
 
 
-def write_edits(edit_functions: Mapping[str, Callable[[], tuple[SourceText, list[Replacement]]]]) -> Written:
+def write_edits(edit_functions: Mapping[str, Callable[[], tuple[SourceText, list[Replacement]]]]) -> WriteResult:
     """Apply edits of several elements, writing each file once.
 
     Args:
@@ -92,7 +92,7 @@ def write_edits(edit_functions: Mapping[str, Callable[[], tuple[SourceText, list
         names.setdefault(source.name, []).append(name)
     for file, changes in edits.items():
         _save(file, texts[file], changes)
-    return Written(
+    return WriteResult(
         tuple(map(Path, edits)), tuple(name for link_names in names.values() for name in link_names), refusals
     )
 

@@ -13,7 +13,7 @@ import numpy as np
 from linkwright.diagnostics import Diagnostic, Phrase, Severity, joined, phrase, term
 from linkwright.geometry.mass import MassProperties
 from linkwright.geometry.shapes import rotated, transposed
-from linkwright.geometry.single import Vector3, added, length, rotation_from_z, rpy_from_quaternion, scaled
+from linkwright.geometry.single import Vector3, add_vectors, length, rotation_from_z, rpy_from_quaternion, scaled
 from linkwright.inertia import DEFAULT_DENSITY, MeshLibrary, estimate
 from linkwright.inertia.blocks import inertial_parts
 from linkwright.inertia.inertial import has_mass
@@ -210,7 +210,7 @@ def _wheel_in_link(survey: Survey, wheel: Wheel) -> tuple[Vector3, Vector3]:
     """Return the axis and the centre of a wheel in its link's frame."""
     frame = survey.frame(wheel.link)
     inverse_rotation = transposed(frame.rotation)
-    offset = added(wheel.center, scaled(frame.position, -1.0))
+    offset = add_vectors(wheel.center, scaled(frame.position, -1.0))
     return rotated(inverse_rotation, wheel.axis), rotated(inverse_rotation, offset)
 
 

@@ -52,7 +52,7 @@ class SpeedLimiter:
         """Reset the velocity and the acceleration to zero."""
         self.speed = self._previous_speed = 0.0
 
-    def follow(self, target: float, seconds: float) -> float:
+    def approach(self, target: float, seconds: float) -> float:
         """Return the next velocity on the way to a target, `seconds` after the last call."""
         speed = self.speed
         change, last_change = target - speed, speed - self._previous_speed

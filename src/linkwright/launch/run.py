@@ -44,6 +44,7 @@ class LaunchOptions:
         network: whether the nodes of the launcher's process join the ROS 2 network, where other programs discover
             them.
         history: the memory in bytes for the last minutes in the viewer; 0 to store none.
+        terminal: the folder in which pages of this machine can run shells; None to let no page run one.
     """
 
     host: str = "127.0.0.1"
@@ -59,6 +60,7 @@ class LaunchOptions:
     command_to_skip_missing: str | None = None
     network: bool = True
     history: int = DEFAULT_HISTORY
+    terminal: Path | None = None
 
     @property
     def configurations(self) -> dict[str, str]:
@@ -78,6 +80,7 @@ class LaunchOptions:
             command_to_skip_missing=None if self.skip_missing else self.command_to_skip_missing,
             network=self.network,
             history=self.history,
+            terminal=self.terminal,
         )
 
 

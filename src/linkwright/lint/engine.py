@@ -185,7 +185,7 @@ def _findings_cache(_: Subject) -> dict[frozenset[Scope], list[Diagnostic]]:
 def _run_rules(subject: Subject, scopes: Collection[Scope], suppressions: Suppressions) -> list[Diagnostic]:
     findings: list[Diagnostic] = []
     for rule in rules_of(scopes):
-        if not (subject.settings.runs(rule) or suppressions.audits(rule.code)):
+        if not (subject.settings.runs(rule) or suppressions.needs_findings_of(rule.code)):
             continue
         if not _may_run(rule, subject):
             continue
@@ -203,7 +203,7 @@ def _findings_of_rule(rule: Rule, subject: Subject) -> Sequence[Diagnostic]:
     If a rule of another package raises an exception, the only finding is about this failure.
     """
     try:
-        findings = tuple(_reported(rule, subject))
+        findings = tuple(_check_with_cache(rule, subject))
         _check_codes(rule, findings)
     except Exception as error:
         if is_external(rule):
@@ -218,7 +218,7 @@ def _check_codes(rule: Rule, findings: Iterable[Diagnostic]) -> None:
             raise ValueError(f"{rule.code} reported a finding of {diagnostic.code}")
 
 
-def _reported(rule: Rule, subject: Subject) -> Iterable[Diagnostic]:
+def _check_with_cache(rule: Rule, subject: Subject) -> Iterable[Diagnostic]:
     if not rule.of_sources or subject.expansion is None:
         return rule.check(subject)
     stored_findings = subject.xacro.stored_findings
@@ -263,13 +263,13 @@ def sorted_by_location(diagnostics: Iterable[Diagnostic], first_file: str) -> li
     """
     files = {first_file: 0}
 
-    def place(diagnostic: Diagnostic) -> tuple[int, int, int]:
+    def sort_key(diagnostic: Diagnostic) -> tuple[int, int, int]:
         span = diagnostic.span
         if span is None:
             return -1, 0, 0
         return files.setdefault(span.file, len(files)), span.line, span.column
 
-    return sorted(diagnostics, key=place)
+    return sorted(diagnostics, key=sort_key)
 
 
 def examine_package(
@@ -335,9 +335,9 @@ def _without_replaced(diagnostics: list[Diagnostic], scopes: Collection[Scope], 
                 replacing_codes.setdefault(code, set()).add(rule.code)
     locations = {(diagnostic.code, diagnostic.span) for diagnostic in diagnostics}
     return [
-        each
-        for each in diagnostics
-        if not any((code, each.span) in locations for code in replacing_codes.get(each.code, ()))
+        diagnostic
+        for diagnostic in diagnostics
+        if not any((code, diagnostic.span) in locations for code in replacing_codes.get(diagnostic.code, ()))
     ]
 
 
@@ -348,15 +348,17 @@ def _without_consequences(diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]
     the meshes of this package are missing, too.
     """
     findings = list(diagnostics)
-    is_explained = any(diagnostic.code == _PREFIX_MISSING for diagnostic in findings)
-    missing_packages = {as_phrase(each.message).arguments.get("name") for each in findings if each.code == _NO_PACKAGE}
+    lacks_prefix = any(diagnostic.code == _PREFIX_MISSING for diagnostic in findings)
+    missing_packages = {
+        as_phrase(finding.message).arguments.get("name") for finding in findings if finding.code == _NO_PACKAGE
+    }
 
-    def follows(each: Diagnostic) -> bool:
-        if each.code == _NO_PACKAGE_OF_MESHES:
-            return as_phrase(each.message).arguments.get("package") in missing_packages
-        return is_explained and each.code == _NO_LINKS
+    def is_consequence(finding: Diagnostic) -> bool:
+        if finding.code == _NO_PACKAGE_OF_MESHES:
+            return as_phrase(finding.message).arguments.get("package") in missing_packages
+        return lacks_prefix and finding.code == _NO_LINKS
 
-    return [each for each in findings if not follows(each)]
+    return [finding for finding in findings if not is_consequence(finding)]
 
 
 def _add_trail(diagnostic: Diagnostic) -> Diagnostic:

@@ -41,17 +41,22 @@ def is_explained(element: Element | None, tag: str) -> bool:
     """
     if element is None:
         return False
-    return any(map(_is_explanation, (*_comments(element.first(tag), beside=True), *_comments(element, beside=False))))
+    return any(
+        map(
+            _is_explanation,
+            (*_comments(element.first(tag), on_same_lines=True), *_comments(element, on_same_lines=False)),
+        )
+    )
 
 
-def _comments(element: Element | None, *, beside: bool) -> list[str]:
-    """Return the comments directly above an element or, if `beside` is set, on its lines."""
+def _comments(element: Element | None, *, on_same_lines: bool) -> list[str]:
+    """Return the comments directly above an element or, if `on_same_lines` is set, on its lines."""
     element_span = element_range(element) if element is not None else None
     if element is None or element.source is None or element_span is None:
         return []
     text, (start, end) = element.source.text, element_span
     line_start = text.rfind("\n", 0, start) + 1
-    search_end = text.find("\n", end) if beside else start
+    search_end = text.find("\n", end) if on_same_lines else start
     comments = [match[1] for match in _COMMENT.finditer(text, line_start, len(text) if search_end < 0 else search_end)]
     comment_above = _ABOVE.search(text, max(0, text.rfind("<!--", 0, start)), line_start + len(text[line_start:start]))
     if comment_above is not None and not text[line_start:start].strip():

@@ -39,7 +39,7 @@ class Finding(Diagnostic):
         self.fix = fix
         self.element = element
 
-    def _all(self) -> dict[str, Any]:
+    def _all_fields(self) -> dict[str, Any]:
         return {**self._fields(), "fix": self.fix, "element": self.element}
 
 

@@ -59,7 +59,9 @@ class Inclusion:
         if self.package:
             folders = packages.get(self.package)
             if folders is None:
-                return not any(file.is_relative_to(folder) for known in packages.values() for folder in known)
+                return not any(
+                    file.is_relative_to(folder) for package_folders in packages.values() for folder in package_folders
+                )
             exact = [folder / self.path for folder in folders]
             return file in exact or (
                 any(map(file.is_relative_to, folders)) and not any(path.is_file() for path in exact)
@@ -99,9 +101,9 @@ def _pattern(filename: str) -> str:
 
 def folders_by_package(folders: Iterable[Path]) -> dict[str, list[Path]]:
     """Return the folders of packages by the names of the packages."""
-    found: dict[str, list[Path]] = {}
+    folders_by_name: dict[str, list[Path]] = {}
     for folder in folders:
         name = package_name(folder)
         if name is not None:
-            found.setdefault(name, []).append(folder)
-    return found
+            folders_by_name.setdefault(name, []).append(folder)
+    return folders_by_name

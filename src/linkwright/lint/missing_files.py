@@ -9,7 +9,7 @@ from pathlib import Path
 from linkwright.diagnostics import Diagnostic, Severity, phrase
 from linkwright.diagnostics.phrase import as_phrase
 from linkwright.lint.finding import with_related
-from linkwright.lint.made_files import is_created_later
+from linkwright.lint.generated_files import is_created_later
 from linkwright.lint.package import find_package
 
 _MISSING = "XML101"

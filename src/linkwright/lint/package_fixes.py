@@ -128,25 +128,25 @@ def _installed_folders(statement: Statement) -> tuple[Token, ...]:
 
 def _data_files_fix(setup: SetupFile, entries: list[str], imports: tuple[Edit, ...], *, safe: bool) -> Fix | None:
     """Return the fix that adds entries to ``data_files``, or None if this is not possible."""
-    listed = _data_files_list(setup)
-    if listed is None:
+    data_files = _data_files_list(setup)
+    if data_files is None:
         return None
     source, text = setup.source, setup.source.text
-    start, elements = listed
+    start, elements = data_files
     if '"' in text and text.count('"') > text.count("'"):
         entries = [entry.replace("'", '"') for entry in entries]
     if elements:
         edit = _after_last(source, elements[-1], entries)
     else:
         edit = Edit(source.name, start + 1, start + 1, ", ".join(entries))
-    if any(one.start > edit.start for one in imports):  # the import would come after its use
+    if any(import_edit.start > edit.start for import_edit in imports):  # the import would come after its use
         return None
     edits = (*imports, edit)
-    changed = text
-    for one in sorted(edits, key=lambda one: one.start, reverse=True):
-        changed = changed[: one.start] + one.replacement + changed[one.end :]
+    changed_text = text
+    for applied in sorted(edits, key=lambda edit: edit.start, reverse=True):
+        changed_text = changed_text[: applied.start] + applied.replacement + changed_text[applied.end :]
     try:
-        ast.parse(changed)
+        ast.parse(changed_text)
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         return None
     return Fix(edits, safe)

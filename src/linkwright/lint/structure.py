@@ -52,7 +52,7 @@ class Structure:
         self._root = root
 
     @cached_property
-    def places(self) -> list[SchemaElement]:
+    def schema_elements(self) -> list[SchemaElement]:
         """The elements that URDF defines, in document order.
 
         The list is empty if the root is not a ``<robot>``.
@@ -79,7 +79,7 @@ class Structure:
         """
         return [
             (schema_element, name)
-            for schema_element in self.places
+            for schema_element in self.schema_elements
             for name in schema_element.element.attributes
             if name not in schema_element.rule.attribute_rules and ":" not in name and name != "xmlns"
         ]
@@ -105,11 +105,11 @@ class Structure:
         return known_elements, unknown_elements
 
 
-def _is_expected(place: SchemaElement, child: Element) -> bool:
-    if ":" in child.tag or (place.rule is schema.ROBOT and child.tag in EXTENSIONS):
+def _is_expected(schema_element: SchemaElement, child: Element) -> bool:
+    if ":" in child.tag or (schema_element.rule is schema.ROBOT and child.tag in EXTENSIONS):
         return True
     # The reader reports an unknown shape.
-    return place.rule is schema.GEOMETRY and child is next(place.element.elements(), None)
+    return schema_element.rule is schema.GEOMETRY and child is next(schema_element.element.elements(), None)
 
 
 def _owner_name(element: Element) -> str:

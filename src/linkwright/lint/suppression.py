@@ -83,7 +83,7 @@ class Suppressions:
         self._settings = settings
         self._overlay = subject.description.overlay
         unused_rule = find_rule(UNUSED)
-        self._audits = unused_rule is not None and settings.runs(unused_rule) and subject.is_whole
+        self._reports_unused = unused_rule is not None and settings.runs(unused_rule) and subject.is_whole
         self._directives: dict[str, list[Directive]] = {}
         for path, document in subject.sources.items():
             if document.source is not None:
@@ -94,16 +94,16 @@ class Suppressions:
         reported = [diagnostic for diagnostic in diagnostics if not self._suppresses(diagnostic)]
         return [*reported, *self._unknown_selector_findings(), *self._unused_comment_findings()]
 
-    def audits(self, code: str) -> bool:
+    def needs_findings_of(self, code: str) -> bool:
         """Return whether the findings with a code are needed, even if not selected.
 
         Such findings show whether a comment that suppresses them is used.
         """
-        if not self._audits:
+        if not self._reports_unused:
             return False
         return any(
             not directive.selectors or matches([canonical(selector) for selector, _ in directive.selectors], code)
-            for directive in self._all()
+            for directive in self._all_directives()
         )
 
     def _suppresses(self, diagnostic: Diagnostic) -> bool:
@@ -123,7 +123,7 @@ class Suppressions:
             self._directives[file] = list(directives(SourceText(file, text)))
         return self._directives[file]
 
-    def _all(self) -> Iterator[Directive]:
+    def _all_directives(self) -> Iterator[Directive]:
         for file_directives in self._directives.values():
             yield from file_directives
 
@@ -131,7 +131,7 @@ class Suppressions:
         rule = find_rule(UNKNOWN)
         if rule is None or not self._settings.runs(rule):
             return
-        for directive in self._all():
+        for directive in self._all_directives():
             for selector, offset in directive.selectors:
                 if is_selector(selector):
                     continue
@@ -144,22 +144,22 @@ class Suppressions:
 
     def _unused_comment_findings(self) -> Iterator[Diagnostic]:
         rule = find_rule(UNUSED)
-        if rule is None or not self._audits:
+        if rule is None or not self._reports_unused:
             return
-        for directive in self._all():
+        for directive in self._all_directives():
             selectors = [selector for selector, _ in directive.selectors if is_selector(selector)] or [""]
             unused_selectors = [word for word in selectors if word not in directive.used_selectors]
             if not unused_selectors or (directive.selectors and selectors == [""]):
                 continue
-            targets = ", ".join(f"'{word}'" for word in unused_selectors if word) or "anything"
+            suppressed = ", ".join(f"'{word}'" for word in unused_selectors if word) or "anything"
             fix = None
             if len(unused_selectors) == max(len(directive.selectors), 1):
                 fix = Fix((_removal_edit(directive),))
             yield rule.report(
-                phrase("this comment suppresses {what}, but no such finding occurs here", what=targets),
+                phrase("this comment suppresses {what}, but no such finding occurs here", what=suppressed),
                 span=directive.source.span(directive.start, directive.end),
                 source=directive.source,
-                hint=phrase("remove it") if fix else phrase("remove {what} from this comment", what=targets),
+                hint=phrase("remove it") if fix else phrase("remove {what} from this comment", what=suppressed),
                 fix=fix,
             )
 

@@ -51,7 +51,7 @@ def _max_rounding_error(inertial: Inertial) -> float:
     element = inertial.element and inertial.element.first("inertia")
     attributes = {} if element is None else element.attributes
 
-    def off(name: str) -> float:
+    def rounding_error(name: str) -> float:
         try:
             exponent = Decimal(attributes.get(name, "0").strip()).as_tuple().exponent
         except InvalidOperation:
@@ -59,7 +59,7 @@ def _max_rounding_error(inertial: Inertial) -> float:
         return 0.5 * 10.0**exponent if isinstance(exponent, int) and exponent < 0 else 0.0
 
     rows = (("ixx", "ixy", "ixz"), ("ixy", "iyy", "iyz"), ("ixz", "iyz", "izz"))
-    return max(sum(map(off, row)) for row in rows)
+    return max(sum(map(rounding_error, row)) for row in rows)
 
 
 def first_flaw(inertial: Inertial) -> Flaw | None:

@@ -58,7 +58,7 @@ def check_sdf(sdf: Sdf, finder: ResourceFinder) -> Iterator[Diagnostic]:
     model_findings = (diagnostic for model in models for diagnostic in _model_findings(model, static=False))
     actors = [*sdf.actors, *(actor for world in sdf.worlds for actor in world.actors)]
     for finding in (
-        *_steps(sdf),
+        *_step_size_findings(sdf),
         *model_findings,
         *_axis_findings(models),
         *_missing_mesh_findings([*models, *map(actor_model, actors)], finder),
@@ -103,7 +103,7 @@ def adapt_to_classic(findings: Iterable[Diagnostic], path: Path) -> Iterator[Dia
         yield diagnostic.with_changes(severity=Severity.INFO) if is_accepted else diagnostic
 
 
-def _steps(sdf: Sdf) -> Iterator[Diagnostic]:
+def _step_size_findings(sdf: Sdf) -> Iterator[Diagnostic]:
     for world in sdf.worlds:
         for physics in world.physics:
             if not physics.max_step_size > 0 and physics.element is not None:

@@ -321,13 +321,13 @@ class XacroFacts:
     @cached_property
     def substitutes_arguments(self) -> bool:
         """Whether arguments are substituted into expressions, so that values may become names."""
-        return any(facts.pasted for facts in self._all())
+        return any(facts.pasted for facts in self._all_facts())
 
     @cached_property
     def names(self) -> frozenset[str]:
         """All names that a file or a neighbour uses, or could substitute, in an expression."""
         mentioned_names: set[str] = set()
-        for facts in self._all():
+        for facts in self._all_facts():
             mentioned_names |= facts.names | facts.blocks
         if self.substitutes_arguments:
             for value in self.arguments.values():
@@ -337,27 +337,27 @@ class XacroFacts:
     @cached_property
     def used_arguments(self) -> frozenset[str]:
         """The names of all arguments that a file or a neighbour uses."""
-        return frozenset(name for facts in self._all() for name in facts.used_arguments)
+        return frozenset(name for facts in self._all_facts() for name in facts.used_arguments)
 
     @cached_property
     def called(self) -> frozenset[str]:
         """The names of all macros that a file or a neighbour calls, without namespaces."""
-        return frozenset(name for facts in self._all() for name in facts.called_macros)
+        return frozenset(name for facts in self._all_facts() for name in facts.called_macros)
 
     @cached_property
     def is_open(self) -> bool:
         """Whether a property may be used through a computed name, or in a file that was not read."""
-        return any(facts.is_open for facts in self._all()) or self._misses_files
+        return any(facts.is_open for facts in self._all_facts()) or self._misses_files
 
     @cached_property
     def arguments_open(self) -> bool:
         """Whether an argument may be used through a computed name, or in a file that was not read."""
-        return any(facts.arguments_open for facts in self._all()) or self._misses_files
+        return any(facts.arguments_open for facts in self._all_facts()) or self._misses_files
 
     @cached_property
     def calls_open(self) -> bool:
         """Whether a macro may be called through a computed name, or in a file that was not read."""
-        return any(facts.calls_open for facts in self._all()) or self._misses_files
+        return any(facts.calls_open for facts in self._all_facts()) or self._misses_files
 
     @cached_property
     def _misses_files(self) -> bool:
@@ -373,7 +373,7 @@ class XacroFacts:
                     return True
         return False
 
-    def _all(self) -> Iterator[FileFacts]:
+    def _all_facts(self) -> Iterator[FileFacts]:
         yield from self.files.values()
         yield from self.neighbours.values()
 

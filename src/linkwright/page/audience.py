@@ -106,6 +106,8 @@ class Page:
         configuration_name: the name of the page's own configuration; empty for a page that uses the shared
             configuration.
         is_here: whether the page is open on this machine or connected through a tunnel to it.
+        may_be_own_user: returns whether the page's browser or tunnel may run as the user of this program; see
+            `peers.may_be_own_user`.
         language: the language of the page's user, one of `LANGUAGES`; None to send texts untranslated.
     """
 
@@ -115,12 +117,14 @@ class Page:
         configuration_name: str = "",
         *,
         is_here: bool = False,
+        may_be_own_user: Callable[[], bool] = lambda: False,
         language: str | None = None,
     ) -> None:
         self.outbox = Outbox()
         self.language = language
         self.own = configuration_name
         self.is_here = is_here
+        self.may_be_own_user = may_be_own_user
         self.line = ConnectionMeter(asyncio.get_running_loop().time)
         self._socket = socket
         self._reduced: dict[str, tuple[ScaledData, int]] = {}
@@ -265,6 +269,9 @@ class PageGroup:
 
     def __contains__(self, page: Page) -> bool:
         return page in self._pages
+
+    def __iter__(self) -> Iterator[Page]:
+        return iter(tuple(self._pages))
 
     def add(self, page: Page) -> None:
         """Add a page to the group."""

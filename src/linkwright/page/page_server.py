@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 from linkwright.page.access import Gate, PortToken, load_token, new_token, store_pages_wait
 from linkwright.page.files import Downloads, MeshFolders
 
@@ -19,6 +20,7 @@ class PageServer:
     Args:
         host: the address to listen on; any address except loopback admits other machines with the token.
         port: the port; 0 for any free port; None for 7448 or the next free port.
+        only_loopback: whether an address that other machines can reach is refused.
 
     Attributes:
         host: the address that the server listens on.
@@ -29,13 +31,14 @@ class PageServer:
         web: the server that handles requests; None before `open`.
     """
 
-    def __init__(self, host: str, port: int | None) -> None:
+    def __init__(self, host: str, port: int | None, *, only_loopback: bool = False) -> None:
         self.meshes = MeshFolders()
         self.downloads = Downloads()
         self.url = ""
         self.is_open_to_others = False
         self.web: WebServer | None = None
         self.host, self._port = host, port
+        self._only_loopback = only_loopback
         self._port_token: tuple[int, PortToken] | None = None
 
     async def open(self) -> None:
@@ -44,12 +47,16 @@ class PageServer:
         Other requests wait for `show`.
 
         Raises:
-            LinkwrightError: VIEW101 to VIEW103, the server cannot listen at the address.
+            LinkwrightError: VIEW101 to VIEW103, the server cannot listen at the address; VIEW104, other machines could
+                reach it.
         """
         from linkwright.page.server import WebServer, is_open_to_others, listen
 
         listener = listen(self.host, self._port)
         self.is_open_to_others = is_open_to_others(listener)
+        if self.is_open_to_others and self._only_loopback:
+            listener.close()
+            raise LinkwrightError(_open_to_others(self.host))
         if self._port != 0 and not self.is_open_to_others:
             port = listener.getsockname()[1]
             self._port_token = port, load_token(port)
@@ -81,3 +88,9 @@ class PageServer:
         web, self.web = self.web, None
         if web is not None:
             await web.close()
+
+
+def _open_to_others(host: str) -> Diagnostic:
+    message = phrase("a page with a terminal cannot be served at '{host}', which other machines can reach", host=host)
+    hint = phrase("leave out `--host`, and reach the page through an SSH tunnel; or leave out `--terminal`")
+    return Diagnostic("VIEW104", message, hint=hint)

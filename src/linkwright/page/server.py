@@ -11,7 +11,7 @@ import re
 import socket
 import stat
 from dataclasses import dataclass
-from functools import partial
+from functools import cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, cast
 from urllib.parse import quote
@@ -20,6 +20,7 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
 from linkwright.page.access import TOKEN_PARAMETER, Admission, Gate, security_headers
 from linkwright.page.files import CONTENT_TYPES, IMAGE_TYPES, Downloads, FileRefusedError, MeshFolders
 from linkwright.page.http_server import SERVER_LOGGER, web
+from linkwright.page.peers import is_from_here, may_be_own_user
 
 if TYPE_CHECKING:
     from collections.abc import Awaitable, Callable, Mapping
@@ -365,7 +366,11 @@ class WebServer:
         if request.transport is not None:
             limit_buffers(request.transport)
         page = Page(
-            socket, _own_configuration(request), is_here=_is_from_here(request), language=requested_language(request)
+            socket,
+            _own_configuration(request),
+            is_here=is_from_here(request.transport),
+            may_be_own_user=cache(partial(may_be_own_user, request.transport)),
+            language=requested_language(request),
         )
         await audience.attend(page, socket)
         return socket
@@ -388,17 +393,6 @@ def _audience_of(services: _Services, request: web.Request) -> Audience:
     key = request.query.get("recording", "")
     audience = None if services.guests is None or not key else services.guests.audience(key)
     return services.audience if audience is None else audience
-
-
-def _is_from_here(request: web.Request) -> bool:
-    """Return whether a request comes from this machine: over loopback, or from its own address."""
-    transport = request.transport
-    peer_address, own_address = (transport and transport.get_extra_info(name) for name in ("peername", "sockname"))
-    if not peer_address or not own_address:
-        return False
-    address = ipaddress.ip_address(peer_address[0].partition("%")[0])
-    ipv4_address = getattr(address, "ipv4_mapped", None)
-    return (ipv4_address or address).is_loopback or peer_address[0] == own_address[0]
 
 
 def _own_configuration(request: web.Request) -> str:

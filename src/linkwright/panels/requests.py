@@ -7,6 +7,7 @@ _EDITING = "linkwright.page.protocol.editing"
 _MONITOR = "linkwright.page.protocol.monitor"
 _RECORDING = "linkwright.page.protocol.time"
 _SOURCES = "linkwright.page.protocol.source_editor"
+_TERMINAL = "linkwright.page.protocol.terminal"
 
 ON_DEMAND = (
     OnDemand(
@@ -45,6 +46,20 @@ ON_DEMAND = (
             "OpenEditor",
             "ShowUnsavedText",
             "WriteSourceFile",
+        ),
+    ),
+    OnDemand(
+        "linkwright.panels.terminal.feature:TerminalFeature",
+        messages(
+            _TERMINAL,
+            "AcknowledgeTerminal",
+            "CloseTerminal",
+            "LeaveTerminal",
+            "OpenTerminal",
+            "ResizeTerminal",
+            "RestartTerminal",
+            "ShowTerminal",
+            "WriteTerminal",
         ),
     ),
     OnDemand(

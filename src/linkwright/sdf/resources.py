@@ -271,7 +271,7 @@ class ResourceFinder:
         if len(parts) < 3 or parts[1] not in ("models", "worlds"):
             return Missing(phrase("'{uri}' is not the address of a model", uri=address), None)
         owner, kind, name, *version_and_file = parts
-        for cache in self._caches():
+        for cache in fuel_caches(self._environment):
             model_folder = cache / host / owner.lower() / kind / name.lower()
             cached_path = _version_in(model_folder, version_and_file)
             if cached_path is not None and cached_path.exists():
@@ -285,12 +285,14 @@ class ResourceFinder:
         )
         return Missing(phrase("the Fuel model '{name}' is not in the cache", name=name), hint, Severity.INFO)
 
-    def _caches(self) -> Iterator[Path]:
-        cache_path = self._environment.get("GZ_FUEL_CACHE_PATH") or self._environment.get("IGN_FUEL_CACHE_PATH")
-        if cache_path:
-            yield Path(cache_path)
-        home = Path(self._environment.get("HOME") or Path.home())
-        yield from (home / ".gz" / "fuel", home / ".ignition" / "fuel")
+
+def fuel_caches(environment: Mapping[str, str]) -> Iterator[Path]:
+    """Yield the folders in which gz stores downloaded models, which may not exist."""
+    cache_path = environment.get("GZ_FUEL_CACHE_PATH") or environment.get("IGN_FUEL_CACHE_PATH")
+    if cache_path:
+        yield Path(cache_path)
+    home = Path(environment.get("HOME") or Path.home())
+    yield from (home / ".gz" / "fuel", home / ".ignition" / "fuel")
 
 
 def _is_model(folder: Path) -> bool:

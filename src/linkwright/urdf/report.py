@@ -121,13 +121,15 @@ class Findings:
         """Return all findings sorted by location, with files in the order of their first findings."""
         files: dict[str, int] = {}
 
-        def place(diagnostic: Diagnostic) -> tuple[int, int, int]:
+        def sort_key(diagnostic: Diagnostic) -> tuple[int, int, int]:
             span = diagnostic.span
             if span is None:
                 return len(files), 0, 0
             return files.setdefault(span.file, len(files)), span.line, span.column
 
-        return tuple(sorted(self._diagnostics, key=place)) if len(self._diagnostics) > 1 else tuple(self._diagnostics)
+        return (
+            tuple(sorted(self._diagnostics, key=sort_key)) if len(self._diagnostics) > 1 else tuple(self._diagnostics)
+        )
 
     def _add(
         self,

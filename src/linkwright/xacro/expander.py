@@ -19,7 +19,7 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Phrase, Sp
 from linkwright.loading.lean_dataclasses import NamedTuple
 from linkwright.loading.lean_typing import NoReturn
 from linkwright.xacro.expressions.scope import Scope
-from linkwright.xacro.faults import Fault, Frame, attribute_name, trail
+from linkwright.xacro.faults import Fault, Frame, attribute_name_span, trail
 from linkwright.xacro.limits import LONG
 from linkwright.xacro.macros import MacroTable
 from linkwright.xacro.plan import (
@@ -289,7 +289,7 @@ class Expander:
                 try:
                     value = result[name] = session.evaluate_text(value, scope)
                 except Fault as fault:
-                    fault.place_in_attribute(node, name)
+                    fault.locate_in_attribute(node, name)
                     if fault.code == "XAC211" and node is self._root:
                         fault.hint = phrase(
                             "the attributes of the root are evaluated before its content; write "
@@ -297,7 +297,7 @@ class Expander:
                             name=name,
                             value=value,
                         )
-                    self.note(fault)
+                    self.record_fault(fault)
             if len(value) > LONG:
                 self._charge_text(node, value)
         return result
@@ -316,8 +316,8 @@ class Expander:
         try:
             data = self.session.evaluate_text(node.data, scope)
         except Fault as fault:
-            fault.place_in_text(node)
-            self.note(fault)
+            fault.locate_in_text(node)
+            self.record_fault(fault)
             data = ""
         if len(data) > LONG:
             self._charge_text(node, data)
@@ -333,8 +333,8 @@ class Expander:
             content = Text(node.data, node.source, node.offset + len("<!--"))
             if fault.start is None:
                 fault.start, fault.end = 0, len(node.data)
-            fault.place_in_text(content)
-            self.note(fault)
+            fault.locate_in_text(content)
+            self.record_fault(fault)
             data = ""
         return Comment(data, node.source, node.offset)
 
@@ -349,19 +349,19 @@ class Expander:
         try:
             return self.session.evaluate(text, scope)
         except Fault as fault:
-            fault.place_in_attribute(node, name)
+            fault.locate_in_attribute(node, name)
             self.fail(fault)
 
     def text_value(self, node: Element, name: str, scope: Scope) -> str:
         """Return the evaluated value of an existing attribute as text."""
-        return self.written(node, name, self.value(node, name, scope))
+        return self.output_text(node, name, self.value(node, name, scope))
 
-    def written(self, node: Element, name: str, value: object) -> str:
+    def output_text(self, node: Element, name: str, value: object) -> str:
         """Return the text that xacro writes for the value of an attribute."""
         try:
-            return self.session.written(node.attributes[name], value)
+            return self.session.output_text(node.attributes[name], value)
         except Fault as fault:
-            fault.place_in_attribute(node, name)
+            fault.locate_in_attribute(node, name)
             self.fail(fault)
 
     def sweep(self, site: Site) -> None:
@@ -411,12 +411,12 @@ class Expander:
             message = phrase("macro calls and includes are nested more than {limit} levels deep", limit=limit)
             fault = Fault("XAC601", message)
             fault.hint = phrase("end the recursion with xacro:if or xacro:unless")
-            fault.place_at(frame.site)
+            fault.locate_at(frame.site)
             self.fail(fault)
         try:
             self.session.budget.charge_macro()
         except Fault as fault:
-            fault.place_at(frame.site)
+            fault.locate_at(frame.site)
             self.fail(fault)
         self.session.frame = frame
 
@@ -425,19 +425,19 @@ class Expander:
             self.session.budget.charge_text(len(text))
         except Fault as fault:
             if isinstance(node, Element):
-                fault.place_at(node)
+                fault.locate_at(node)
             else:
-                fault.place_in_text(node)
+                fault.locate_in_text(node)
             self.fail(fault)
 
     def _fail_too_many(self, node: Element) -> NoReturn:
         fault = self.session.budget.too_many_elements()
-        fault.place_at(node)
+        fault.locate_at(node)
         self.fail(fault)
 
     def _fail_too_deep(self, node: Element) -> NoReturn:
         fault = Fault("XAC601", phrase("elements are nested more than {count} levels deep", count=self._max_nesting))
-        fault.place_at(next(node.elements(), node))
+        fault.locate_at(next(node.elements(), node))
         self.fail(fault)
 
     # errors
@@ -450,7 +450,7 @@ class Expander:
             "XAC601", message, span, notes=trail(self.session.frame), source=node.source if node else None
         )
 
-    def note(self, fault: Fault) -> None:
+    def record_fault(self, fault: Fault) -> None:
         """Record an error after which the walk can continue.
 
         Raises:
@@ -487,7 +487,7 @@ class Expander:
         raise LinkwrightError(Diagnostic(code, message, span, notes=notes, hint=hint, source=node.source))
 
     def _diagnostic(self, fault: Fault) -> Diagnostic:
-        other_definition = fault.elsewhere()
+        other_definition = fault.find_inactive_definition()
         if other_definition is not None and other_definition.hint is not None:
             fault.hint = other_definition.hint
         elif other_definition is not None and fault.hint is None:
@@ -558,12 +558,12 @@ def check_attributes(expander: Expander, node: Element, required: tuple[str, ...
             continue
         hint = did_you_mean(name, required + optional)
         message = phrase("'{tag}' does not accept the attribute '{name}'", tag=node.tag, name=name)
-        expander.session.warn("XAC302", message, attribute_name(node, name), hint)
+        expander.session.warn("XAC302", message, attribute_name_span(node, name), hint)
 
 
 def warn_of_global(expander: Expander, node: Element, name: str, attribute: str) -> None:
     """Warn if a definition hides a name that xacro provides."""
     if name in expander.session.globals.values:
         message = phrase("'{name}' is a name that xacro provides, and is redefined here", name=name)
-        span = node.attribute_span(attribute) if attribute == "name" else attribute_name(node, attribute)
+        span = node.attribute_span(attribute) if attribute == "name" else attribute_name_span(node, attribute)
         expander.session.warn("XAC306", message, span)

@@ -140,7 +140,7 @@ class Fault(Exception):  # noqa: N818 - it becomes a diagnostic, and is not part
         self.next_note = phrase("from here")
         self.missing_name: str | None = None
 
-    def within(self, start: int, end: int, shift: int | None = None) -> None:
+    def shift_to_enclosing_text(self, start: int, end: int, shift: int | None = None) -> None:
         """Convert the offsets to offsets in the enclosing text.
 
         If `shift` is given and the offsets are known, `shift` is added to them. If not, the mistake extends from
@@ -151,7 +151,7 @@ class Fault(Exception):  # noqa: N818 - it becomes a diagnostic, and is not part
         else:
             self.start, self.end = self.start + shift, self.end + shift
 
-    def place_in_attribute(self, element: Element, name: str, shift: int = 0) -> None:
+    def locate_in_attribute(self, element: Element, name: str, shift: int = 0) -> None:
         """Set the location to an attribute's value, or add a note if the location is already set.
 
         `shift` is the offset of the evaluated text in the value.
@@ -160,15 +160,15 @@ class Fault(Exception):  # noqa: N818 - it becomes a diagnostic, and is not part
         end = None if self.end is None else self.end + shift
         self._add_location(element.source, attribute_span(element, name, start, end))
 
-    def place_in_text(self, text: Text) -> None:
+    def locate_in_text(self, text: Text) -> None:
         """Set the location to character data, or add a note if the location is already set."""
-        self._add_location(text.source, text_part(text, self.start, self.end))
+        self._add_location(text.source, text_part_span(text, self.start, self.end))
 
-    def place_at(self, element: Element) -> None:
+    def locate_at(self, element: Element) -> None:
         """Set the location to an element, for an evaluated text without a source."""
         self._add_location(element.source, element.span())
 
-    def elsewhere(self) -> InactiveDefinition | None:
+    def find_inactive_definition(self) -> InactiveDefinition | None:
         """Return a definition of the missing property that is not in effect here, or None.
 
         Only the same file is searched. A definition without the xacro prefix also changes the hint.
@@ -267,7 +267,7 @@ def attribute_span(element: Element, name: str, start: int | None, end: int | No
     return source.span(raw_offset(source.text, *value_range, start), raw_offset(source.text, *value_range, end))
 
 
-def attribute_name(element: Element, name: str) -> Span | None:
+def attribute_name_span(element: Element, name: str) -> Span | None:
     """Return the location of an attribute's name, or of the element if it lacks the attribute.
 
     The result is None if the element was created by a program.
@@ -281,7 +281,7 @@ def attribute_name(element: Element, name: str) -> Span | None:
     return source.span(*written) if written else element.span()
 
 
-def text_part(text: Text, start: int | None, end: int | None) -> Span | None:
+def text_part_span(text: Text, start: int | None, end: int | None) -> Span | None:
     """Return the location of a part of some character data, as exactly as possible, or None."""
     from linkwright.xmltree.positions import raw_offset
 

@@ -39,7 +39,7 @@ class Limits(NamedTuple):
 _FRAMES_PER_LEVEL = 6
 _lock = allocate_lock()
 _active = 0
-_before = 0
+_previous_limit = 0
 
 
 class recursion_limit_for:  # noqa: N801 - it is called in a ``with`` statement, as a function is
@@ -53,12 +53,12 @@ class recursion_limit_for:  # noqa: N801 - it is called in a ``with`` statement,
         self._collection = seldom_collected()
 
     def __enter__(self) -> None:
-        global _active, _before  # noqa: PLW0603 - the recursion limit is one for the whole process
+        global _active, _previous_limit  # noqa: PLW0603 - the recursion limit is one for the whole process
         with _lock:
             if _active == 0:
-                _before = sys.getrecursionlimit()
+                _previous_limit = sys.getrecursionlimit()
             _active += 1
-            limit = _before + self._limits.nesting * _FRAMES_PER_LEVEL
+            limit = _previous_limit + self._limits.nesting * _FRAMES_PER_LEVEL
             if limit > sys.getrecursionlimit():
                 sys.setrecursionlimit(limit)
         self._collection.__enter__()
@@ -69,7 +69,7 @@ class recursion_limit_for:  # noqa: N801 - it is called in a ``with`` statement,
         with _lock:
             _active -= 1
             if _active == 0:
-                sys.setrecursionlimit(_before)
+                sys.setrecursionlimit(_previous_limit)
 
 
 # --- counting the steps of an expansion -------------------------------------------------------------------------------

@@ -87,8 +87,8 @@ class _PartsExpander(Expander):
     """An expander that leaves out parts with errors.
 
     Attributes:
-        trusted: whether all names still have the values of the complete expansion.
-        trusted_remark_count: the number of warnings that were recorded while `trusted` was true, or None for all.
+        is_trusted: whether all names still have the values of the complete expansion.
+        trusted_remark_count: the number of warnings that were recorded while `is_trusted` was true, or None for all.
     """
 
     def __init__(self, session: Session) -> None:
@@ -96,7 +96,7 @@ class _PartsExpander(Expander):
             tag: self._skip_on_failure(directive) for tag, directive in DIRECTIVES.items()
         }
         super().__init__(session, directives, self._skip_on_failure(call_macro))
-        self.trusted = True
+        self.is_trusted = True
         self.trusted_remark_count: int | None = None
         self._failures = 0
         self._reported_definitions: set[tuple[str, str]] = set()
@@ -105,7 +105,7 @@ class _PartsExpander(Expander):
         """Return the attributes that could be evaluated, and a gap mark if others could not."""
         failures_before = self._failures
         result = super().attributes(node, scope)
-        if self._failures > failures_before or not self.trusted:
+        if self._failures > failures_before or not self.is_trusted:
             for name in plan_of(node).evaluated:
                 if "$" in node.attributes[name]:
                     result[_GAP] = ""
@@ -124,17 +124,17 @@ class _PartsExpander(Expander):
             raise _LeftOutError
         return container
 
-    def note(self, fault: Fault) -> None:
+    def record_fault(self, fault: Fault) -> None:
         """Record the error of an attribute or text, unless an earlier gap may have caused it."""
         self._failures += 1
         diagnostic = self._diagnostic(fault)
-        if self.trusted or diagnostic.code in _SELF_CONTAINED_CODES or is_final(diagnostic):
+        if self.is_trusted or diagnostic.code in _SELF_CONTAINED_CODES or is_final(diagnostic):
             self.record_error(diagnostic)
 
     def _text(self, node: Text, scope: Scope) -> Text:
         failures_before = self._failures
         text = super()._text(node, scope)
-        if self._failures == failures_before and (self.trusted or text is node):
+        if self._failures == failures_before and (self.is_trusted or text is node):
             return text
         return Text(_GAP, node.source, node.offset)
 
@@ -145,7 +145,7 @@ class _PartsExpander(Expander):
             session, nesting = self.session, self._nesting
             frame, file = session.frame, session.file
             reported_diagnostics: list[Diagnostic] = []
-            if self.trusted or not _depends_on_values(site.node):
+            if self.is_trusted or not _depends_on_values(site.node):
                 try:
                     directive(expander, site)
                 except LinkwrightError as error:
@@ -172,13 +172,13 @@ class _PartsExpander(Expander):
             if (diagnostic.code, diagnostic.message) in self._reported_definitions:
                 return False
             self._reported_definitions.add((diagnostic.code, diagnostic.message))
-        if self.trusted or diagnostic.code in _SELF_CONTAINED_CODES:
+        if self.is_trusted or diagnostic.code in _SELF_CONTAINED_CODES:
             return True
         return diagnostic.code.startswith(("XML", "PKG")) and node.tag == "xacro:include"
 
     def _stop_trusting(self) -> None:
-        if self.trusted:
-            self.trusted = False
+        if self.is_trusted:
+            self.is_trusted = False
             self.trusted_remark_count = len(self.session.diagnostics)
 
     def _may_define_names(self, node: Element) -> bool:

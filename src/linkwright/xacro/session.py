@@ -26,7 +26,7 @@ from linkwright.xacro.expressions.sandbox import Module
 from linkwright.xacro.expressions.scope import Namespace, Scope
 from linkwright.xacro.expressions.template import compile_template, package_fault, templates
 from linkwright.xacro.expressions.yaml_data import YamlDict, YamlError
-from linkwright.xacro.faults import Fault, Frame, attribute_span, text_part, trail, xml_hint
+from linkwright.xacro.faults import Fault, Frame, attribute_span, text_part_span, trail, xml_hint
 from linkwright.xacro.limits import Budget, Limits
 from linkwright.xacro.plan import plan_document
 from linkwright.xmltree import Document, Element, Overlay, Text, parse
@@ -128,9 +128,9 @@ class Session:
             return value
         if value.__class__ is float:
             return str(value)
-        return self.written(text, value)
+        return self.output_text(text, value)
 
-    def written(self, text: str, value: Any) -> str:
+    def output_text(self, text: str, value: Any) -> str:
         """Return the text that xacro writes for the value of a text with expressions.
 
         Raises:
@@ -147,7 +147,7 @@ class Session:
                 "XAC202", phrase("cannot write the value of '{text}': {error}", text=text, error=foreign(error))
             ) from None
 
-    def changes(self, text: str) -> bool:
+    def may_change_values(self, text: str) -> bool:
         """Return whether the evaluation of a text may change a value, as ``${items.pop(0)}`` does."""
         return compile_template(text).changes
 
@@ -253,7 +253,7 @@ class Session:
         """Return a relative file name with the folder of the file being processed prepended."""
         return os.path.join(os.path.dirname(self.file), name)  # noqa: PTH118, PTH120 - kept as it is written
 
-    def depends_on(self, file: str) -> None:
+    def add_dependency(self, file: str) -> None:
         """Record that a file was read, as a dependency of the result."""
         self.dependencies.setdefault(file, None)
 
@@ -266,7 +266,7 @@ class Session:
         from linkwright.xacro.expressions import yaml_data
 
         path = self.absolute(name)
-        self.depends_on(path)
+        self.add_dependency(path)
         try:
             text, encoding = self._overlay.read(self.on_disk(path))
         except LinkwrightError as error:
@@ -331,7 +331,7 @@ class Session:
         """
         place = self.current_node
         if span is None and place is not None:
-            span = self._place_of_call(place, called)
+            span = self._call_span(place, called)
         if (code, message, span) in self._reported:
             return None
         self._reported.add((code, message, span))
@@ -345,7 +345,7 @@ class Session:
         self.diagnostics.remove(diagnostic)
         self._reported.discard((diagnostic.code, diagnostic.message, diagnostic.span))
 
-    def _place_of_call(self, place: Element | Text, function: str | None) -> Span | None:
+    def _call_span(self, place: Element | Text, function: str | None) -> Span | None:
         attribute = self.current_attribute
         if isinstance(place, Element) and attribute is None:
             return place.span()
@@ -353,7 +353,7 @@ class Session:
         match = re.search(rf"(?<![\w.]){re.escape(function)}(?=\s*\()", text) if function else None
         start, end = match.span() if match else (None, None)
         if isinstance(place, Text):
-            return text_part(place, start, end)
+            return text_part_span(place, start, end)
         return attribute_span(place, attribute or "", start, end) or place.span()
 
     def _warn_of_encoding(self, source: SourceText, encoding: str) -> None:
@@ -370,7 +370,7 @@ class Session:
         notes = trail(self.frame)
         self.diagnostics.append(Diagnostic("XAC905", message, source.span(0), Severity.WARNING, notes, hint, source))
 
-    def deprecated(self, better: str, function: Callable[..., Any]) -> Callable[..., Any]:
+    def with_deprecation_warning(self, better: str, function: Callable[..., Any]) -> Callable[..., Any]:
         """Return a function that warns when it is called by its deprecated bare name."""
         bare = better.partition(".")[2]
 

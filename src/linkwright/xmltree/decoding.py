@@ -45,12 +45,12 @@ def decode(data: bytes, name: str) -> str:
     """Return the text of a file without its byte order mark.
 
     Raises:
-        LinkwrightError: see `decoded`.
+        LinkwrightError: see `decode_with_encoding`.
     """
-    return decoded(data, name).text
+    return decode_with_encoding(data, name).text
 
 
-def decoded(data: bytes, name: str) -> Decoded:
+def decode_with_encoding(data: bytes, name: str) -> Decoded:
     """Return the text and the encoding of a file.
 
     Raises:
@@ -74,7 +74,7 @@ def decoded(data: bytes, name: str) -> Decoded:
         return _decode(data, encoding, name, phrase("its XML declaration specifies this encoding"))
 
 
-def unsaved(text: str, name: str) -> Decoded:
+def as_decoded(text: str, name: str) -> Decoded:
     """Return a text that was not read from a file as a `Decoded` in UTF-8.
 
     Raises:

@@ -38,7 +38,7 @@ _TAG_START = lazy_pattern(r"""<[^\W\d][^\s=/>"'<]*""")
 _ATTRIBUTE_PATTERN = lazy_pattern(r"""(\s*)([^\s=/>"'<]+)\s*=\s*("[^"]*"|'[^']*')""", re.ASCII)
 
 
-def stand_in(character: str) -> str:
+def substitute_for(character: str) -> str:
     """Return the substitute for ``&``, ``<`` or a control character.
 
     `restore_characters` converts the substitute back.
@@ -46,7 +46,7 @@ def stand_in(character: str) -> str:
     return _SUBSTITUTES[character]
 
 
-def can_stand_in(text: str) -> bool:
+def has_no_substitutes(text: str) -> bool:
     """Return whether a text contains no substitutes yet, so that they can be used in the text."""
     return _ANY_SUBSTITUTE.search(text) is None
 
@@ -235,13 +235,13 @@ def _tolerate_dashes(source: SourceText, read_as: str) -> tuple[str, _Mistake | 
 
 def _tolerate_ampersands(source: SourceText, read_as: str) -> tuple[str, _Mistake | None]:
     text = source.text
-    if not can_stand_in(text) or _ENTITY_DEFINITION in text:
+    if not has_no_substitutes(text) or _ENTITY_DEFINITION in text:
         return read_as, None
     ampersand_offsets = [match.start() for match in _BARE_AMPERSAND.finditer(blank_outside_tags(text))]
     if not ampersand_offsets:
         return read_as, None
     for offset in ampersand_offsets:
-        read_as = read_as[:offset] + stand_in("&") + read_as[offset + 1 :]
+        read_as = read_as[:offset] + substitute_for("&") + read_as[offset + 1 :]
     span = source.span(ampersand_offsets[0], ampersand_offsets[0] + 1)
     return read_as, _Mistake(
         phrase("'&' does not begin an entity"), span, phrase("write '&amp;' for the character '&'")
@@ -300,7 +300,7 @@ def _repair_text(source: SourceText, error: LinkwrightError, text: str) -> str:
         LinkwrightError: `error`, if no repair applies.
     """
     diagnostic = error.diagnostics[0]
-    if diagnostic.code == _NOT_XML_CODE and diagnostic.span is not None and can_stand_in(source.text):
+    if diagnostic.code == _NOT_XML_CODE and diagnostic.span is not None and has_no_substitutes(source.text):
         offset = source.offset(diagnostic.span.line, diagnostic.span.column)
         for repair in REPAIRS:
             repaired = repair(text, offset)

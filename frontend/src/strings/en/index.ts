@@ -4,6 +4,7 @@ import { details } from "./details";
 import { displays } from "./displays";
 import { editing } from "./editing";
 import { sourceEditor } from "./source-editor";
+import { learning } from "./learning";
 import { meshes } from "./meshes";
 import { modelling } from "./modelling";
 import { monitor } from "./monitor";
@@ -12,6 +13,7 @@ import { recording } from "./recording";
 import { sharing } from "./sharing";
 import { shell } from "./shell";
 import { simulation } from "./simulation";
+import { terminal } from "./terminal";
 import { timeline } from "./timeline";
 import { tools } from "./tools";
 import { values } from "./values";
@@ -32,6 +34,9 @@ export const en = {
     comparison: comparison.panel,
     voice: voice.panel,
     editing: editing.panel,
+    terminal: terminal.panel,
+    lesson: learning.lesson,
+    checks: learning.checks,
   },
   shell,
   sharing,
@@ -45,6 +50,8 @@ export const en = {
   sourceEditor,
   modelling,
   voice,
+  terminal,
+  learning,
   details,
   displays,
   tree: {

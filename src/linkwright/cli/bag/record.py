@@ -94,20 +94,25 @@ def configure_record(parser: argparse.ArgumentParser) -> None:
         "--compression-format", choices=("zstd",), help="accepted for compatibility with ros2; zstd is the only format"
     )
     parser.add_argument(
-        "-b", "--max-bag-size", metavar="BYTES", type=_count, default=0, help="start a new file after this many bytes"
+        "-b",
+        "--max-bag-size",
+        metavar="BYTES",
+        type=_parse_count,
+        default=0,
+        help="start a new file after this many bytes",
     )
     parser.add_argument(
         "-d",
         "--max-bag-duration",
         metavar="SECONDS",
-        type=_count,
+        type=_parse_count,
         default=0,
         help="start a new file after this many seconds",
     )
     parser.add_argument(
         "--max-cache-size",
         metavar="BYTES",
-        type=_count,
+        type=_parse_count,
         default=_CACHE_SIZE,
         help="the memory for --snapshot-mode, default 100 MiB; it has no effect without that option",
     )
@@ -119,7 +124,7 @@ def configure_record(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--custom-data",
         metavar="KEY=VALUE",
-        type=_key_value_pair,
+        type=_parse_key_value_pair,
         nargs="*",
         default=[],
         help="custom entries for the metadata",
@@ -148,7 +153,7 @@ def run_record(arguments: argparse.Namespace) -> int:
     from linkwright.cli.session import run_in_graph
     from linkwright.hosting.signals import SignalWatch
 
-    selection = _selection(arguments)
+    selection = _read_selection(arguments)
     if selection.is_empty:
         print("linkwright bag record: pass topics, -a for all topics, or --regex", file=sys.stderr)
         return _USAGE_ERROR
@@ -167,7 +172,7 @@ def run_record(arguments: argparse.Namespace) -> int:
         from linkwright.bag import Recorder, RecorderServices
         from linkwright.cli.bag.keys import SPACE, reading_keys
 
-        with _writer(arguments) as writer:
+        with _create_writer(arguments) as writer:
             recorder = Recorder(
                 session.node,
                 selection,
@@ -199,25 +204,25 @@ def run_record(arguments: argparse.Namespace) -> int:
     return status if interrupted else signals.exit_status or status
 
 
-def _selection(arguments: argparse.Namespace) -> TopicSelection:
+def _read_selection(arguments: argparse.Namespace) -> TopicSelection:
     from linkwright.bag import TopicSelection
 
     return TopicSelection(
         everything=arguments.all or arguments.all_topics,
-        names=_absolute_names(*arguments.names, *arguments.topics),
+        names=_make_absolute(*arguments.names, *arguments.topics),
         types=arguments.topic_types,
         pattern=arguments.regex,
-        without_names=_absolute_names(*arguments.exclude_topics),
+        without_names=_make_absolute(*arguments.exclude_topics),
         without_types=arguments.exclude_topic_types,
         without_pattern=arguments.exclude,
         hidden=arguments.include_hidden_topics,
         every_service=arguments.all or arguments.all_services,
-        services=_absolute_names(*arguments.services),
-        without_services=_absolute_names(*arguments.exclude_services),
+        services=_make_absolute(*arguments.services),
+        without_services=_make_absolute(*arguments.exclude_services),
     )
 
 
-def _writer(arguments: argparse.Namespace) -> BagWriter:
+def _create_writer(arguments: argparse.Namespace) -> BagWriter:
     from linkwright.bag import BagWriter
 
     return BagWriter(
@@ -231,18 +236,18 @@ def _writer(arguments: argparse.Namespace) -> BagWriter:
     )
 
 
-def _count(text: str) -> int:
+def _parse_count(text: str) -> int:
     if not text.isdecimal():
         raise argparse.ArgumentTypeError(f"'{text}' is not an integer of at least 0")
     return int(text)
 
 
-def _key_value_pair(text: str) -> tuple[str, str]:
+def _parse_key_value_pair(text: str) -> tuple[str, str]:
     key, separator, value = text.partition("=")
     if not separator or not key:
         raise argparse.ArgumentTypeError(f"'{text}' is not KEY=VALUE")
     return key, value
 
 
-def _absolute_names(*names: str) -> list[str]:
+def _make_absolute(*names: str) -> list[str]:
     return [f"/{name.lstrip('/')}" for name in names]

@@ -89,7 +89,7 @@ def run_convert(arguments: argparse.Namespace) -> int:
                 file=sys.stderr,
             )
             return _USAGE_ERROR
-    rewrite([given[0] for given in arguments.input], arguments.output_options)
+    rewrite([words[0] for words in arguments.input], arguments.output_options)
     return 0
 
 

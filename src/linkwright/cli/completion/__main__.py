@@ -11,6 +11,6 @@ import sys
 from linkwright.cli.completion.candidates import complete, split_line
 
 if __name__ == "__main__":
-    given = sys.argv[1:]
-    for candidate in complete(split_line(given[1]) if given[:1] == ["--line"] else given):
+    words = sys.argv[1:]
+    for candidate in complete(split_line(words[1]) if words[:1] == ["--line"] else words):
         print(candidate)

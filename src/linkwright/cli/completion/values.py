@@ -68,9 +68,9 @@ def _launch_packages(_: Asked) -> Iterable[str]:
 
 
 def _launch_files(request: Asked) -> Iterable[str]:
-    named = Path(request[1][0])
-    if named.is_file():
-        return _declared_arguments(named, _LAUNCH_ARGUMENT)
+    path_or_package = Path(request[1][0])
+    if path_or_package.is_file():
+        return _declared_arguments(path_or_package, _LAUNCH_ARGUMENT)
     share = PackageFinder().find(request[1][0])
     return [] if share is None else sorted(path.name for path in launch_files_below(share))
 

@@ -6,7 +6,7 @@ import sys
 from collections.abc import Callable, Sequence
 
 from linkwright.cli.command import main as linkwright
-from linkwright.cli.endings import FINDINGS, FINE, status_of
+from linkwright.cli.exit_status import FINDINGS, FINE, status_of
 from linkwright.cli.tools.ros2 import ros2
 from linkwright.diagnostics import LinkwrightError, missing_extra, print_diagnostics
 from linkwright.process.interruption import raise_interrupts

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from linkwright.cli.command import help_texts
 from linkwright.cli.command import main as linkwright
-from linkwright.cli.endings import FINE, USAGE
+from linkwright.cli.exit_status import FINE, USAGE
 from linkwright.cli.workbench import OTHER_NAMES
 from linkwright.diagnostics import did_you_mean
 

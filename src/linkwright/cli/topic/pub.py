@@ -140,9 +140,9 @@ async def _publish(
         nonlocal count
         message, stamp_setters = next(messages)
         if stamp_setters:
-            now = clock.now().to_msg()
+            stamp = clock.now().to_msg()
             for set_stamp in stamp_setters:
-                set_stamp(now)
+                set_stamp(stamp)
         count += 1
         if arguments.print and count % arguments.print == 0:
             print(f"publishing #{count}: {message!r}\n")

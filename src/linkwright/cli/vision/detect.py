@@ -85,7 +85,7 @@ def run(arguments: argparse.Namespace) -> int:
     used_names: set[str] = set()
     for name in arguments.images:
         try:
-            image = _read(name)
+            image = _read_image(name)
         except LinkwrightError as error:
             problems += error.diagnostics
             continue
@@ -119,7 +119,7 @@ def _checked_classes(detector: Detector, class_names: list[str]) -> frozenset[st
     return frozenset(class_names)
 
 
-def _read(name: str) -> NDArray[np.uint8]:
+def _read_image(name: str) -> NDArray[np.uint8]:
     """Return the pixels of an image file, shape (height, width, 3)."""
     import numpy as np
 

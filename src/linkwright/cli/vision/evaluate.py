@@ -7,7 +7,7 @@ import json
 from dataclasses import asdict
 from pathlib import Path
 
-from linkwright.cli.endings import FINE
+from linkwright.cli.exit_status import FINE
 
 
 def configure(parser: argparse.ArgumentParser) -> None:

@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from linkwright.cli.endings import FINE
+from linkwright.cli.exit_status import FINE
 from linkwright.cli.numbers import positive_float, positive_int, unsigned_int
 from linkwright.diagnostics import phrase
 from linkwright.diagnostics.translation import localized

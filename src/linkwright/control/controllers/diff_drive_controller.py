@@ -121,7 +121,7 @@ class DiffDriveController(LimitedDrive[Parameters]):
         if not all(map(isfinite, requested)):
             requested = [0.0, 0.0]
         pairs = zip(self._limiters, requested, strict=True)
-        forward, angular = (limiter.follow(speed, period_s) for limiter, speed in pairs)
+        forward, angular = (limiter.approach(speed, period_s) for limiter, speed in pairs)
         left_speed, right_speed = self._drive.wheel_speeds(forward, angular)
         count = len(self.commands) // 2
         for number, command in enumerate(self.commands):

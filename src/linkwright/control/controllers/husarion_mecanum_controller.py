@@ -111,7 +111,7 @@ class HusarionMecanumController(LimitedDrive[Parameters]):
         """Command the wheels, and publish the odometry."""
         requested = self._input.velocity(time_ns) or (0.0, 0.0, 0.0)
         pairs = zip(self._limiters, requested, strict=True)
-        forward, sideways, angular = (limiter.follow(speed, period_s) for limiter, speed in pairs)
+        forward, sideways, angular = (limiter.approach(speed, period_s) for limiter, speed in pairs)
         speeds = self._drive.wheel_speeds(forward, sideways, angular)
         for command, value in zip(self.commands, speeds, strict=True):
             command.value = value

@@ -167,8 +167,8 @@ class TricycleController(Controller[Parameters]):
             raise ControllerError(phrase("Could not read feedback value"))
         forward, _, angular = self._input.velocity(time_ns) or (0.0, 0.0, 0.0)
         speed, angle = self._drive.wheel(forward, angular)
-        speed = self._traction_limiter.follow(speed * _speed_fraction(abs(angle - measured_angle)), period_s)
-        angle = self._steering_limiter.follow(angle, period_s)
+        speed = self._traction_limiter.approach(speed * _speed_fraction(abs(angle - measured_angle)), period_s)
+        angle = self._steering_limiter.approach(angle, period_s)
         self.commands[0].value, self.commands[1].value = speed, angle
         if self._settings.open_loop:
             forward, angular = self._drive.motion(speed, angle)

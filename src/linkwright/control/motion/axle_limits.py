@@ -42,7 +42,7 @@ class TractionLimiter:
         """Reset the speed and the acceleration to zero."""
         self.speed = self._previous_speed = 0.0
 
-    def follow(self, target: float, seconds: float) -> float:
+    def approach(self, target: float, seconds: float) -> float:
         """Return the next speed towards a target, `seconds` after the last call."""
         speed = self.speed
         target = _limit_second_difference(speed, self._previous_speed, target, self._jerk, seconds)
@@ -74,7 +74,7 @@ class SteeringLimiter:
         """Reset the angle to a value, at rest."""
         self.angle = self._previous_speed = angle
 
-    def follow(self, target: float, seconds: float) -> float:
+    def approach(self, target: float, seconds: float) -> float:
         """Return the next angle towards a target, `seconds` after the last call."""
         angle = self.angle
         target = _limit_second_difference(angle, self._previous_speed, target, self._acceleration, seconds)

@@ -100,11 +100,13 @@ class ArgumentSets:
         """Return the argument sets of a description; see `argument_sets`."""
         path = Path(os.path.abspath(path))  # noqa: PTH100 - do not resolve links
         finder = finder or PackageFinder(start=path.parent)
-        nearby_files = list(self._files.around(path, self._folders))
+        nearby_files = list(self._files.nearby_calling_files(path, self._folders))
         sets = list(_CalledDescription(path, finder, nearby_files).sets())
         if not sets:  # A launch file may use a package that is not a declared dependency.
             sets = list(
-                _CalledDescription(path, finder, [*nearby_files, *self._files.elsewhere(path, self._folders)]).sets()
+                _CalledDescription(
+                    path, finder, [*nearby_files, *self._files.distant_calling_files(path, self._folders)]
+                ).sets()
             )
         merged: dict[object, ArgumentSet] = {}
         for argument_set in sets:

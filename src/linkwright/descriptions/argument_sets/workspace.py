@@ -32,7 +32,7 @@ class CallingFiles:
         self._packages: dict[Path, dict[str, Path]] = {}
         self._manifests: dict[Path, str] = {}
 
-    def around(self, path: Path, folders: tuple[Path, ...]) -> Iterator[tuple[str | None, CallingFile]]:
+    def nearby_calling_files(self, path: Path, folders: tuple[Path, ...]) -> Iterator[tuple[str | None, CallingFile]]:
         """Yield the calling files of a file's package and of packages that depend on it.
 
         Each file is paired with the name of its package, or None.
@@ -49,7 +49,7 @@ class CallingFiles:
         yield from ((name, file) for file in self.of(folder))
         yield from self._other_calling_files(name, folder, folders, depending=True)
 
-    def elsewhere(self, path: Path, folders: tuple[Path, ...]) -> Iterator[tuple[str | None, CallingFile]]:
+    def distant_calling_files(self, path: Path, folders: tuple[Path, ...]) -> Iterator[tuple[str | None, CallingFile]]:
         """Yield the calling files of packages that do not depend on a file's package.
 
         Each file is paired with the name of its package.

@@ -45,7 +45,7 @@ def match(
     joints = {name: name for name in old.joints if name in new.joints}
     matched_joints = set(joints)
 
-    def renamed(old_name: str, new_name: str) -> bool:
+    def match_renamed(old_name: str, new_name: str) -> bool:
         """Return whether two links match, and record a renamed link as matched."""
         if links.get(old_name) == new_name:
             return True
@@ -56,7 +56,7 @@ def match(
         links[old_name] = new_name
         return True
 
-    renamed(old.root, new.root)
+    match_renamed(old.root, new.root)
     old_children, new_children = children_of(old), children_of(new)
     pending = deque([old.root])
     while pending:
@@ -64,11 +64,11 @@ def match(
         candidates = new_children.get(links.get(parent, ""), ())
         for joint in old_children.get(parent, ()):
             if joint.name in new.joints:
-                renamed(joint.child, new.joints[joint.name].child)
+                match_renamed(joint.child, new.joints[joint.name].child)
             else:
                 for candidate in candidates:
                     is_free = candidate.name not in matched_joints and candidate.name not in old.joints
-                    if is_free and same_joint(joint, candidate) and renamed(joint.child, candidate.child):
+                    if is_free and same_joint(joint, candidate) and match_renamed(joint.child, candidate.child):
                         joints[joint.name] = candidate.name
                         matched_joints.add(candidate.name)
                         break

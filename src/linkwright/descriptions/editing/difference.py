@@ -85,7 +85,7 @@ def other_differences(before: Element, after: Element, target: Target) -> Iterat
             )
 
 
-def described(trail: tuple[Element, ...]) -> str:
+def describe_path(trail: tuple[Element, ...]) -> str:
     """Return a text that names the element of a path, such as ``joint 'wheel_joint'``."""
     named_elements = [
         element for element in trail if element.attributes.get("name") or element.attributes.get("reference")

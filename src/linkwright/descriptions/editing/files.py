@@ -12,7 +12,7 @@ from linkwright.descriptions.editing.refusals import changed_file, forbidden_fil
 from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, foreign, phrase
 from linkwright.files.whole_files import write_whole_file
 from linkwright.loading.lean_dataclasses import dataclass
-from linkwright.xmltree.decoding import decoded
+from linkwright.xmltree.decoding import decode_with_encoding
 from linkwright.xmltree.reader import read_bytes
 
 _PROGRAM_FOLDER = Path(__file__).resolve().parents[2]
@@ -29,11 +29,11 @@ class Workspace:
 
     Args:
         main: the file that was opened.
+        folder: the folder of the workspace; None to find it from the file.
     """
 
-    def __init__(self, main: Path) -> None:
-        real_path = Path(os.path.realpath(main))
-        self.folder = _find_workspace(real_path)
+    def __init__(self, main: Path, folder: Path | None = None) -> None:
+        self.folder = _find_workspace(Path(os.path.realpath(main))) if folder is None else folder.resolve()
 
     def refusal(self, path: str) -> Diagnostic | None:
         """Return the reason why a file must not be written (EDIT106), or None if it may be written.
@@ -91,7 +91,7 @@ class EditHistory:
         files: dict[str, tuple[bytes, bytes]] = {}
         for path, text in plan.texts.items():
             old_bytes = _read_file(path)
-            current = decoded(old_bytes, path)
+            current = decode_with_encoding(old_bytes, path)
             if current.text != plan.old_texts[path]:
                 raise EditRefusedError(changed_file(path))
             byte_order_mark = old_bytes[: len(old_bytes) - len(current.text.encode(current.encoding))]

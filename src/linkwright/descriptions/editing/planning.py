@@ -12,7 +12,7 @@ from itertools import islice
 from math import isfinite
 
 from linkwright.descriptions.editing.definitions import attribute
-from linkwright.descriptions.editing.difference import Target, described, other_differences, path_to
+from linkwright.descriptions.editing.difference import Target, describe_path, other_differences, path_to
 from linkwright.descriptions.editing.errors import EditRefusedError
 from linkwright.descriptions.editing.numbers import EXACT, are_close, parse_numbers, shortest_text
 from linkwright.descriptions.editing.places import Candidate, TextRange, literal, words
@@ -77,21 +77,21 @@ class _EditedDescription(NamedTuple):
     """An edited description with the requested number, and the names of other changed parts."""
 
     snapshot: Snapshot
-    also: tuple[str, ...]
+    side_effects: tuple[str, ...]
 
 
 class _Planner:
     """The planner of one edit, attribute by attribute and number by number.
 
-    `_now` is the description with the edits so far.
+    `_current` is the description with the edits so far.
     """
 
     def __init__(self, description: Description, request: EditRequest, allowed: Allowed) -> None:
         self._request, self._allowed = request, allowed
-        self._now = self._first = Snapshot.of(description)
+        self._current = self._first = Snapshot.of(description)
         robot = description.robot
         owner = None if robot is None else request.owner(robot)
-        path = None if owner is None else path_to(self._now.root, owner)
+        path = None if owner is None else path_to(self._current.root, owner)
         if owner is None or path is None or description.name.startswith("<"):
             message = phrase("'{name}' has no {part} to edit", part=request.part, name=request.name)
             raise EditRefusedError(
@@ -131,7 +131,7 @@ class _Planner:
         if not changed_indexes:
             return
         target = Target(self._path, self._request.tag, name)
-        element = target.element(self._now.root)
+        element = target.element(self._current.root)
         if element is None or name not in element.attributes:
             self._add(target, requested)
             return
@@ -144,7 +144,7 @@ class _Planner:
         ):
             combined = self._edit_together(target, text_range, value_words, {i: requested[i] for i in changed_indexes})
             if combined is not None:
-                self._now = combined
+                self._current = combined
                 return
         for i in changed_indexes:
             self._set_one(target, i, requested[i])
@@ -152,21 +152,26 @@ class _Planner:
     def plan(self) -> EditPlan:
         """Return the plan of all edits."""
         unsaved = self._first.texts
-        texts = {str(path): text for path, text in self._now.texts.items() if unsaved.get(path) != text}
+        texts = {str(path): text for path, text in self._current.texts.items() if unsaved.get(path) != text}
         before = {path: Overlay(unsaved).read(path).text for path in texts}
         return EditPlan(texts, before, tuple(self._also_changed))
 
     # one number
 
     def _set_one(self, target: Target, index: int, requested: float) -> None:
-        element = target.element(self._now.root)
+        element = target.element(self._current.root)
         assert element is not None, "it has the attribute"
         text_range = self._attribute_place(element, target.attribute)
         current_numbers = self._values(target.attribute)
         frame = element.origin if isinstance(element.origin, Frame) else None
         attempts: list[Attempt] = []
         candidates = proposals(
-            text_range, index, frame, self._now.definitions, present=current_numbers, is_angle=target.attribute == "rpy"
+            text_range,
+            index,
+            frame,
+            self._current.definitions,
+            present=current_numbers,
+            is_angle=target.attribute == "rpy",
         )
         best_edit: _EditedDescription | None = None
         best_rank = (0, False)
@@ -174,15 +179,15 @@ class _Planner:
             edited = self._try_candidate(candidate, target, index, requested, attempts)
             if edited is None:
                 continue
-            if not edited.also:
+            if not edited.side_effects:
                 best_edit = edited
                 break
-            rank = len(edited.also), candidate.is_choice
+            rank = len(edited.side_effects), candidate.is_choice
             if best_edit is None or rank < best_rank:
                 best_edit, best_rank = edited, rank
         if best_edit is not None:
-            self._now = best_edit.snapshot
-            self._also_changed.update(dict.fromkeys(best_edit.also))
+            self._current = best_edit.snapshot
+            self._also_changed.update(dict.fromkeys(best_edit.side_effects))
             return
         raise EditRefusedError(refusal(text_range, index, attempts))
 
@@ -252,7 +257,7 @@ class _Planner:
 
     def _try_text(self, place: TextRange, text: str) -> Snapshot | None:
         try:
-            return self._now.with_text(place, text)
+            return self._current.with_text(place, text)
         except LinkwrightError:
             return None
 
@@ -265,13 +270,13 @@ class _Planner:
         return tuple(dict.fromkeys(changed_parts))
 
     def _differences(self, trial: Snapshot, target: Target) -> list[str]:
-        return [described(trail) for trail in other_differences(self._now.root, trial.root, target)]
+        return [describe_path(trail) for trail in other_differences(self._current.root, trial.root, target)]
 
     # missing attributes
 
     def _add(self, target: Target, requested: list[float]) -> None:
         """Plan the addition of a missing attribute or element."""
-        element = target.element(self._now.root)
+        element = target.element(self._current.root)
         text_range, text = self._insertion(target, element, " ".join(map(shortest_text, requested)))
         refusal_reason = self._allowed(os.path.realpath(text_range.source.name))
         if refusal_reason is not None:
@@ -291,7 +296,7 @@ class _Planner:
                     tag=target.tag,
                 )
             )
-        self._now = trial
+        self._current = trial
 
     def _insertion(self, target: Target, element: Element | None, text: str) -> tuple[TextRange, str]:
         if element is not None:
@@ -302,7 +307,7 @@ class _Planner:
                     source_element.source, tag.insertion_offset, tag.insertion_offset
                 ), f' {target.attribute}="{text}"'
             raise EditRefusedError(_not_written_finding(element))
-        owner = target.owner(self._now.root)
+        owner = target.owner(self._current.root)
         assert owner is not None, "it was found before"
         source_element = self._source_element(owner)
         new_element = Element(target.tag, {target.attribute: text})
@@ -330,7 +335,7 @@ class _Planner:
 
     def _values(self, name: str) -> list[float]:
         """Return the current numbers of an attribute."""
-        numbers = self._numbers_in(self._now, Target(self._path, self._request.tag, name))
+        numbers = self._numbers_in(self._current, Target(self._path, self._request.tag, name))
         if numbers is None:
             message = phrase("'{name}' of <{tag}> has a value that is not a number", name=name, tag=self._request.tag)
             raise EditRefusedError(Diagnostic("EDIT102", message, self._owner.span(), source=self._owner.source))
@@ -350,7 +355,7 @@ class _Planner:
         text_range = attribute(element, name)
         if text_range is not None:
             return text_range
-        provenance = self._now.description.provenance(element) if self._now is self._first else None
+        provenance = self._current.description.provenance(element) if self._current is self._first else None
         origin = (
             next((attribute for attribute in provenance.attributes if attribute.name == name), None)
             if provenance

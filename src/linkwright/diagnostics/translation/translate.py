@@ -37,7 +37,7 @@ def set_language(code: str | None) -> None:
     _chosen_language = code
 
 
-def asked_language() -> str | None:
+def chosen_language() -> str | None:
     """Return the language that was set with `set_language`, or None.
 
     Output for programs is in English unless a language was set.
@@ -101,7 +101,7 @@ def translated(diagnostics: Iterable[Diagnostic], *, for_programs: bool = False)
         for_programs: whether a program reads them. A program gets English unless another language was requested by
             name.
     """
-    lang = (asked_language() or "en") if for_programs else language()
+    lang = (chosen_language() or "en") if for_programs else language()
     return diagnostics if lang == "en" else [translate(diagnostic, lang) for diagnostic in diagnostics]
 
 

@@ -11,7 +11,7 @@ from typing import Protocol
 from linkwright.geometry.single import (
     Transform,
     Vector3,
-    added,
+    add_vectors,
     axis_and_angle,
     cross,
     quaternion_inverse,
@@ -64,8 +64,8 @@ def velocity(
     linear_velocity = scaled(subtract_vectors(end[:3], start[:3]), 1.0 / span_s)
     tracking_pose, _ = buffer.lookup(reference_frame, tracking_frame, times_ns[0])
     angular = rotate(tracking_pose[3:], angular_velocity)
-    linear = added(rotate(tracking_pose[3:], linear_velocity), cross(tracking_pose[:3], angular))
+    linear = add_vectors(rotate(tracking_pose[3:], linear_velocity), cross(tracking_pose[:3], angular))
     point_pose, _ = buffer.lookup(reference_frame, point_frame, times_ns[0])
-    delta = subtract_vectors(added(rotate(point_pose[3:], point), point_pose[:3]), tracking_pose[:3])
+    delta = subtract_vectors(add_vectors(rotate(point_pose[3:], point), point_pose[:3]), tracking_pose[:3])
     shift = (angular[0] * delta[0], angular[1] * delta[1], angular[2] * delta[2])
-    return added(linear, shift), angular
+    return add_vectors(linear, shift), angular

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from math import atan2
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -46,7 +46,7 @@ class Judge:
         reasons: what earned or cost points.
     """
 
-    TOPICS: ClassVar[Mapping[str, str]] = {}
+    TOPICS: ClassVar[tuple[tuple[str, str], ...]] = ()
 
     def __init__(self, exercise: Exercise, seed: int) -> None:
         self.exercise = exercise
@@ -80,7 +80,7 @@ class Judge:
 
     def at_time_limit(self) -> None:
         """Decide what a run is worth that has not ended in time: by default, the task is not done."""
-        self.fail(en="the time is over", zh="时间到了")
+        self.fail(en="the task is not done", zh="任务没有完成")
 
     # --- methods for judges to call -----------------------------------------------------------------------------------
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import tempfile
 import traceback
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from linkwright.files.scratch_folders import ScratchFolder
 from linkwright.learning.judging.exercise import Exercise
 from linkwright.learning.judging.judge import Judge
 from linkwright.learning.judging.world import JudgePlugin, status, write_world
@@ -61,7 +61,7 @@ def judge_program(
         OSError: the program cannot be read.
     """
     for seed in seeds:
-        with tempfile.TemporaryDirectory(prefix="linkwright-judge-") as folder:
+        with ScratchFolder("judge") as folder:
             yield _run(exercise, program, seed, Path(folder), budget)
 
 
@@ -97,6 +97,8 @@ def _advance_to_end(test: SteppedSimulation, judge: Judge, program: Program, tim
     error = program.error or next(iter(test.errors), None)
     if error is not None:
         judge.note(en=f"the program ended with an error: {error}", zh=f"程序因错误而结束：{error}")
+    elif not judge.is_finished and not program.is_running:
+        judge.note(en="the program ended before the task was done", zh="任务完成之前程序就结束了")
     if not judge.is_finished:
         judge.at_time_limit()
     return error
@@ -110,5 +112,5 @@ def _find_judge(test: SteppedSimulation) -> Judge:
 def _user_traceback(error: BaseException, program: Path) -> list[str]:
     """Return the lines of a traceback from the program's file on."""
     frames = traceback.extract_tb(error.__traceback__)
-    first = next((i for i, frame in enumerate(frames) if frame.filename == str(program.resolve())), 0)
+    first = next((i for i, frame in enumerate(frames) if frame.filename == str(program.resolve())), len(frames))
     return [*traceback.format_list(list(frames)[first:]), *traceback.format_exception_only(error)]

@@ -105,6 +105,41 @@ class Scene:
             f'<link name="link"><kinematic>true</kinematic>{collision}{visuals}</link></model>'
         )
 
+    def add_block(self, name: str, position: Sequence[float], size: float, color: Color) -> None:
+        """Add a cube on the ground, which the judge moves."""
+        shape = f"<geometry><box><size>{size:.4f} {size:.4f} {size:.4f}</size></box></geometry>"
+        self._models.append(
+            f"<model name={quoteattr(name)}><pose>{_join((*position, size / 2))} 0 0 0</pose>"
+            f'<link name="link"><kinematic>true</kinematic><collision name="collision">{shape}</collision>'
+            f'<visual name="visual">{shape}{_material(color)}</visual></link></model>'
+        )
+
+    def add_table(self, name: str, center: Sequence[float], yaw: float, half: float, color: Color = YELLOW) -> None:
+        """Add a table with four legs, which a robot can drive below, and which the judge moves.
+
+        Args:
+            name: the name of the model.
+            center: x and y of its middle, in m.
+            yaw: its rotation, in rad.
+            half: the distance from the middle to the legs along each side, in m.
+            color: red, green and blue, from 0 to 1.
+        """
+        leg = "<box><size>0.06 0.06 0.5</size></box>"
+        corners = [(x, y, 0.25) for x in (-half, half) for y in (-half, half)]
+        parts = [(f"leg_{number}", corner, leg) for number, corner in enumerate(corners, start=1)]
+        side = 2 * half + 0.06
+        parts.append(("top", (0.0, 0.0, 0.52), f"<box><size>{side:.4f} {side:.4f} 0.04</size></box>"))
+        shapes = "".join(
+            f'<collision name="{part}"><pose>{_join(place)} 0 0 0</pose><geometry>{shape}</geometry></collision>'
+            f'<visual name="{part}"><pose>{_join(place)} 0 0 0</pose><geometry>{shape}</geometry>'
+            f"{_material(color)}</visual>"
+            for part, place, shape in parts
+        )
+        self._models.append(
+            f"<model name={quoteattr(name)}><pose>{_join((*center, 0.0))} 0 0 {yaw:.5f}</pose>"
+            f'<link name="link"><kinematic>true</kinematic>{shapes}</link></model>'
+        )
+
     def add_line(self, name: str, points: Sequence[Sequence[float]], width: float, color: Color = BLACK) -> None:
         """Paint a line through points x, y on the ground, closed to a loop if the last is the first."""
         pieces = []

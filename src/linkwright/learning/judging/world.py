@@ -107,7 +107,7 @@ class JudgePlugin(SimulatedPlugin[Parameters]):
         """Create the judge."""
         self._exercise = load_exercise(Path(self.parameters.exercise))
         self.reset()
-        for topic, msg_type in self.judge.TOPICS.items():
+        for topic, msg_type in self.judge.TOPICS:
             self.node.subscribe(msg_type, topic, partial(self._receive, topic))
         self.every(_UPDATE_RATE_HZ, self._watch)
         if self.parameters.publish:

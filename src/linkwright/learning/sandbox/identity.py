@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import os
-import pwd
+import sys
 from pathlib import Path
 
 from linkwright.learning.sandbox.linux import CAP_SETGID, CAP_SETUID, has_capability
+
+if sys.platform != "win32":
+    import pwd
 
 _HIGH_USERS = 0x7000_0000
 """Plus the number of the supervisor's process, a user number that no other run has."""

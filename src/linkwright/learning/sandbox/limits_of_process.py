@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import contextlib
 import os
-import resource
 import sys
 from collections.abc import Collection
 
 from linkwright.learning.sandbox.outcome import Limits
+
+if sys.platform != "win32":
+    import resource
 
 _OPEN_FILES = 1024
 _NICENESS = 10

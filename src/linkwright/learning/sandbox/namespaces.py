@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import errno
-import fcntl
 import os
 import socket
 import struct
+import sys
 from collections.abc import Collection
 from pathlib import Path
 
@@ -18,6 +18,9 @@ from linkwright.learning.sandbox.linux import (
     CLONE_NEWUSER,
     unshare,
 )
+
+if sys.platform != "win32":
+    import fcntl
 
 _NAMESPACES = {"processes": CLONE_NEWPID, "mounts": CLONE_NEWNS, "ipc": CLONE_NEWIPC, "network": CLONE_NEWNET}
 

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import contextlib
 import os
-import resource
 import signal
 import stat
 import subprocess
 import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
+
+if sys.platform != "win32":
+    pass
 
 _TICKS_PER_SECOND = os.sysconf("SC_CLK_TCK") if hasattr(os, "sysconf") else 100
 
@@ -59,7 +61,7 @@ def _read_process(pid: int) -> ProcessUsage:
     return ProcessUsage(pid, int(fields[1]), int(fields[17]), cpu_ticks / _TICKS_PER_SECOND, int(fields[21]) * _PAGE)
 
 
-_PAGE = resource.getpagesize()
+_PAGE = os.sysconf("SC_PAGE_SIZE") if hasattr(os, "sysconf") else 4096
 
 
 def own_memory(process: ProcessUsage) -> int:

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, Phrase, Severity, foreign, nearest, phrase, quoted
-from linkwright.lint.made_files import is_created_later
+from linkwright.lint.generated_files import is_created_later
 from linkwright.lint.rule import Rule, Scope
 from linkwright.lint.rules.package_manifest import PackageRule
 from linkwright.lint.subject import Subject

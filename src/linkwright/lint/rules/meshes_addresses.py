@@ -30,7 +30,7 @@ MESH_SUFFIXES = (".stl", ".stlb", ".dae", ".obj", ".glb", ".gltf", ".ply", ".fbx
 """The mesh formats that RViz reads."""
 
 
-def written(element: Element, attribute: str) -> str:
+def source_value(element: Element, attribute: str) -> str:
     """Return an attribute's value as written in the file, with unevaluated expressions."""
     source = element.source
     value_range = attribute_value_range(source.text, element.offset, attribute) if source is not None else None
@@ -166,7 +166,7 @@ class MachineSpecificPath(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         for use in subject.meshes.uses:
-            machine_folder = HOME.match(written(use.element, "filename"))
+            machine_folder = HOME.match(source_value(use.element, "filename"))
             if machine_folder is not None:
                 path = subject.meshes.path(use)
                 installed_match = _INSTALLED_FILE.fullmatch(use.mesh.filename)

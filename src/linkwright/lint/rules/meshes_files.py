@@ -8,11 +8,18 @@ from pathlib import Path
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Phrase, Severity, counted, display_path, phrase
 from linkwright.diagnostics.diagnostic import is_pointer_file
 from linkwright.lint.fix import replace_value
-from linkwright.lint.made_files import is_ignored_by_git
+from linkwright.lint.generated_files import is_ignored_by_git
 from linkwright.lint.meshes import MeshUse
 from linkwright.lint.missing_packages import is_declared
 from linkwright.lint.rule import Rule
-from linkwright.lint.rules.meshes_addresses import HOME, MESH_SUFFIXES, file_hint, normalized_path, uri_problem, written
+from linkwright.lint.rules.meshes_addresses import (
+    HOME,
+    MESH_SUFFIXES,
+    file_hint,
+    normalized_path,
+    source_value,
+    uri_problem,
+)
 from linkwright.lint.subject import Subject
 from linkwright.packages import PackageNotFoundError, enclosing_package
 
@@ -159,7 +166,7 @@ class MissingFile(Rule):
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         missing_files: dict[Path, list[tuple[MeshUse, Path]]] = {}
         for use, path in subject.meshes.files:
-            if uri_problem(use.mesh.filename)[0] or HOME.match(written(use.element, "filename")):
+            if uri_problem(use.mesh.filename)[0] or HOME.match(source_value(use.element, "filename")):
                 continue  # another rule already reports this mesh
             if path.is_file() or file_with_other_case(path) is not None or is_ignored_by_git(path):
                 continue
@@ -277,7 +284,7 @@ class OutsidePackage(Rule):
             return
         for use, path in files:
             uri = use.mesh.filename
-            if HOME.match(written(use.element, "filename")):
+            if HOME.match(source_value(use.element, "filename")):
                 continue  # another rule already reports this mesh
             normalized = Path(normalized_path(path))
             message = None

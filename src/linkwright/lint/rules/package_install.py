@@ -10,7 +10,7 @@ import re
 from collections.abc import Callable, Iterable, Iterator
 
 from linkwright.diagnostics import Diagnostic, Phrase, Severity, nearest, phrase, quoted
-from linkwright.lint.made_files import is_created_by_cmake, is_ignored_by_git, submodule_of
+from linkwright.lint.generated_files import is_created_by_cmake, is_ignored_by_git, submodule_of
 from linkwright.lint.package_fixes import cmake_folder_fix, setup_folders_fix
 from linkwright.lint.rules.package_manifest import PackageRule
 from linkwright.loading.deferred import lazy_pattern

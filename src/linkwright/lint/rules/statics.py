@@ -228,7 +228,7 @@ def _convex_hull(points: Sequence[Point]) -> list[Point]:
     """
     sorted_points = sorted(set(points))
 
-    def half(sequence: Iterable[Point]) -> list[Point]:
+    def half_hull(sequence: Iterable[Point]) -> list[Point]:
         chain: list[Point] = []
         for point in sequence:
             while len(chain) > 1 and turn(chain[-2], chain[-1], point) <= 1e-9:
@@ -236,7 +236,7 @@ def _convex_hull(points: Sequence[Point]) -> list[Point]:
             chain.append(point)
         return chain[:-1]
 
-    return half(sorted_points) + half(reversed(sorted_points))
+    return half_hull(sorted_points) + half_hull(reversed(sorted_points))
 
 
 def _distance_outside(point: Point, corners: Sequence[Point]) -> float:

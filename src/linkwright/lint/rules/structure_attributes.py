@@ -8,7 +8,7 @@ from linkwright.diagnostics import Diagnostic, Severity, phrase, quoted
 from linkwright.lint.fix import rename_attribute
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
-from linkwright.lint.unread import (
+from linkwright.lint.unknown_names import (
     attribute_name_span,
     intended_attribute,
     is_expected_attribute,

@@ -9,7 +9,7 @@ from linkwright.lint.fix import rename_element
 from linkwright.lint.rule import Rule
 from linkwright.lint.structure import SchemaElement
 from linkwright.lint.subject import Subject
-from linkwright.lint.unread import (
+from linkwright.lint.unknown_names import (
     INNER_EXTENSIONS,
     PARENT_TAGS,
     intended_element,
@@ -126,14 +126,14 @@ def _is_zero(origin: Element) -> bool:
     return not any(float(value) for name in ("xyz", "rpy") for value in values(origin, name))
 
 
-def _nearest_parents(parent_tags: Sequence[str], place: SchemaElement) -> Sequence[str]:
+def _nearest_parents(parent_tags: Sequence[str], schema_element: SchemaElement) -> Sequence[str]:
     """Return the allowed parents of a misplaced element that are closest to its current parent.
 
     The closest parents are children of the current parent, then the parent of the current parent, then all allowed
     parents.
     """
-    outer_tag = place.parent.tag if place.parent is not None else ""
-    child_tags = [tag for tag in parent_tags if tag in place.rule.child_rules]
+    outer_tag = schema_element.parent.tag if schema_element.parent is not None else ""
+    child_tags = [tag for tag in parent_tags if tag in schema_element.rule.child_rules]
     return child_tags or ((outer_tag,) if outer_tag in parent_tags else parent_tags)
 
 
@@ -215,7 +215,7 @@ class MaterialInCollision(Rule):
         """Report every material of a collision."""
         from linkwright.lint.fix import remove_element
 
-        for schema_element in subject.structure.places:
+        for schema_element in subject.structure.schema_elements:
             if schema_element.rule.tag == "collision":
                 for material in schema_element.element.elements("material"):
                     yield self.report(

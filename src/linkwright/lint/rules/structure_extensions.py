@@ -10,7 +10,7 @@ from linkwright.lint.extension_names import ATTRIBUTES, CHILDREN
 from linkwright.lint.fix import rename_attribute, rename_element
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
-from linkwright.lint.unread import attribute_name_span
+from linkwright.lint.unknown_names import attribute_name_span
 from linkwright.xmltree import Element
 
 
@@ -49,7 +49,7 @@ class MisspeltExtension(Rule):
             pending = [(extension, extension.tag)]
             while pending:
                 element, path = pending.pop()
-                yield from self._attributes(element, path)
+                yield from self._attribute_findings(element, path)
                 for child in element.elements():
                     allowed_tags = CHILDREN.get(path)
                     if allowed_tags is None:
@@ -72,7 +72,7 @@ class MisspeltExtension(Rule):
                 fix=rename_element(child, intended_tag, safe=False),
             )
 
-    def _attributes(self, element: Element, path: str) -> Iterator[Diagnostic]:
+    def _attribute_findings(self, element: Element, path: str) -> Iterator[Diagnostic]:
         allowed = ATTRIBUTES.get(path, ())
         for attribute in element.attributes:
             if attribute in allowed:

@@ -44,7 +44,7 @@ class XacroInUrdf(Rule):
         """
         if subject.expansion is not None:
             return
-        for schema_element in subject.structure.places:
+        for schema_element in subject.structure.schema_elements:
             for attribute, value in schema_element.element.attributes.items():
                 rule = schema_element.rule.attribute_rules.get(attribute)
                 if rule is None or rule.type is not TEXT:
@@ -91,7 +91,7 @@ class StrayText(Rule):
         A text is left out if the reader reports a missing value at the same element.
         """
         reported_spans = {diagnostic.span for diagnostic in subject.reading.diagnostics}
-        for schema_element in subject.structure.places:
+        for schema_element in subject.structure.schema_elements:
             texts = [
                 child for child in schema_element.element.children if isinstance(child, Text) and child.data.strip()
             ]

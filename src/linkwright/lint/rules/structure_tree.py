@@ -156,7 +156,7 @@ class RepeatedElement(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every repetition of an element that may occur only once."""
-        for schema_element in subject.structure.places:
+        for schema_element in subject.structure.schema_elements:
             first_elements: dict[str, Element] = {}
             for child in schema_element.element.elements():
                 rule = schema_element.rule.child_rules.get(child.tag)
@@ -217,11 +217,11 @@ def _roots_of(names: Iterable[str], parents: Mapping[str, str]) -> dict[str, str
     """Return the topmost link above each link, or None if the joints form a cycle."""
     roots: dict[str, str | None] = {}
     for name in names:
-        path, above = [], name
-        while above in parents and above not in roots:
-            roots[above] = None  # also at the end, if the walk returns to it
-            path.append(above)
-            above = parents[above]
-        root = roots[above] if above in parents else above
-        roots.update((below, root) for below in (name, *path))
+        path, ancestor = [], name
+        while ancestor in parents and ancestor not in roots:
+            roots[ancestor] = None  # also at the end, if the walk returns to it
+            path.append(ancestor)
+            ancestor = parents[ancestor]
+        root = roots[ancestor] if ancestor in parents else ancestor
+        roots.update((descendant, root) for descendant in (name, *path))
     return roots

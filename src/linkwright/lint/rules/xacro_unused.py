@@ -214,7 +214,7 @@ class UnusedInclude(XacroRule):
         for file in facts.package_files.values():
             for include in file.includes:
                 path = paths.get(id(include.element))
-                if path is not None and not (_contributes(path, facts, paths) or _is_switched_off(path, facts)):
+                if path is not None and not (_has_effect(path, facts, paths) or _has_commented_call(path, facts)):
                     yield self.report(
                         phrase("nothing in the included file '{name}' is used", name=Path(path).name),
                         include.element,
@@ -398,7 +398,7 @@ def _included_paths(facts: XacroFacts) -> dict[int, Path]:
     return paths
 
 
-def _is_switched_off(path: Path, facts: XacroFacts) -> bool:
+def _has_commented_call(path: Path, facts: XacroFacts) -> bool:
     """Return whether a comment contains a call of a macro that an included file defines.
 
     The author can enable such a call, so the include is useful.
@@ -409,7 +409,7 @@ def _is_switched_off(path: Path, facts: XacroFacts) -> bool:
     return any(call_name in macro_names for comment in comments for call_name in _CALL.findall(comment))
 
 
-def _contributes(path: Path, facts: XacroFacts, paths: dict[int, Path]) -> bool:
+def _has_effect(path: Path, facts: XacroFacts, paths: dict[int, Path]) -> bool:
     """Return whether a file or its includes add elements to the robot, or define used names.
 
     An empty file is treated as contributing, because it is probably unfinished.

@@ -171,7 +171,7 @@ class GzAckermann(SimulatedPlugin[SteeringParameters]):
 
     def _steer_only(self) -> None:
         parameters = self.parameters
-        angle = self._limiter.follow(self._angle, 1.0 / GZ_RATE)
+        angle = self._limiter.approach(self._angle, 1.0 / GZ_RATE)
         angle = min(max(angle, -parameters.steering_limit), parameters.steering_limit)
         longitudinal, lateral = 2.0 * parameters.wheel_base * cos(angle), parameters.wheel_separation * sin(angle)
         slope = 2.0 * parameters.wheel_base * sin(angle)

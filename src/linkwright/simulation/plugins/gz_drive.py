@@ -85,7 +85,7 @@ class DriveCommands:
         Call this `GZ_RATE` times per simulated second.
         """
         limited_targets = zip(self._limiters, self._command, strict=True)
-        forward, left, angular = (limiter.follow(target, 1.0 / GZ_RATE) for limiter, target in limited_targets)
+        forward, left, angular = (limiter.approach(target, 1.0 / GZ_RATE) for limiter, target in limited_targets)
         return forward, left, angular
 
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from linkwright.geometry.arrays import Array
-from linkwright.geometry.single import IDENTITY, Transform, Vector3, added, compose, cross, rotate
+from linkwright.geometry.single import IDENTITY, Transform, Vector3, add_vectors, compose, cross, rotate
 from linkwright.sdf.links import Collision, Visual
 from linkwright.sdf.poses import SEPARATOR
 from linkwright.simulation.library import load_mujoco
@@ -61,7 +61,7 @@ class Mount:
         rates = _to_vector(angular)
         if self._is_at_origin:
             return _to_vector(linear), rates
-        return added(_to_vector(linear), cross(rates, self._arm())), rates
+        return add_vectors(_to_vector(linear), cross(rates, self._arm())), rates
 
     @property
     def _is_at_origin(self) -> bool:
@@ -88,7 +88,7 @@ class Mount:
         if self._is_at_origin:
             return angular, (x, y, z)
         arm = self._arm()
-        return angular, added(added((x, y, z), cross((p, q, r), arm)), cross(angular, cross(angular, arm)))
+        return angular, add_vectors(add_vectors((x, y, z), cross((p, q, r), arm)), cross(angular, cross(angular, arm)))
 
 
 def _to_vector(values: Array) -> Vector3:

@@ -17,7 +17,7 @@ from linkwright.messages import get_message
 from linkwright.simulation.plugins.entities import finding_line
 from linkwright.simulation.server.server import SimulationServer
 from linkwright.simulation.server.worlds import LoadedWorld, load_world
-from linkwright.xmltree.decoding import decoded
+from linkwright.xmltree.decoding import decode_with_encoding
 from linkwright.xmltree.reader import read_bytes
 
 _OK, _NOT_FOUND, _FAILED = 1, 2, 4
@@ -62,7 +62,7 @@ class WorldLoader:
             return False
         path = self.loaded.path
         try:
-            return decoded(read_bytes(path), str(path)).text != self._text
+            return decode_with_encoding(read_bytes(path), str(path)).text != self._text
         except LinkwrightError:
             return True
 

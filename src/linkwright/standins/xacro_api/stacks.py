@@ -110,10 +110,10 @@ class StackExpander(Expander):
 
     session: StackSession
 
-    def note(self, fault: Fault) -> None:
+    def record_fault(self, fault: Fault) -> None:
         """Record an error and its location."""
         self.session.save_stacks()
-        super().note(fault)
+        super().record_fault(fault)
 
 
 class StackSession(Session):
@@ -147,9 +147,9 @@ class StackSession(Session):
         """Expand a macro call, with the macro on the stack."""
         self._run_with_macro(call_macro, expander, site, site.node.tag[len(_PREFIX) :])
 
-    def depends_on(self, file: str) -> None:
-        """Record that a file was read. See `Session.depends_on`."""
-        super().depends_on(file)
+    def add_dependency(self, file: str) -> None:
+        """Record that a file was read. See `Session.add_dependency`."""
+        super().add_dependency(file)
         STATE.all_includes.append(file)
 
     def save_stacks(self) -> None:
@@ -181,7 +181,11 @@ class StackSession(Session):
 
     def _call_dynamically(self, expander: Expander, site: Site) -> None:
         text = site.node.attributes.get("macro", "")
-        name = text if "$" not in text or self.changes(text) else expander.text_value(site.node, "macro", site.scope)
+        name = (
+            text
+            if "$" not in text or self.may_change_values(text)
+            else expander.text_value(site.node, "macro", site.scope)
+        )
         self._run_with_macro(DIRECTIVES["xacro:call"], expander, site, name)
 
     def _run_with_macro(self, directive: Directive, expander: Expander, site: Site, name: str) -> None:

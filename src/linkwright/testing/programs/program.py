@@ -9,7 +9,7 @@ import signal
 import sys
 import threading
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from functools import partial
 from pathlib import Path
 from types import ModuleType
@@ -129,9 +129,7 @@ class Program:
 
     def _call_main(self) -> None:
         try:
-            random.seed(self._seed)
-            if "numpy" in sys.modules:
-                sys.modules["numpy"].random.seed(self._seed)
+            _seed_random_numbers(self._seed)
             self._main_function(self)
             self.exit_code = 0
         except EndedByTest:
@@ -151,6 +149,14 @@ class Program:
             for context in tuple(self._state.open_contexts):
                 context.try_shutdown()
         self.kill()
+
+
+def _seed_random_numbers(seed: int) -> None:
+    random.seed(seed)
+    with suppress(ImportError):
+        import numpy as np  # now, because the program may import it later
+
+        np.random.seed(seed)  # the numbers that programs without a generator of their own draw
 
 
 def _is_path(main: Main) -> bool:

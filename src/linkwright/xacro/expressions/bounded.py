@@ -85,7 +85,7 @@ def _hash_of(item: Any) -> int:
         return id(item)
 
 
-def _backwards(name: str) -> Callable[..., Any]:
+def _bounded_search(name: str) -> Callable[..., Any]:
     def search(text: Any, part: Any, *rest: Any) -> Any:
         if isinstance(part, (str, bytes)) and len(part) * len(text) > _MAX_COMPARED:
             raise RefusalError(phrase("the strings are too long for '{name}'", name=name))
@@ -95,7 +95,7 @@ def _backwards(name: str) -> Callable[..., Any]:
 
 
 def _rsplit(text: str, sep: str | None = None, maxsplit: int = -1) -> list[str]:
-    return text.rsplit() if sep is None and maxsplit == -1 else _backwards("rsplit")(text, sep, maxsplit)
+    return text.rsplit() if sep is None and maxsplit == -1 else _bounded_search("rsplit")(text, sep, maxsplit)
 
 
 def _bounded_strip(name: str) -> Callable[..., Any]:
@@ -135,7 +135,7 @@ def _bounded_codec(name: str) -> Callable[..., Any]:
 
 
 METHODS: dict[tuple[type, str], Callable[..., Any]] = {
-    **{(str, name): _backwards(name) for name in ("rfind", "rindex", "rpartition")},
+    **{(str, name): _bounded_search(name) for name in ("rfind", "rindex", "rpartition")},
     (str, "rsplit"): _rsplit,
     **{(str, name): _bounded_strip(name) for name in ("strip", "lstrip", "rstrip")},
     (str, "encode"): _bounded_codec("encode"),

@@ -264,7 +264,7 @@ class Scope:
             value = literal(self.session.evaluate(lazy.text, self))
         except Fault as fault:
             if lazy.element is not None:
-                fault.place_in_attribute(lazy.element, lazy.attribute)
+                fault.locate_in_attribute(lazy.element, lazy.attribute)
             fault.next_note = phrase("the property '{name}' is used here", name=name)
             raise
         finally:

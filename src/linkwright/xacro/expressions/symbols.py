@@ -87,7 +87,7 @@ def _factorial(n: Any) -> int:
     return math.factorial(n)
 
 
-def _of_two(name: str) -> Callable[..., int]:
+def _bounded_combinatorial(name: str) -> Callable[..., int]:
     function = getattr(math, name)
 
     def guarded(n: Any, *k: Any) -> int:
@@ -122,9 +122,9 @@ def _lcm(*numbers: Any) -> int:
 MATHEMATICS: dict[str, Any] = {
     **{name: value for name, value in vars(math).items() if not name.startswith("_")},
     "factorial": _factorial,
-    "comb": _of_two("comb"),
+    "comb": _bounded_combinatorial("comb"),
     "lcm": _lcm,
-    "perm": _of_two("perm"),
+    "perm": _bounded_combinatorial("perm"),
     "prod": _prod,
     **bounded.MATHEMATICS,
 }
@@ -172,7 +172,7 @@ class Provider(Protocol):
         """Return the function that shows messages, such as ``xacro.message`` or ``xacro.error``."""
         ...
 
-    def deprecated(self, better: str, function: Callable[..., Any]) -> Callable[..., Any]:
+    def with_deprecation_warning(self, better: str, function: Callable[..., Any]) -> Callable[..., Any]:
         """Return a function that warns when it is called by its deprecated bare name."""
         ...
 
@@ -197,9 +197,11 @@ def global_names(session: Provider) -> dict[str, Any]:
             "tokenize": tokenize,
         },
     )
-    deprecated = {name: session.deprecated(f"xacro.{name}", function) for name, function in functions.items()}
+    deprecated = {
+        name: session.with_deprecation_warning(f"xacro.{name}", function) for name, function in functions.items()
+    }
     for name in ("sorted", "range"):
-        deprecated[name] = session.deprecated(f"python.{name}", _PYTHON_NAMES[name])
+        deprecated[name] = session.with_deprecation_warning(f"python.{name}", _PYTHON_NAMES[name])
     return {
         **{name: _PYTHON_NAMES[name] for name in BARE},
         "True": True,

@@ -316,7 +316,7 @@ class Template:
         try:
             expression = Expression(text)
         except Fault as fault:
-            fault.within(start, end, start + _BRACKET_LENGTH)
+            fault.shift_to_enclosing_text(start, end, start + _BRACKET_LENGTH)
             raise
         self.changes = self.changes or expression.changes
         return _with_offsets(expression.evaluate, start, end)
@@ -337,7 +337,7 @@ class Template:
                     return substitute(source, scope.session)
                 return compile_expression(source).evaluate(scope)
             except Fault as fault:
-                fault.within(start, end, start + _BRACKET_LENGTH if source == text else None)
+                fault.shift_to_enclosing_text(start, end, start + _BRACKET_LENGTH if source == text else None)
                 raise
 
         return part
@@ -362,7 +362,7 @@ def _with_offsets(evaluate: _Part, start: int, end: int) -> _Part:
         try:
             return evaluate(scope)
         except Fault as fault:
-            fault.within(start, end, start + _BRACKET_LENGTH)
+            fault.shift_to_enclosing_text(start, end, start + _BRACKET_LENGTH)
             raise
 
     return part

@@ -31,7 +31,7 @@ def include(expander: Expander, site: Site) -> None:
         session.warn("XAC503", phrase("'{tag}' inside an include has no effect", tag=child.tag), child.span())
     contents: list[Element] = []
     for path in _included_paths(expander, site):
-        session.depends_on(path)
+        session.add_dependency(path)
         container = _expand_file(expander, site, path, scope, macros, optional=optional)
         if container is not None:
             expander.lift_namespaces(container, site)
@@ -274,7 +274,7 @@ def expand_condition(expander: Expander, site: Site) -> None:
         hint = phrase("write a condition that evaluates to true, false or an integer")
         expander.fail_at("XAC305", message, node, node.attribute_span("value"), hint)
     if condition is (node.tag == "xacro:if"):
-        if "$" in node.attributes["value"] and session.changes(node.attributes["value"]):
+        if "$" in node.attributes["value"] and session.may_change_values(node.attributes["value"]):
             expander.attributes(node, scope)  # ros/xacro evaluates the attributes of inserted elements a second time
         container = Container(node.tag)
         expander.children(node, container, scope, site.macros)
@@ -347,7 +347,7 @@ def set_attribute(expander: Expander, site: Site) -> None:
         expander.session.warn("XAC901", message, node.span(), hint)
     elif not isinstance(value, str):
         _warn_of_non_text(expander, site, name, value)
-    site.parent.attributes[name] = expander.written(node, "value", value)
+    site.parent.attributes[name] = expander.output_text(node, "value", value)
 
 
 def _warn_of_non_text(expander: Expander, site: Site, name: str, value: object) -> None:

@@ -6,7 +6,7 @@ from linkwright.diagnostics import Note, counted, did_you_mean, joined, phrase, 
 from linkwright.loading.lean_typing import Any, NoReturn
 from linkwright.xacro.expander import Container, Expander, Site, check_attributes, warn_of_global
 from linkwright.xacro.expressions.scope import Scope
-from linkwright.xacro.faults import Fault, Frame, attribute_name, inactive_definition
+from linkwright.xacro.faults import Fault, Frame, attribute_name_span, inactive_definition
 from linkwright.xacro.macros import Macro, MacroTable, Parameter, parse_parameters
 from linkwright.xacro.plan import PREFIX
 from linkwright.xmltree import Element
@@ -40,7 +40,7 @@ def define_macro(expander: Expander, site: Site) -> None:
     try:
         parameters = parse_parameters(node.attributes.get("params", ""))
     except Fault as fault:
-        fault.place_in_attribute(node, "params")
+        fault.locate_in_attribute(node, "params")
         expander.fail(fault)
     macro = Macro(name, parameters, node)
     if len(macro.parameter_names) < len(parameters):
@@ -205,8 +205,8 @@ class _Call:
                 )
                 hint = phrase('define it before the call, or write {name}="..."', name=parameter.name)
                 fault = Fault("XAC409", message, hint=hint)
-                fault.notes.append(self._definition(macro, parameter))
-                fault.place_at(node)
+                fault.notes.append(self._definition_note(macro, parameter))
+                fault.locate_at(node)
                 raise fault
             if "$" not in parameter.default:
                 return parameter.default
@@ -215,9 +215,9 @@ class _Call:
             if fault.span is None:
                 if fault.start is None and parameter.default is not None:
                     fault.start, fault.end = 0, len(parameter.default)
-                fault.place_in_attribute(macro.body, "params", parameter.default_start)
+                fault.locate_in_attribute(macro.body, "params", parameter.default_start)
                 fault.next_note = phrase("the default of '{name}' is used by this call", name=parameter.name)
-                fault.place_at(node)
+                fault.locate_at(node)
             self._expander.fail(fault)
 
     # the body
@@ -257,8 +257,8 @@ class _Call:
                 else phrase("it has no parameters")
             )
         message = phrase("the macro '{name}' has no parameter '{other_name}'", name=macro.name, other_name=name)
-        span = attribute_name(node, name)
-        self._expander.fail_at("XAC402", message, node, span, hint, self._definition(macro))
+        span = attribute_name_span(node, name)
+        self._expander.fail_at("XAC402", message, node, span, hint, self._definition_note(macro))
 
     def _report_missing_parameters(self, macro: Macro, missing: list[Parameter]) -> None:
         node = self._node
@@ -268,7 +268,7 @@ class _Call:
                 "the macro '{name}' declares its parameter '{twice}' twice", name=macro.name, twice=duplicate_names[0]
             )
             span = node.span()
-            self._expander.fail_at("XAC408", message, node, span, None, self._definition(macro, missing[0]))
+            self._expander.fail_at("XAC408", message, node, span, None, self._definition_note(macro, missing[0]))
         message = counted(
             "the call of the macro '{name}' lacks its parameter {parameters}",
             "the call of the macro '{name}' lacks its parameters {parameters}",
@@ -279,7 +279,7 @@ class _Call:
         hint = phrase("write {text}", text=" ".join(f'{parameter.name}="..."' for parameter in missing))
         if not all(parameter.name.lstrip("*").isidentifier() for parameter in missing):
             hint = phrase("a default that contains spaces ends at the first space; put it in quotes")
-        note = self._definition(macro, missing[0])
+        note = self._definition_note(macro, missing[0])
         self._expander.fail_at("XAC403", message, node, node.span(), hint, note)
 
     def _report_missing_block(self, macro: Macro, parameter: Parameter) -> NoReturn:
@@ -291,7 +291,7 @@ class _Call:
             other_name=name,
         )
         hint = phrase("write the element between the tags of the call")
-        note = self._definition(macro, parameter)
+        note = self._definition_note(macro, parameter)
         self._expander.fail_at("XAC404", message, node, node.span(), hint, note)
 
     def _report_unused_block(self, macro: Macro, block: Element) -> None:
@@ -300,14 +300,14 @@ class _Call:
             "the macro '{name}' has no block parameter for the element <{tag}>", tag=block.tag, name=macro.name
         )
         hint = counted("it takes one block", "it takes {count} blocks", count) if count else phrase("it takes no block")
-        note = self._definition(macro)
+        note = self._definition_note(macro)
         self._expander.fail_at("XAC405", message, block, block.span(), hint, note)
 
-    def _definition(self, macro: Macro, parameter: Parameter | None = None) -> Note:
+    def _definition_note(self, macro: Macro, parameter: Parameter | None = None) -> Note:
         body = macro.body
         if parameter is not None:
             fault = Fault("", phrase("a parameter"), parameter.start, parameter.start + len(parameter.name))
-            fault.place_in_attribute(body, "params")
+            fault.locate_in_attribute(body, "params")
             return Note(phrase("'{name}' is declared here", name=parameter.name), fault.span)
         return Note(phrase("the macro '{name}' is defined here", name=macro.name), body.span())
 

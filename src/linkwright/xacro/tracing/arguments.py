@@ -17,7 +17,7 @@ from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_typing import Any
 from linkwright.xacro.expander import Directive, Expander, Site
 from linkwright.xacro.expressions.scope import Scope
-from linkwright.xacro.faults import Fault, attribute_span, text_part
+from linkwright.xacro.faults import Fault, attribute_span, text_part_span
 from linkwright.xacro.session import Inputs, main_document
 from linkwright.xacro.tags.directives import DIRECTIVES
 from linkwright.xacro.tracing.traced import TracedSession, expand_traced
@@ -59,12 +59,12 @@ class Arguments:
 
     Attributes:
         arguments: the arguments, declared arguments first.
-        unused: a warning for each passed argument that no file declares or uses.
+        unused_warnings: a warning for each passed argument that no file declares or uses.
         problems: the errors that stopped the expansion. If there are any, `arguments` may be incomplete.
     """
 
     arguments: tuple[Argument, ...]
-    unused: tuple[Diagnostic, ...]
+    unused_warnings: tuple[Diagnostic, ...]
     problems: tuple[Diagnostic, ...]
 
 
@@ -77,7 +77,7 @@ def examine_arguments(inputs: Inputs) -> Arguments:
     session = _Session(inputs)
     main = main_document(session, inputs.text)
     session.documents[inputs.name] = main
-    session.expect(main)
+    session.record_defaults(main)
     problems: tuple[Diagnostic, ...] = ()
     directives: dict[str, Directive] = {**DIRECTIVES, "xacro:arg": session.declare}
     try:
@@ -86,7 +86,7 @@ def examine_arguments(inputs: Inputs) -> Arguments:
         problems = error.diagnostics
         _follow_includes(session)
     findings = _Findings(inputs, session, complete=not problems)
-    return Arguments(findings.arguments(), findings.unused(), problems)
+    return Arguments(findings.arguments(), findings.unused_warnings(), problems)
 
 
 class _Session(TracedSession):
@@ -112,10 +112,10 @@ class _Session(TracedSession):
         document = super().read(path)
         if path not in self.documents:
             self.documents[path] = document
-            self.expect(document)
+            self.record_defaults(document)
         return document
 
-    def expect(self, document: Document) -> None:
+    def record_defaults(self, document: Document) -> None:
         """Record the defaults in a document for arguments that are used before their declaration."""
         for element in document.root.walk():
             if element.tag == "xacro:arg" and "name" in element.attributes:
@@ -165,7 +165,7 @@ class _Findings:
         missing_names = dict(session.missing)
         if not self.complete:
             missing_names.update(dict.fromkeys(name for name in self.uses if name not in declarations))
-        results = [self._declared(name, element, missing_names) for name, element in declarations.items()]
+        results = [self._declared_argument(name, element, missing_names) for name, element in declarations.items()]
         results += [self._undeclared_argument(name) for name in missing_names if name not in declarations]
         passed_arguments = self.inputs.arguments
         results += [
@@ -175,7 +175,7 @@ class _Findings:
         ]
         return tuple(results)
 
-    def unused(self) -> tuple[Diagnostic, ...]:
+    def unused_warnings(self) -> tuple[Diagnostic, ...]:
         """Return a warning for each passed argument that no file declares or uses."""
         known_names = {**self.uses, **self.elsewhere, **self.session.declared, **self.session.used_names}
         return tuple(
@@ -193,7 +193,7 @@ class _Findings:
             if name not in known_names
         )
 
-    def _declared(self, name: str, element: Element, missing_names: Mapping[str, None]) -> Argument:
+    def _declared_argument(self, name: str, element: Element, missing_names: Mapping[str, None]) -> Argument:
         default = element.attributes.get("default")
         is_passed = name in self.inputs.arguments
         value = self.session.arguments.get(name)
@@ -244,7 +244,7 @@ def _used_arguments(element: Element) -> Iterator[tuple[str, Span | None]]:
     for child in element.children:
         if isinstance(child, Text) and not child.cdata:
             for match in _find_uses(child.data):
-                yield match["plain"] or match["called"], text_part(child, *match.span())
+                yield match["plain"] or match["called"], text_part_span(child, *match.span())
 
 
 def _find_uses(text: str) -> Iterator[re.Match[str]]:

@@ -15,28 +15,28 @@ from linkwright.xacro.tracing.traced import PROBE, TracedSession, expand_traced,
 from linkwright.xmltree import Element
 
 
-def log_properties(inputs: Inputs, put: Callable[[str], None], *, everywhere: bool) -> None:
+def log_properties(inputs: Inputs, write_line: Callable[[str], None], *, everywhere: bool) -> None:
     """Expand a file and log its properties.
 
     An error ends the log but is not raised.
 
     Args:
         inputs: the inputs of the expansion.
-        put: the function that receives each line of the log.
+        write_line: the function that receives each line of the log.
         everywhere: whether to also log the properties and parameters of macros and namespaces.
     """
-    log = _Log(put, everywhere=everywhere)
+    log = _Log(write_line, everywhere=everywhere)
     try:
         expand_traced(inputs, TracedSession(inputs), {**DIRECTIVES, PROBE: log.probe})
     except LinkwrightError:
-        put("the expansion ends here")
+        write_line("the expansion ends here")
 
 
 class _Log:
     """A logger that replaces a scope's names with a `_Table` at the first probe in it."""
 
-    def __init__(self, put: Callable[[str], None], *, everywhere: bool) -> None:
-        self._put = put
+    def __init__(self, write_line: Callable[[str], None], *, everywhere: bool) -> None:
+        self._write_line = write_line
         self._everywhere = everywhere
 
     def probe(self, expander: Expander, site: Site) -> None:
@@ -45,7 +45,7 @@ class _Log:
         depth = _depth(scope)
         if scope.values.__class__ is dict and (depth == 1 or self._everywhere):
             session = expander.session
-            existing_values, scope.values = scope.values, _Table(session, self._put, depth - 1)
+            existing_values, scope.values = scope.values, _Table(session, self._write_line, depth - 1)
             if session.frame is not None:
                 session.current_node = session.frame.site  # the location in the log of parameters that already exist
             for name, value in existing_values.items():
@@ -57,19 +57,19 @@ class _Log:
 class _Table(dict[str, Any]):
     """The names of a scope, with a log of each access."""
 
-    __slots__ = ("_indent", "_put", "_session", "_waiting")
+    __slots__ = ("_indent", "_session", "_unevaluated", "_write_line")
 
-    def __init__(self, session: Session, put: Callable[[str], None], depth: int) -> None:
+    def __init__(self, session: Session, write_line: Callable[[str], None], depth: int) -> None:
         super().__init__()
         self._session = session
-        self._put = put
+        self._write_line = write_line
         self._indent = " " * depth
-        self._waiting: set[str] = set()
+        self._unevaluated: set[str] = set()
 
     def __setitem__(self, name: str, value: Any) -> None:
         super().__setitem__(name, value)
-        if name in self._waiting:  # a lazy property that is evaluated at its first use, not a new definition
-            self._waiting.discard(name)
+        if name in self._unevaluated:  # a lazy property that is evaluated at its first use, not a new definition
+            self._unevaluated.discard(name)
             self._log("use", name, value)
         else:
             self._log("set", name, value)
@@ -77,7 +77,7 @@ class _Table(dict[str, Any]):
     def __getitem__(self, name: str) -> Any:
         value = super().__getitem__(name)
         if isinstance(value, Lazy):
-            self._waiting.add(name)
+            self._unevaluated.add(name)
         else:
             self._log("use", name, value)
         return value
@@ -97,7 +97,7 @@ class _Table(dict[str, Any]):
         span = node.span() if isinstance(node, Element) else None
         if span is None and node is not None and node.source is not None:
             span = node.source.span(node.offset)
-        self._put(f"{self._indent}{action} {name}: {text} ({span or self._session.file})")
+        self._write_line(f"{self._indent}{action} {name}: {text} ({span or self._session.file})")
 
 
 def _depth(scope: Scope) -> int:

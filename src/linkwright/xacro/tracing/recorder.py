@@ -248,7 +248,7 @@ def _try_evaluate(expander: Expander, text: str, scope: Scope) -> Any:
 def _evaluate_again(expander: Expander, node: Element, attribute: str, scope: Scope) -> str | None:
     """Return a directive's attribute, evaluated again, or None if this might change a value."""
     text = node.attributes.get(attribute)
-    if text is None or ("$" in text and expander.session.changes(text)):
+    if text is None or ("$" in text and expander.session.may_change_values(text)):
         return None
     return expander.text_value(node, attribute, scope)
 

@@ -99,7 +99,7 @@ class _RecordingSession(Session):
 
     def _record(self, text: str, scope: Scope) -> None:
         place = self.current_node
-        if "$" not in text or place is None or place.source is None or self.changes(text):
+        if "$" not in text or place is None or place.source is None or self.may_change_values(text):
             return
         if self.current_attribute == "params" and isinstance(place, Element) and text == place.attributes.get("params"):
             return  # a list of parameters; the value of each default is recorded when a call needs it

@@ -13,7 +13,7 @@ from linkwright.files.whole_files import write_whole_file
 from linkwright.packages import PackageFinder
 from linkwright.sdf.editing import EditError, WorldText
 from linkwright.sdf.resources import ResourceFinder
-from linkwright.xmltree.decoding import UTF_8, decoded
+from linkwright.xmltree.decoding import UTF_8, decode_with_encoding
 from linkwright.xmltree.reader import read_bytes
 
 _XACRO_SUFFIX = ".xacro"
@@ -56,7 +56,7 @@ class EditedWorld:
         self._saved_text = text
         self._encoding, self._byte_order_mark = UTF_8, b""
         if content is not None:
-            self._encoding = decoded(content, str(path)).encoding
+            self._encoding = decode_with_encoding(content, str(path)).encoding
             self._byte_order_mark = content[: len(content) - len(text.encode(self._encoding))]
 
     @classmethod
@@ -75,7 +75,7 @@ class EditedWorld:
 
             return cls(write(expand(str(path), packages=packages).document), path.with_suffix(""), packages)
         content = read_bytes(path)
-        text = decoded(content, str(path)).text
+        text = decode_with_encoding(content, str(path)).text
         return cls(text, path, packages, None if path.resolve().is_relative_to(_PROGRAM_FOLDER) else content)
 
     @classmethod

@@ -47,7 +47,7 @@ def status_of(command: Callable[[], int]) -> int:
         print_message(f"linkwright: {error}")
         return USAGE
     except LinkwrightError as error:
-        _print(error.diagnostics)
+        _print_findings(error.diagnostics)
         return FINDINGS
     except KeyboardInterrupt:
         return INTERRUPTED
@@ -55,14 +55,14 @@ def status_of(command: Callable[[], int]) -> int:
         _discard_output()
         return FINE
     except MemoryError:
-        _print([Diagnostic("CLI204", phrase("there is not enough memory"))])
+        _print_findings([Diagnostic("CLI204", phrase("there is not enough memory"))])
         return FINDINGS
     except Exception as error:  # noqa: BLE001 - the last resort: a bug must not print a traceback
         diagnostic = _system_error_diagnostic(error) if isinstance(error, OSError) else None
         if diagnostic is None:
             _report_bug(error)
             return BUG
-        _print([diagnostic])
+        _print_findings([diagnostic])
         return FINDINGS
     return status
 
@@ -122,7 +122,7 @@ def _discard_output() -> None:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
-def _print(diagnostics: Iterable[Diagnostic]) -> None:
+def _print_findings(diagnostics: Iterable[Diagnostic]) -> None:
     try:  # noqa: SIM105 - contextlib takes long to import
         print_diagnostics(diagnostics, sys.stderr)
     except OSError:

@@ -124,18 +124,20 @@ def is_misspelt(name: str, intended: str) -> bool:
     return find_misspelt(name, [intended]) is not None
 
 
-def intended_attribute(place: SchemaElement, attribute: str) -> str | None:
+def intended_attribute(schema_element: SchemaElement, attribute: str) -> str | None:
     """Return the absent attribute that the author of an unknown attribute probably intended, or None."""
-    absent_attributes = [rule.name for rule in place.rule.attributes if rule.name not in place.element.attributes]
+    absent_attributes = [
+        rule.name for rule in schema_element.rule.attributes if rule.name not in schema_element.element.attributes
+    ]
     equivalent = _OTHER_ATTRIBUTES.get(attribute.casefold())
     if equivalent in absent_attributes:
         return equivalent
     return find_misspelt(attribute, absent_attributes)
 
 
-def location_phrase(place: SchemaElement) -> str:
+def location_phrase(schema_element: SchemaElement) -> str:
     """Return the name of an element for messages, as the location of another element."""
-    return "<robot>" if place.rule is schema.ROBOT else str(place)
+    return "<robot>" if schema_element.rule is schema.ROBOT else str(schema_element)
 
 
 def attribute_name_span(element: Element, attribute: str) -> Span | None:

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
 
 
-def become(command: list[str], environment: Mapping[str, str]) -> int:
+def replace_process(command: list[str], environment: Mapping[str, str]) -> int:
     """Replace this process by a program.
 
     On Windows, run the program in a child process and return its exit status.

@@ -1,0 +1,262 @@
+import "@xterm/xterm/css/xterm.css";
+import "../../styles/terminal.css";
+import { button, h } from "../../dom";
+import { icon } from "../../icons";
+import type { TerminalItem } from "../../protocol";
+import type { TerminalSize, TerminalsState } from "../../state/terminals";
+import type { ThemeState } from "../../state/theme";
+import type { TextStorage } from "../../storage";
+import { strings } from "../../strings";
+import { TerminalScreen } from "./terminal-screen";
+
+const READER_KEY = "linkwright.terminal-reader";
+const ON = "1";
+/** The size of a terminal until its place on the page is known. */
+const INITIAL: TerminalSize = { columns: 80, rows: 24 };
+/** Browsers slow down hidden pages; after this time the server does not wait for one that does not read. */
+const LEAVE_MS = 60_000;
+
+/** The terminals of the page: a tab for each, and the screen of the chosen one. */
+export class TerminalDeck {
+  readonly element: HTMLElement;
+  private readonly tabs = h("div", { class: "segmented terminal-tabs", role: "tablist", aria: { label: strings.terminal.tabs } });
+  private readonly place = h("div", { class: "terminal-place" });
+  private readonly notice = h("div", { class: "terminal-notice", role: "status" });
+  private readonly noticeText = h("span");
+  private readonly noticeButton: HTMLButtonElement;
+  private readonly closeButton: HTMLButtonElement;
+  private readonly reader: HTMLButtonElement;
+  private readonly screens = new Map<number, TerminalScreen>();
+  private current: number | null = null;
+  private isVisible = false;
+  private usesReader: boolean;
+  /** The terminal that was requested, or 0 for a new one, until the server has answered. */
+  private requested: number | null = null;
+  private lostInput: number | null = null;
+  private leaving: ReturnType<typeof setTimeout> | undefined;
+
+  constructor(
+    private readonly state: TerminalsState,
+    private readonly theme: ThemeState,
+    private readonly storage: TextStorage,
+  ) {
+    const words = strings.terminal;
+    this.usesReader = storage.getItem(READER_KEY) === ON;
+    this.noticeButton = button(words.restart, () => this.runNotice(), "tool framed", words.restart);
+    this.notice.append(this.noticeText, this.noticeButton);
+    this.closeButton = button(words.closeHint, () => this.close(), "tool", icon("close"), words.close);
+    this.reader = button(words.readerHint, () => this.toggleReader(), "tool", icon("speech"));
+    const copy = button(words.copyHint, () => void this.screen?.copy(), "tool", icon("copy"));
+    const bar = h(
+      "div",
+      { class: "toolbar" },
+      this.tabs,
+      button(words.newHint, () => this.openNew(), "tool", icon("plus"), words.new),
+      h("span", { class: "spacer" }),
+      h("span", { class: "note terminal-keys" }, words.keys),
+      copy,
+      this.reader,
+      this.closeButton,
+    );
+    this.element = h("div", { class: "terminal-deck" }, bar, this.place, this.notice);
+    this.tabs.addEventListener("keydown", (event) => this.onTabKey(event));
+    new ResizeObserver(() => this.screen?.fit()).observe(this.place);
+    state.changed.on(() => this.update());
+    state.output.on((output) => this.screenOf(output.terminal).receive(output));
+    state.inputLost.on((id) => {
+      this.lostInput = id;
+      this.showNotice();
+    });
+    theme.changed.on((now) => {
+      for (const screen of this.screens.values()) screen.setTheme(now);
+    });
+    document.addEventListener("visibilitychange", () => this.followPage());
+    this.showReader();
+    this.update();
+  }
+
+  setVisible(isVisible: boolean): void {
+    this.isVisible = isVisible;
+    this.update();
+  }
+
+  inspect(): object {
+    const { screen } = this;
+    return {
+      current: this.current,
+      terminals: this.state.items.map((item) => ({ ...item })),
+      text: screen?.text() ?? "",
+      size: screen?.size ?? null,
+      scrollback: screen?.xterm.buffer.active.length ?? 0,
+      notice: this.notice.hidden ? "" : this.noticeText.textContent,
+      focused: this.place.contains(document.activeElement),
+    };
+  }
+
+  private get item(): TerminalItem | undefined {
+    return this.current === null ? undefined : this.state.find(this.current);
+  }
+
+  private get screen(): TerminalScreen | undefined {
+    return this.current === null ? undefined : this.screens.get(this.current);
+  }
+
+  private get size(): TerminalSize {
+    return this.screen?.size ?? INITIAL;
+  }
+
+  private screenOf(id: number): TerminalScreen {
+    const existing = this.screens.get(id);
+    if (existing) return existing;
+    const screen = new TerminalScreen(id, this.state, this.theme.theme, this.usesReader, () => this.tabOf(id)?.focus(), () => this.restartEnded());
+    this.screens.set(id, screen);
+    screen.element.hidden = true;
+    this.place.append(screen.element);
+    return screen;
+  }
+
+  /** Follows the server: removes closed terminals, chooses one, and requests it if no page shows it. */
+  private update(): void {
+    const { items } = this.state;
+    for (const [id, screen] of this.screens) {
+      if (this.state.find(id)) continue;
+      screen.dispose();
+      this.screens.delete(id);
+    }
+    if (this.requested !== null && this.state.whyNot !== "") this.requested = null;
+    if (this.requested === 0) {
+      const opened = items.findLast(({ id, shown }) => shown === "here" && id !== this.current);
+      if (opened) this.choose(opened.id);
+    } else if (this.requested !== null && this.state.find(this.requested)?.shown === "here") this.requested = null;
+    if (this.item === undefined) this.current = items.find(({ shown }) => shown !== "elsewhere")?.id ?? null;
+    this.showTabs();
+    this.showNotice();
+    if (!this.isVisible || document.hidden) return;
+    if (this.current === null && items.length === 0 && this.state.whyNot === "") this.openNew();
+    else if (this.current === null) this.current = items[0]?.id ?? null;
+    this.showScreen();
+    if (this.item?.shown === "nowhere" && this.requested !== this.current) this.request();
+  }
+
+  private choose(id: number): void {
+    this.requested = null;
+    this.current = id;
+    this.update();
+    this.screen?.xterm.focus();
+  }
+
+  private showScreen(): void {
+    const { current } = this;
+    if (current === null) return;
+    this.screenOf(current);
+    for (const [id, screen] of this.screens) screen.element.hidden = id !== current || this.item?.shown === "elsewhere";
+    this.screen?.fit();
+  }
+
+  private request(): void {
+    if (this.current === null) return;
+    this.requested = this.current;
+    this.state.show(this.current, this.size);
+  }
+
+  private openNew(): void {
+    if (this.requested === 0) return;
+    this.requested = 0;
+    this.state.open(this.size);
+  }
+
+  private close(): void {
+    if (this.current === null) return;
+    const ids = this.state.items.map(({ id }) => id);
+    const index = ids.indexOf(this.current);
+    const closed = this.current;
+    this.current = ids[index + 1] ?? ids[index - 1] ?? null;
+    this.state.close(closed);
+    this.update();
+  }
+
+  /** Restarts the shell if it has ended, and returns whether it had. */
+  private restartEnded(): boolean {
+    if (this.current === null || (this.item?.status ?? null) === null) return false;
+    this.state.restart(this.current, this.size);
+    this.screen?.xterm.focus();
+    return true;
+  }
+
+  private showTabs(): void {
+    const focused = this.tabs.contains(document.activeElement);
+    const tabs = this.state.items.map(({ id, status }) => {
+      const isCurrent = id === this.current;
+      const name = strings.terminal.name(id);
+      const tab = button(name, () => this.choose(id), isCurrent ? "on" : "", status === null ? name : strings.terminal.ended(name));
+      tab.setAttribute("role", "tab");
+      tab.setAttribute("aria-selected", String(isCurrent));
+      tab.tabIndex = isCurrent ? 0 : -1;
+      tab.dataset["terminal"] = String(id);
+      return tab;
+    });
+    this.tabs.replaceChildren(...tabs);
+    this.tabs.hidden = tabs.length === 0;
+    this.closeButton.disabled = this.current === null;
+    if (focused && this.current !== null) this.tabOf(this.current)?.focus();
+  }
+
+  private tabOf(id: number): HTMLElement | null {
+    return this.tabs.querySelector(`[data-terminal="${id}"]`);
+  }
+
+  private onTabKey(event: KeyboardEvent): void {
+    const step = event.key === "ArrowRight" ? 1 : event.key === "ArrowLeft" ? -1 : 0;
+    const ids = this.state.items.map(({ id }) => id);
+    const next = ids[(ids.indexOf(this.current ?? -1) + step + ids.length) % ids.length];
+    if (step === 0 || next === undefined) return;
+    event.preventDefault();
+    this.current = next;
+    this.update();
+    this.tabOf(next)?.focus();
+  }
+
+  /** Shows why the terminal cannot be used now, and what the user can do. */
+  private showNotice(): void {
+    const words = strings.terminal;
+    const { item } = this;
+    let [text, action] = [this.state.whyNot, ""];
+    if (text === "" && item?.shown === "elsewhere") [text, action] = [words.elsewhere, words.showHere];
+    else if (text === "" && item && item.status !== null) [text, action] = [words.endedWith(item.status), words.restart];
+    else if (text === "" && this.lostInput === this.current && item) text = words.inputLost;
+    this.noticeText.textContent = text;
+    this.noticeButton.textContent = action;
+    this.noticeButton.title = action;
+    this.noticeButton.hidden = action === "";
+    this.notice.hidden = text === "";
+  }
+
+  private runNotice(): void {
+    if (this.item?.shown === "elsewhere") this.request();
+    else this.restartEnded();
+    this.screen?.xterm.focus();
+  }
+
+  private toggleReader(): void {
+    this.usesReader = !this.usesReader;
+    this.storage.setItem(READER_KEY, this.usesReader ? ON : "");
+    for (const screen of this.screens.values()) screen.setScreenReader(this.usesReader);
+    this.showReader();
+  }
+
+  private showReader(): void {
+    this.reader.classList.toggle("on", this.usesReader);
+    this.reader.setAttribute("aria-pressed", String(this.usesReader));
+  }
+
+  /** Leaves the terminals some time after the page was hidden, and shows the chosen one again with the page. */
+  private followPage(): void {
+    clearTimeout(this.leaving);
+    if (!document.hidden) this.update();
+    else this.leaving = setTimeout(() => this.leaveAll(), LEAVE_MS);
+  }
+
+  private leaveAll(): void {
+    for (const { id, shown } of this.state.items) if (shown === "here") this.state.leave(id);
+  }
+}

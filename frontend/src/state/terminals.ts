@@ -1,0 +1,116 @@
+import type { Connection } from "../connection/connection";
+import type { TerminalItem, TerminalOutput } from "../protocol";
+import { Signal } from "../signal";
+
+/** The size of a terminal in characters. */
+export interface TerminalSize {
+  readonly columns: number;
+  readonly rows: number;
+}
+
+/** The length of a message with input, so that none is too long for the server. */
+const INPUT_LENGTH = 32 * 1024;
+
+/** The terminals of the program, and the page's requests. */
+export class TerminalsState {
+  /** The terminals, or the reason of a refusal, have changed. */
+  readonly changed = new Signal();
+  /** The program has terminals now, or has none any more. */
+  readonly availabilityChanged = new Signal();
+  readonly output = new Signal<TerminalOutput>();
+  /** Emitted with the number of a terminal whose program does not read its input. */
+  readonly inputLost = new Signal<number>();
+  /** The folder in which shells start. */
+  folder = "";
+  items: readonly TerminalItem[] = [];
+  /** Why the last request was refused, or empty. */
+  whyNot = "";
+  private isAvailableNow = false;
+  /** Whether the connection is new, and the server has not reported terminals yet. */
+  private isUnknown = true;
+
+  constructor(private readonly connection: Connection) {
+    connection.on("hello", () => (this.isUnknown = true));
+    connection.on("terminals", ({ folder, terminals, why_not: whyNot }) => {
+      this.isUnknown = false;
+      [this.folder, this.items, this.whyNot] = [folder, terminals, whyNot];
+      this.setAvailable(folder !== "");
+      this.changed.emit();
+    });
+    // The last message to a page that opens: a program without terminals has sent no `terminals` before it.
+    connection.on("frame_table", () => {
+      if (this.isUnknown) this.setAvailable(false);
+      this.isUnknown = false;
+    });
+    connection.on("terminal_output", (message) => this.output.emit(message));
+    connection.on("terminal_input_lost", ({ terminal }) => this.inputLost.emit(terminal));
+  }
+
+  /** Whether the program was started with terminals in the page. */
+  get isAvailable(): boolean {
+    return this.isAvailableNow;
+  }
+
+  find(id: number): TerminalItem | undefined {
+    return this.items.find((item) => item.id === id);
+  }
+
+  /** Starts a shell in a new terminal, which this page then shows. */
+  open(size: TerminalSize): void {
+    this.connection.send({ type: "open_terminal", ...size });
+  }
+
+  /** Shows a terminal in this page; its last output arrives first. */
+  show(terminal: number, size: TerminalSize): void {
+    this.connection.send({ type: "show_terminal", terminal, ...size });
+  }
+
+  leave(terminal: number): void {
+    this.connection.send({ type: "leave_terminal", terminal });
+  }
+
+  /** Sends input: a text, or bytes as the characters of a string. */
+  write(terminal: number, text: string, isBinary = false): void {
+    for (const part of partsOf(text, INPUT_LENGTH)) {
+      this.connection.send({ type: "write_terminal", terminal, text: part, is_binary: isBinary });
+    }
+  }
+
+  resize(terminal: number, size: TerminalSize): void {
+    this.connection.send({ type: "resize_terminal", terminal, ...size });
+  }
+
+  acknowledge(terminal: number, number: number): void {
+    this.connection.send({ type: "acknowledge_terminal", terminal, number });
+  }
+
+  restart(terminal: number, size: TerminalSize): void {
+    this.connection.send({ type: "restart_terminal", terminal, ...size });
+  }
+
+  close(terminal: number): void {
+    this.connection.send({ type: "close_terminal", terminal });
+  }
+
+  private setAvailable(isAvailable: boolean): void {
+    if (isAvailable === this.isAvailableNow) return;
+    this.isAvailableNow = isAvailable;
+    this.availabilityChanged.emit();
+  }
+}
+
+/** Divides a text into parts of at most `length`, without dividing a character of two UTF-16 units. */
+export function partsOf(text: string, length: number): string[] {
+  const parts: string[] = [];
+  for (let start = 0; start < text.length; ) {
+    let end = Math.min(start + length, text.length);
+    if (end < text.length && isHighSurrogate(text.charCodeAt(end - 1))) end -= 1;
+    parts.push(text.slice(start, end));
+    start = end;
+  }
+  return parts;
+}
+
+function isHighSurrogate(unit: number): boolean {
+  return unit >= 0xd800 && unit < 0xdc00;
+}

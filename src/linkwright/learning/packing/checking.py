@@ -1,0 +1,188 @@
+"""The check of a pack: the checksums of its files, and whether each target can be installed from it.
+
+The check reads the requirements in the wheels themselves and evaluates their markers for each target. It does not use
+the table from which the pack was made.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from packaging.requirements import Requirement
+from packaging.specifiers import SpecifierSet
+from packaging.utils import NormalizedName, canonicalize_name, parse_wheel_filename
+from packaging.version import Version
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, phrase
+from linkwright.learning.packing.locked_files import wheel_rank
+from linkwright.learning.packing.pack_folder import PackFolder, PackSettings, sha256_of
+from linkwright.learning.packing.targets import Target
+from linkwright.learning.packing.wheel_metadata import read_metadata
+
+_PINNED = re.compile(r"([A-Za-z0-9._-]+)(?:\[[^\]]*\])?==(\S+) --hash=sha256:([0-9a-f]{64})")
+
+
+@dataclass(frozen=True)
+class _Wheel:
+    """The metadata of a wheel that the check needs."""
+
+    name: NormalizedName
+    version: Version
+    file: str
+    requirements: tuple[Requirement, ...]
+    extras: frozenset[str]
+    pythons: SpecifierSet
+
+
+@dataclass
+class _PackedWheels:
+    """The wheels of a pack, by the checksums that requirements name."""
+
+    folder: Path
+    sums: Mapping[str, str]
+    _read: dict[str, _Wheel] = field(default_factory=dict)
+
+    def find(self, digest: str) -> _Wheel | None:
+        """Return the wheel with a checksum.
+
+        Raises:
+            LinkwrightError: LEARN305 if it is not a wheel.
+        """
+        file = self.sums.get(digest)
+        if file is None:
+            return None
+        if digest not in self._read:
+            metadata = read_metadata(self.folder / file)
+            name, version, _, _ = parse_wheel_filename(file)
+            requirements = tuple(map(Requirement, metadata.get_all("Requires-Dist") or ()))
+            pythons = SpecifierSet(metadata.get("Requires-Python") or "")
+            extras = frozenset(map(canonicalize_name, metadata.get_all("Provides-Extra") or ()))
+            self._read[digest] = _Wheel(name, version, file, requirements, extras, pythons)
+        return self._read[digest]
+
+
+def check_pack(folder: PackFolder, progress: Callable[[int, int], None]) -> list[Diagnostic]:
+    """Check a pack, and return what is wrong.
+
+    Args:
+        folder: the pack.
+        progress: the function that receives the bytes that were read, and all of them.
+
+    Raises:
+        LinkwrightError: LEARN307 if the folder is not a pack, or LEARN305 if the pack is not complete.
+    """
+    settings, sums = folder.read_settings(), folder.read_sums()
+    problems = list(_file_problems(folder, sums, progress))
+    if not problems:
+        by_digest = {digest: Path(file).name for file, digest in sums.items() if file.startswith("wheels/")}
+        wheels = _PackedWheels(folder.wheels, by_digest)
+        for target in settings.targets:
+            problems += _target_problems(folder, settings, target, wheels)
+    return problems
+
+
+def _file_problems(
+    folder: PackFolder, sums: Mapping[str, str], progress: Callable[[int, int], None]
+) -> Iterator[Diagnostic]:
+    sizes = {file: _size(folder.path / file) for file in sums}
+    total, done = sum(sizes.values()), 0
+    for file, digest in sums.items():
+        try:
+            actual = sha256_of(folder.path / file)
+        except OSError as error:
+            reason = error.strerror or str(error)
+            yield _damaged(phrase("'{file}' cannot be read: {reason}", file=file, reason=reason))
+            continue
+        if actual != digest:
+            yield _damaged(phrase("'{file}' is damaged or was changed", file=file))
+        done += sizes[file]
+        progress(done, total)
+
+
+def _size(path: Path) -> int:
+    try:
+        return path.stat().st_size
+    except OSError:
+        return 0
+
+
+def _damaged(message: Phrase) -> Diagnostic:
+    return Diagnostic(
+        "LEARN305", message, hint=phrase("repeat `linkwright learn pack FOLDER`, which replaces the file")
+    )
+
+
+def _target_problems(
+    folder: PackFolder, settings: PackSettings, target: Target, wheels: _PackedWheels
+) -> Iterator[Diagnostic]:
+    """Yield what prevents an installation on a target."""
+    try:
+        text = folder.requirements(target).read_text(encoding="utf-8")
+    except OSError:
+        yield _unfit(phrase("{target}: its list of packages is missing", target=target.label))
+        return
+    pinned: dict[NormalizedName, _Wheel] = {}
+    for name, version, digest in _PINNED.findall(text):
+        try:
+            wheel = wheels.find(digest)
+        except LinkwrightError as error:
+            yield from error.diagnostics
+            continue
+        if wheel is None or (wheel.name, str(wheel.version)) != (canonicalize_name(name), version):
+            yield _unfit(
+                phrase(
+                    "{target}: the pack has no wheel of {name} {version}",
+                    target=target.label,
+                    name=name,
+                    version=version,
+                )
+            )
+        elif wheel_rank(wheel.file, target) is None or not wheel.pythons.contains(f"{target.python}.99"):
+            yield _unfit(phrase("{target}: the wheel '{file}' does not fit", target=target.label, file=wheel.file))
+        else:
+            pinned[wheel.name] = wheel
+    yield from _missing_requirements(settings, target, pinned)
+
+
+def _missing_requirements(
+    settings: PackSettings, target: Target, pinned: Mapping[NormalizedName, _Wheel]
+) -> Iterator[Diagnostic]:
+    """Follow the requirements from Linkwright on, and yield those that no wheel satisfies."""
+    root = Requirement(f"linkwright[{','.join(settings.extras)}]" if settings.extras else "linkwright")
+    queue: list[tuple[Requirement, str]] = [(root, "pack.json")]
+    seen: set[tuple[str, str]] = set()
+    while queue:
+        requirement, asker = queue.pop()
+        name = canonicalize_name(requirement.name)
+        wheel = pinned.get(name)
+        if wheel is None or not requirement.specifier.contains(wheel.version, prereleases=True):
+            yield _unfit(
+                phrase(
+                    "{target}: no wheel for '{requirement}', which {asker} needs",
+                    target=target.label,
+                    requirement=str(requirement),
+                    asker=asker,
+                )
+            )
+            continue
+        for unknown in set(map(canonicalize_name, requirement.extras)) - wheel.extras:
+            yield _unfit(phrase("'{file}' has no extra '{extra}'", file=wheel.file, extra=unknown))
+        for extra in {"", *requirement.extras} - {extra for key, extra in seen if key == name}:
+            seen.add((name, extra))
+            queue += [(needed, wheel.file) for needed in wheel.requirements if _applies(needed, extra, target)]
+
+
+def _applies(requirement: Requirement, extra: str, target: Target) -> bool:
+    """Return whether a requirement holds on a target, for an extra or, if it is empty, always."""
+    if requirement.marker is None:
+        return not extra
+    if not extra:
+        return requirement.marker.evaluate(target.markers)
+    return requirement.marker.evaluate({**target.markers, "extra": extra})
+
+
+def _unfit(message: Phrase) -> Diagnostic:
+    return Diagnostic("LEARN306", message)

@@ -1,0 +1,60 @@
+"""The installers of a pack: a script for each system, and the Python program that they start."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from pathlib import Path
+
+from linkwright.files.whole_files import write_whole_file
+from linkwright.learning.packing.pack_folder import PackFolder, PackSettings
+from linkwright.learning.packing.targets import SYSTEMS
+
+_TEMPLATES = Path(__file__).with_name("installer")
+_COPIES = {
+    "install.py": "install.py",
+    "install.sh": "install.sh",
+    "install.command": "install.sh",
+    "install.bat": "install.bat",
+    "no-python.txt": "no-python.txt",
+    "README.txt": "README.txt",
+}
+"""The files of a pack -> their templates. macOS opens files named ``.command`` in a terminal."""
+_EXECUTABLE = {"install.sh", "install.command"}
+_WINDOWS_LINES = {"install.bat", "no-python.txt", "README.txt"}
+"""The files with the line ends of Windows, whose command interpreter and old editors need them."""
+
+
+def write_installers(folder: PackFolder, settings: PackSettings) -> None:
+    """Write the installers of a pack.
+
+    Raises:
+        OSError: a file cannot be written.
+    """
+    pythons = preferred_pythons(settings.missing, settings.pythons)
+    words = {
+        "@PYTHONS@": " ".join(pythons),
+        "@DIGITS@": " ".join(version.replace(".", "") for version in pythons),
+        "@VERSION@": settings.version,
+        "@SYSTEMS@": ", ".join(SYSTEMS[system].label for system in settings.systems),
+    }
+    for name, template in _COPIES.items():
+        text = (_TEMPLATES / template).read_text(encoding="utf-8")
+        for word, value in words.items():
+            text = text.replace(word, value)
+        if name in _WINDOWS_LINES:
+            text = text.replace("\n", "\r\n")
+        write_whole_file(folder.path / name, text)
+        if name in _EXECUTABLE:
+            with suppress(OSError):  # memory sticks often have no permissions
+                (folder.path / name).chmod(0o755)
+
+
+def preferred_pythons(missing: Mapping[str, Mapping[str, Sequence[str]]], pythons: Sequence[str]) -> list[str]:
+    """Return the versions of Python, those with the most parts of Linkwright first, then the newest."""
+
+    def rank(python: str) -> tuple[int, int]:
+        parts = [len(texts["en"]) for target, texts in missing.items() if target.endswith(f"-py{python}")]
+        return sum(parts), -int(python.partition(".")[2])
+
+    return sorted(pythons, key=rank)

@@ -1,0 +1,142 @@
+"""The files that a target needs, of the versions with which this Linkwright was tested.
+
+They are in ``wheels.json``, which ``tools/pack_wheels.py`` makes of ``uv.lock``: the packages that the extras need,
+with markers and the names, checksums and sizes of the wheels that fit one of the targets. So neither a resolver nor a
+network is needed to know what a pack contains.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from packaging.markers import Marker
+from packaging.utils import InvalidWheelFilename, parse_wheel_filename
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, joined, phrase
+from linkwright.learning.packing.targets import Target
+
+TABLE = Path(__file__).with_name("wheels.json")
+OURS = ("linkwright-core", "linkwright")
+"""The distributions of Linkwright itself, which are not in the table's files."""
+
+Packages = Mapping[str, Mapping[str, Any]]
+"""The packages of the table by ``NAME VERSION``, or by the name alone for `OURS`."""
+
+
+@dataclass(frozen=True)
+class LockedFile:
+    """A file that an index has.
+
+    Attributes:
+        package: the name of the distribution.
+        version: its version.
+        name: the name of the file.
+        sha256: its checksum.
+        size: its size in bytes.
+    """
+
+    package: str
+    version: str
+    name: str
+    sha256: str
+    size: int
+
+    @property
+    def is_wheel(self) -> bool:
+        """Whether the file is a wheel; else it is a source distribution, from which a wheel has to be built."""
+        return self.name.endswith(".whl")
+
+
+@cache
+def locked_packages() -> Packages:
+    """Return the packages of the table."""
+    packages: Packages = json.loads(TABLE.read_text(encoding="utf-8"))
+    return packages
+
+
+def known_extras(packages: Packages) -> list[str]:
+    """Return the extras of Linkwright for which the table has packages."""
+    return sorted(packages["linkwright"]["extras"])
+
+
+def check_extras(extras: Sequence[str], packages: Packages) -> None:
+    """Check the names of extras.
+
+    Raises:
+        LinkwrightError: LEARN301 if an extra is unknown.
+    """
+    known = known_extras(packages)
+    for name in extras:
+        if name not in known:
+            hint = did_you_mean(name, known) or phrase("choose from {names}", names=joined(known))
+            message = phrase("a pack cannot contain the extra '{name}'", name=name)
+            raise LinkwrightError(Diagnostic("LEARN301", message, hint=hint))
+
+
+def needed_packages(target: Target, extras: Iterable[str], packages: Packages) -> list[str]:
+    """Return the keys of the packages that Linkwright with some extras needs on a target, without `OURS`.
+
+    pip, which installs the others, is always among them.
+    """
+    environment = target.markers
+    queue: list[tuple[str, str]] = [("linkwright", ""), *(("linkwright", extra) for extra in extras)]
+    queue += [(key, "") for key in packages if key.startswith("pip ")]
+    seen = set(queue)
+    while queue:
+        key, extra = queue.pop()
+        package = packages[key]
+        edges = package.get("extras", {}).get(extra, ()) if extra else package.get("needs", ())
+        for edge in edges:
+            if "marker" in edge and not _holds(edge["marker"], environment):
+                continue
+            for name in ("", *edge.get("extras", ())):
+                if (edge["key"], name) not in seen:
+                    seen.add((edge["key"], name))
+                    queue.append((edge["key"], name))
+    return sorted({key for key, _ in seen} - set(OURS))
+
+
+def _holds(marker: str, environment: dict[str, str]) -> bool:
+    return _parsed_marker(marker).evaluate(environment)
+
+
+@cache
+def _parsed_marker(marker: str) -> Marker:
+    return Marker(marker)
+
+
+def needed_files(target: Target, extras: Iterable[str], packages: Packages) -> Iterator[LockedFile]:
+    """Yield the files that Linkwright with some extras needs on a target.
+
+    A package without a wheel is given as its source distribution. Packages whose wheels do not fit are left out; the
+    tests make sure that the locked ones do not have any.
+    """
+    for key in needed_packages(target, extras, packages):
+        name, version = key.split(" ")
+        files = [LockedFile(name, version, *row) for row in packages[key]["files"]]
+        chosen = best_wheel((file.name for file in files if file.is_wheel), target)
+        yield from (file for file in files if (file.name == chosen if chosen else not file.is_wheel))
+
+
+def best_wheel(names: Iterable[str], target: Target) -> str | None:
+    """Return the file name of the wheel that fits a target best, or None if none fits.
+
+    Of wheels for the same Python, the one that the oldest systems can install is the best.
+    """
+    ranked = [(rank, name) for name in names if (rank := wheel_rank(name, target)) is not None]
+    return min(ranked)[1] if ranked else None
+
+
+def wheel_rank(name: str, target: Target) -> int | None:
+    """Return how well a wheel fits a target, with 0 for the best, or None if it does not fit."""
+    try:
+        tags = parse_wheel_filename(name)[3]
+    except InvalidWheelFilename:
+        return None
+    ranks = [target.tag_ranks[tag] for tag in tags if tag in target.tag_ranks]
+    return min(ranks, default=None)

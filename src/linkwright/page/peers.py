@@ -1,0 +1,114 @@
+"""Where the peer of a connection runs: on this machine, and as which user.
+
+Linux lists the TCP sockets of all users, with their owners, in tables below ``/proc/net`` (`proc_pid_net(5)`). Other
+systems have no such list that every user can read.
+"""
+
+from __future__ import annotations
+
+import ipaddress
+import os
+import sys
+from asyncio import BaseTransport
+from pathlib import Path
+from typing import TypeAlias
+
+_Address: TypeAlias = ipaddress.IPv4Address | ipaddress.IPv6Address
+_Endpoint: TypeAlias = tuple[_Address, int]
+
+_TABLES = (Path("/proc/net/tcp"), Path("/proc/net/tcp6"))
+
+_MAX_READS = 3
+"""The number of times that the tables are read. The system may omit a socket while others open and close."""
+
+_ESTABLISHED = "01"
+_USER_FIELD, _INODE_FIELD = 3, 5  # counted from the field after the state
+_ROOT = 0
+
+
+def is_from_here(transport: BaseTransport | None) -> bool:
+    """Return whether a connection comes from this machine: over loopback, or from its own address."""
+    endpoints = _endpoints(transport)
+    if endpoints is None:
+        return False
+    (peer, _), (own, _) = endpoints
+    return peer.is_loopback or peer == own
+
+
+def may_be_own_user(transport: BaseTransport | None) -> bool:
+    """Return whether the peer of a connection from this machine may run as the user of this program, or as root.
+
+    On Linux, the system knows the user. Root is accepted because root can do everything that this user can, and
+    because the relay that connects a browser on Windows to WSL is expected to run as root.
+
+    Returns:
+        True also where the system does not list the sockets of other users. False for a socket that is not listed as
+        open: one whose program has closed it no longer has an owner.
+    """
+    endpoints = _endpoints(transport)
+    if endpoints is None:
+        return False
+    if not sys.platform.startswith("linux"):
+        return True
+    for _ in range(_MAX_READS):
+        tables = _read_tables()
+        if not tables:
+            return True
+        user = _socket_user(tables, *endpoints)
+        if user is not None:
+            return user in (os.geteuid(), _ROOT)
+    return False
+
+
+def _endpoints(transport: BaseTransport | None) -> tuple[_Endpoint, _Endpoint] | None:
+    """Return the address and port of the peer, and those of this program."""
+    if transport is None:
+        return None
+    peer, own = (transport.get_extra_info(name) for name in ("peername", "sockname"))
+    return (_endpoint(peer), _endpoint(own)) if peer and own else None
+
+
+def _endpoint(name: tuple[str, int]) -> _Endpoint:
+    address = ipaddress.ip_address(name[0].partition("%")[0])
+    return getattr(address, "ipv4_mapped", None) or address, name[1]
+
+
+def _read_tables() -> str:
+    """Return the tables of TCP sockets, or an empty text if they cannot be read."""
+    return "".join(map(_read_table, _TABLES))
+
+
+def _read_table(table: Path) -> str:
+    try:
+        return table.read_text("ascii")
+    except OSError:
+        return ""  # tcp6 is missing without IPv6, and a sandbox may hide both
+
+
+def _socket_user(tables: str, local: _Endpoint, remote: _Endpoint) -> int | None:
+    """Return the ID of the user who owns an open socket with these addresses, or None if there is no such socket.
+
+    A socket that its program has closed has no inode, and the user 0 in the tables.
+    """
+    for write in (_table_address, _mapped_table_address):  # an IPv6 socket can connect to an IPv4 address
+        start = f" {write(local)} {write(remote)} {_ESTABLISHED} "
+        position = tables.find(start)
+        if position >= 0:
+            fields = tables[position + len(start) :].split(maxsplit=_INODE_FIELD + 1)
+            return int(fields[_USER_FIELD]) if fields[_INODE_FIELD] != "0" else None
+    return None
+
+
+def _table_address(endpoint: _Endpoint) -> str:
+    """Return an address and port as the tables write them: 32-bit words in the byte order of the machine."""
+    address, port = endpoint
+    packed = address.packed
+    words = (int.from_bytes(packed[start : start + 4], sys.byteorder) for start in range(0, len(packed), 4))
+    return f"{''.join(f'{word:08X}' for word in words)}:{port:04X}"
+
+
+def _mapped_table_address(endpoint: _Endpoint) -> str:
+    address, port = endpoint
+    if isinstance(address, ipaddress.IPv4Address):
+        address = ipaddress.IPv6Address(f"::ffff:{address}")
+    return _table_address((address, port))

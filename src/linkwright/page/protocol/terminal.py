@@ -1,0 +1,120 @@
+"""The terminals of the page.
+
+The server owns the terminals, which remain when a page is reloaded. Each is shown in at most one page. A page
+acknowledges the output that it has processed, and the server reads no more output until it does.
+"""
+
+from __future__ import annotations
+
+from typing import ClassVar, Literal
+
+from linkwright.page.protocol.message import PageMessage, Record, ServerMessage
+
+
+class TerminalItem(Record):
+    """A terminal.
+
+    `shown` is the page that shows it: this one (``here``), another one (``elsewhere``), or none (``nowhere``).
+    `status` is the exit status of its shell, which is negative if a signal ended the shell, or None while it runs.
+    """
+
+    id: int
+    shown: Literal["here", "elsewhere", "nowhere"]
+    status: int | None
+
+
+class Terminals(ServerMessage):
+    """All terminals of the program. It is sent when a page opens, and again when something changes.
+
+    `folder` is the folder in which shells start. `why_not` is the reason why the last request of the page was refused,
+    or empty.
+    """
+
+    folder: str
+    terminals: list[TerminalItem]
+    why_not: str
+
+
+class TerminalOutput(ServerMessage):
+    """Output of a terminal that the page shows.
+
+    `number` counts the messages of the terminal. No message replaces another. With `is_replay`, the text replaces the
+    content of the terminal: it is the last output, which answers no queries to the terminal.
+    """
+
+    NEWEST_OF: ClassVar[tuple[str, ...]] = ("terminal", "number")
+
+    terminal: int
+    number: int
+    text: str
+    is_replay: bool
+
+
+class TerminalInputLost(ServerMessage):
+    """A notice that input was discarded because the program in the terminal does not read its input."""
+
+    NEWEST_OF: ClassVar[tuple[str, ...]] = ("terminal",)
+
+    terminal: int
+    size: int
+
+
+class OpenTerminal(PageMessage):
+    """A request to start a shell in a new terminal, which the page then shows."""
+
+    columns: int
+    rows: int
+
+
+class ShowTerminal(PageMessage):
+    """A request to show a terminal in this page, with its last output.
+
+    Another page that shows it leaves it.
+    """
+
+    terminal: int
+    columns: int
+    rows: int
+
+
+class LeaveTerminal(PageMessage):
+    """A notice that the page does not show a terminal any more, for example because its tab is hidden."""
+
+    terminal: int
+
+
+class WriteTerminal(PageMessage):
+    """Input for the program in a terminal. In binary input, each character is a byte."""
+
+    terminal: int
+    text: str
+    is_binary: bool
+
+
+class ResizeTerminal(PageMessage):
+    """The new size of a terminal in the page, in characters."""
+
+    terminal: int
+    columns: int
+    rows: int
+
+
+class AcknowledgeTerminal(PageMessage):
+    """The acknowledgement that the page has processed the output up to the message with this number."""
+
+    terminal: int
+    number: int
+
+
+class RestartTerminal(PageMessage):
+    """A request to start a shell again in a terminal whose shell has ended."""
+
+    terminal: int
+    columns: int
+    rows: int
+
+
+class CloseTerminal(PageMessage):
+    """A request to end the programs in a terminal, and to remove it."""
+
+    terminal: int

@@ -1,0 +1,1 @@
+"""The terminals in the page."""

@@ -1,0 +1,186 @@
+"""The terminal in the page: commands, keys, sizes, several of them, and the way out with the keyboard."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.browser.axe import violations
+from tests.browser.conftest import becomes, state, until
+from tests.browser.test_description import open_panel
+
+pytestmark = [
+    pytest.mark.browser,
+    pytest.mark.skipif(sys.platform == "win32", reason="pseudoterminals of POSIX"),
+]
+
+ROBOT = '<robot name="r"><link name="base"><visual><geometry><box size="1 1 1"/></geometry></visual></link></robot>\n'
+TERMINAL = "lw.panels.terminal"
+INPUT = ".terminal-screen:visible .xterm-helper-textarea"
+
+
+@pytest.fixture
+def file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.setenv("SHELL", "/bin/bash")
+    monkeypatch.setenv("HOME", str(tmp_path))  # without start-up files, which print what they like
+    path = tmp_path / "robot.urdf"
+    path.write_text(ROBOT)
+    return path
+
+
+def shows(page, text: str) -> None:
+    """Wait until the terminal has a line with this text."""
+    page.wait_for_function("text => window.linkwright.panels.terminal.text?.includes(text)", arg=text, polling=50)
+
+
+def open_terminal(page) -> None:
+    """Wait for the shell's prompt, and put the focus into the terminal."""
+    until(page, f"/[$#] *$/.test({TERMINAL}.text ?? '')")
+    page.locator(INPUT).focus()
+
+
+def run(page, command: str) -> None:
+    page.keyboard.type(f"{command}\n")
+
+
+def test_commands_run_and_keys_stop_them(start, open_page, file):
+    page = open_page(start("view", str(file), "--terminal"))
+    open_terminal(page)
+    run(page, "echo 你好-$((40+2)); pwd")
+    shows(page, f"\n你好-42\n{file.parent}\n")
+    run(page, "sleep 1000")
+    page.keyboard.press("Control+c")
+    run(page, "echo interrupted=$?")
+    shows(page, "\ninterrupted=130")
+    run(page, "sleep 1000")
+    page.keyboard.press("Control+z")
+    shows(page, "Stopped")
+    run(page, "kill %1; env -u LINKWRIGHT_DDS linkwright topic list; echo listed=$?")
+    shows(page, "\nlisted=0")
+    columns = state(page, "panels.terminal.size.columns")
+    run(page, "echo columns=$(stty size)")
+    shows(page, f"columns={state(page, 'panels.terminal.size.rows')} {columns}")
+    page.set_viewport_size({"width": 1000, "height": 700})
+    until(page, f"{TERMINAL}.size.columns < {columns}")
+    run(page, "clear; echo columns=$(stty size)")
+    shows(page, f"columns={state(page, 'panels.terminal.size.rows')} {state(page, 'panels.terminal.size.columns')}\n")
+
+
+def test_endless_output_neither_hangs_the_page_nor_the_program(start, open_page, file):
+    page = open_page(start("view", str(file), "--terminal"))
+    open_terminal(page)
+    run(page, "yes")
+    until(page, f"{TERMINAL}.scrollback >= 5000")
+    assert state(page, "ready")
+    page.keyboard.press("Control+c")
+    run(page, "echo done=$((1+1))")
+    shows(page, "\ndone=2")
+
+
+def test_an_ended_shell_is_shown_and_starts_again(start, open_page, file):
+    page = open_page(start("view", str(file), "--terminal"))
+    open_terminal(page)
+    run(page, "exit 3")
+    until(page, f"{TERMINAL}.notice.includes('exit status 3')")
+    page.keyboard.press("Enter")
+    until(page, f"{TERMINAL}.terminals[0].status === null && {TERMINAL}.notice === ''")
+    run(page, "echo again=$((1+1))")
+    shows(page, "\nagain=2")
+
+
+def test_several_terminals_survive_a_reload(start, open_page, file):
+    page = open_page(start("view", str(file), "--terminal"))
+    open_terminal(page)
+    run(page, "name=first; echo $name")
+    shows(page, "\nfirst")
+    page.get_by_role("button", name="New", exact=True).click()
+    until(page, f"{TERMINAL}.current === 2")
+    open_terminal(page)
+    run(page, "echo second=$name.")
+    shows(page, "\nsecond=.")
+    page.reload()
+    until(page, f"{TERMINAL}.text?.includes('first') && {TERMINAL}.terminals.length === 2")
+    page.locator(INPUT).focus()
+    run(page, "echo again=$name")
+    shows(page, "\nagain=first")
+    page.get_by_role("tab", name="Terminal 2").click()
+    shows(page, "\nsecond=.")
+    page.locator(".terminal-deck").get_by_role("button", name="Close", exact=True).click()
+    until(page, f"{TERMINAL}.terminals.length === 1 && {TERMINAL}.text.includes('again=first')")
+
+
+def test_a_second_page_has_a_terminal_of_its_own_and_can_take_the_first(start, open_page, file):
+    program = start("view", str(file), "--terminal")
+    first = open_page(program)
+    open_terminal(first)
+    run(first, "echo mine=$((6*7))")
+    shows(first, "\nmine=42")
+    second = open_page(program)
+    second.get_by_role("tab", name="Terminal 1").click()
+    second.get_by_role("button", name="Show it here").click()
+    shows(second, "\nmine=42")
+    until(first, f"{TERMINAL}.notice.includes('another page')")
+
+
+def test_text_is_copied_and_pasted_with_keys(start, open_page, file):
+    page = open_page(start("view", str(file), "--terminal"))
+    page.context.grant_permissions(["clipboard-read", "clipboard-write"])
+    open_terminal(page)
+    run(page, "clear; echo copy-$((1+1))-me")
+    shows(page, "copy-2-me")
+    page.locator(".terminal-screen:visible .xterm-screen").dblclick(position={"x": 20, "y": 8})
+    page.keyboard.press("Control+Shift+C")
+    becomes(lambda: page.evaluate("navigator.clipboard.readText()"), "copy-2-me")
+    page.keyboard.type("echo pasted-")
+    page.keyboard.press("Control+Shift+V")
+    page.keyboard.press("Enter")
+    shows(page, "\npasted-copy-2-me")
+
+
+def test_the_keyboard_leaves_the_terminal_and_the_page_keeps_its_keys_out(start, open_page, file):
+    page = open_page(start("view", str(file), "--terminal"))
+    open_terminal(page)
+    run(page, "cat -v")
+    page.keyboard.press("Control+s")
+    page.keyboard.press("Control+q")
+    page.keyboard.press("Tab")
+    page.keyboard.type("?f\n")
+    shows(page, "\n        ?f\n")
+    assert state(page, "panels.terminal.focused")
+    assert page.locator("dialog").count() == 0
+    page.keyboard.press("Control+Shift+M")
+    becomes(lambda: page.evaluate("document.activeElement.getAttribute('role')"), "tab")
+    page.keyboard.press("Enter")
+    until(page, f"{TERMINAL}.focused")
+
+
+def test_the_terminal_is_accessible_in_both_themes(start, open_page, file):
+    page = open_page(start("view", str(file), "--terminal"))
+    open_terminal(page)
+    run(page, r"printf '\033[31mred\033[33myellow\033[90mgrey\033[44mon blue\033[0m\n'")
+    shows(page, "\nredyellowgreyon blue")
+    assert violations(page) == []
+
+
+def test_a_screen_reader_reads_the_output(start, open_page, file):
+    page = open_page(start("view", str(file), "--terminal"))
+    open_terminal(page)
+    page.get_by_role("button", name="Let a screen reader read the terminal").click()
+    page.locator(INPUT).focus()
+    run(page, "echo read-$((1+1))-aloud")
+    until(page, "document.querySelector('.xterm-accessibility-tree')?.textContent.includes('read-2-aloud')")
+    assert "Ctrl+Shift+M" in page.locator(INPUT).get_attribute("aria-label")
+
+
+def test_without_the_option_there_is_no_terminal(start, open_page, file):
+    page = open_page(start("view", str(file)))
+    assert not state(page, "panels.terminal.available")
+    page.locator(".title-bar").get_by_text("Panels", exact=True).click()
+    assert page.get_by_role("menuitemcheckbox", name="Terminal", exact=True).count() == 0
+    page.keyboard.press("Escape")
+    open_panel(page, "Log")
+    assert not any(
+        "terminal" in address for address in page.evaluate("performance.getEntriesByType('resource').map(e => e.name)")
+    )

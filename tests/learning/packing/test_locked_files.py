@@ -1,0 +1,77 @@
+"""Whether each system and Python has a wheel of everything that the extra ``learn`` needs, by ``uv.lock``."""
+
+from __future__ import annotations
+
+import importlib.util
+
+import pytest
+
+from linkwright.learning.packing.locked_files import locked_packages, needed_files, needed_packages
+from linkwright.learning.packing.optional_parts import PARTS, missing_parts, package_names
+from linkwright.learning.packing.targets import Target, select_targets
+from tests.places import REPOSITORY
+
+TARGETS = select_targets((), ())
+pytestmark = pytest.mark.extra("learn")
+
+SOURCE_ONLY = {"srt"}
+"""Packages of pure Python without a wheel, which packs build."""
+OTHERWISE = {"async-timeout", "backports-asyncio-runner", "cffi", "colorama", "pycparser", "pywinpty", "tomli"}
+"""Packages that some systems or Pythons do not need."""
+MISSING = {
+    "windows": {"cyclonedds": ["3.14"], "pocketsphinx": ["3.14"]},
+    "macos-arm64": {"cyclonedds": ["3.14"], "embreex": "all", "pocketsphinx": ["3.14"]},
+    "macos-x86_64": {
+        "cyclonedds": "all",
+        "mujoco": "all",
+        "embreex": "all",
+        "onnxruntime": ["3.14"],
+        "pocketsphinx": ["3.14"],
+    },
+    "linux-x86_64": {"cyclonedds": ["3.14"], "pocketsphinx": ["3.14"]},
+    "linux-aarch64": {"cyclonedds": "all", "embreex": "all", "pocketsphinx": ["3.10", "3.12", "3.14"]},
+}
+"""The documented gaps: system -> package -> versions of Python."""
+
+
+@pytest.mark.parametrize("target", TARGETS, ids=lambda target: target.name)
+def test_each_package_of_the_course_has_a_wheel(target: Target) -> None:
+    packages = locked_packages()
+    files = list(needed_files(target, ["learn"], packages))
+    needed = {key.partition(" ")[0] for key in needed_packages(target, ["learn"], packages)}
+    assert {file.package for file in files} == needed
+    assert {file.package for file in files if not file.is_wheel} <= SOURCE_ONLY
+    assert {"aiohttp", "numpy", "packaging", "pip", "vosk"} <= needed
+
+
+@pytest.mark.parametrize("target", TARGETS, ids=lambda target: target.name)
+def test_the_parts_that_a_system_lacks_are_known(target: Target) -> None:
+    missing = {part.packages[0] for part in missing_parts(target, ["learn"], locked_packages())}
+    known = MISSING[target.system]
+    assert missing == {name for name, pythons in known.items() if pythons == "all" or target.python in pythons}
+
+
+def test_each_package_that_only_some_systems_have_belongs_to_a_known_part() -> None:
+    direct = {
+        edge["key"].partition(" ")[0] for extra in locked_packages()["linkwright"]["extras"].values() for edge in extra
+    }
+    here = [package_names(target, ["learn"], locked_packages()) for target in TARGETS]
+    sometimes = (set.union(*here) - set.intersection(*here)) & direct
+    assert sometimes - OTHERWISE == {name for part in PARTS for name in part.packages}
+
+
+def test_the_terminal_of_windows_has_its_package() -> None:
+    assert all(
+        ("pywinpty" in package_names(target, ["learn"], locked_packages())) == (target.system == "windows")
+        for target in TARGETS
+    )
+
+
+def test_the_table_is_that_of_the_lock() -> None:
+    specification = importlib.util.spec_from_file_location("pack_wheels", REPOSITORY / "tools" / "pack_wheels.py")
+    assert specification is not None
+    assert specification.loader is not None
+    tool = importlib.util.module_from_spec(specification)
+    specification.loader.exec_module(tool)
+    text = tool.TABLE.read_text(encoding="utf-8")
+    assert tool.table(tool.LOCK.read_text(encoding="utf-8")) == text, "run python tools/pack_wheels.py"

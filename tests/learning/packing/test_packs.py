@@ -1,0 +1,331 @@
+"""Packs: what they contain, and how they are continued, checked and installed."""
+
+from __future__ import annotations
+
+import ensurepip
+import json
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from linkwright.cli import main
+from tests.full_disk import full_disk, needs_limits
+from tests.learning.packing.conftest import FakeIndex
+from tests.learning.packing.fake_index import package, write_source, write_wheel
+
+ALL_OF = ("--systems", "windows,linux-x86_64", "--python", "3.12,3.13")
+LINUX = ("--systems", "linux-x86_64", "--python", "3.13")
+pytestmark = pytest.mark.extra("learn")
+
+
+@pytest.fixture
+def pack(index: FakeIndex, tmp_path: Path) -> Path:
+    folder = tmp_path / "pack"
+    assert index.pack(folder, *ALL_OF) == 0
+    return folder
+
+
+def wheels(folder: Path) -> set[str]:
+    return {path.name for path in (folder / "wheels").iterdir()}
+
+
+def test_a_pack_has_each_wheel_once(pack: Path) -> None:
+    assert wheels(pack) == {
+        "linkwright-1.0-py3-none-any.whl",
+        "linkwright_core-1.0-py3-none-any.whl",
+        "native-1.0-cp310-abi3-manylinux_2_17_x86_64.manylinux2014_x86_64.whl",
+        "native-1.0-cp312-cp312-win_amd64.whl",
+        "native-1.0-cp313-cp313-win_amd64.whl",
+        "pip-9.0-py3-none-any.whl",
+        "pure-1.0-py3-none-any.whl",
+        "source-1.0-py3-none-any.whl",
+        "windows_only-1.0-py3-none-any.whl",
+    }
+
+
+def test_each_target_has_its_list_of_packages(pack: Path) -> None:
+    lists = {path.stem: path.read_text() for path in (pack / "requirements").iterdir()}
+    assert set(lists) == {
+        "windows-py3.12",
+        "windows-py3.13",
+        "linux-x86_64-py3.12",
+        "linux-x86_64-py3.13",
+    }
+    assert "windows-only==1.0 --hash=sha256:" in lists["windows-py3.12"]
+    assert "windows-only" not in lists["linux-x86_64-py3.12"]
+    assert lists["windows-py3.12"].startswith("linkwright-core==1.0 --hash=")
+    assert "\nlinkwright[learn]==1.0 --hash=" in lists["windows-py3.12"]
+
+
+def test_a_pack_has_an_installer_for_each_system(pack: Path) -> None:
+    assert {"install.sh", "install.command", "install.bat", "install.py", "README.txt", "no-python.txt"} <= {
+        path.name for path in pack.iterdir()
+    }
+    for name in ("install.sh", "install.bat", "no-python.txt", "README.txt"):
+        assert "@" not in (pack / name).read_text(encoding="utf-8").replace("@echo", "").replace('"$@"', "")
+    assert (pack / "install.sh").read_bytes() == (pack / "install.command").read_bytes()
+    batch = (pack / "install.bat").read_bytes()
+    assert batch.isascii()
+    assert batch.count(b"\r\n") == batch.count(b"\n")
+
+
+def test_the_checksums_are_those_of_sha256sum(pack: Path) -> None:
+    if shutil.which("sha256sum") is None:
+        pytest.skip("there is no sha256sum")
+    subprocess.run(["sha256sum", "--check", "--quiet", "SHA256SUMS"], cwd=pack, check=True)
+
+
+def test_an_interrupted_pack_is_continued(pack: Path, index: FakeIndex, capsys: pytest.CaptureFixture[str]) -> None:
+    (pack / "SHA256SUMS").unlink()
+    (pack / "wheels" / "pure-1.0-py3-none-any.whl").write_bytes(b"half of it")
+    assert main(["learn", "pack", "--check", str(pack)]) == 1
+    assert "is not complete" in capsys.readouterr().err
+    assert index.pack(pack, *ALL_OF) == 0
+    errors = capsys.readouterr().err
+    assert "Windows, Python 3.12: 1 of 5 wheels to download, 0 MB" in errors
+    assert "Linux x86-64, Python 3.13: 0 of 4 wheels to download, 0 MB" in errors
+
+
+def test_a_smaller_pack_loses_the_wheels_that_it_does_not_need(pack: Path, index: FakeIndex) -> None:
+    assert index.pack(pack, *LINUX) == 0
+    assert not any("win" in name for name in wheels(pack))
+    assert [path.name for path in (pack / "requirements").iterdir()] == ["linux-x86_64-py3.13.txt"]
+
+
+def test_of_two_wheels_the_one_for_the_older_system_is_taken(index: FakeIndex, tmp_path: Path) -> None:
+    assert index.pack(tmp_path / "pack", "--systems", "macos-arm64", "--python", "3.13") == 0
+    assert "native-1.0-cp313-cp313-macosx_11_0_arm64.whl" in wheels(tmp_path / "pack")
+    assert "native-1.0-cp313-cp313-macosx_14_0_arm64.whl" not in wheels(tmp_path / "pack")
+
+
+def test_a_wheel_for_a_newer_system_does_not_fit(
+    index: FakeIndex, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert index.pack(tmp_path / "pack", "--systems", "linux-aarch64", "--python", "3.13") == 1
+    assert (
+        "error[LEARN306]: Linux ARM64, Python 3.13: no wheel for 'native>=1; extra == \"learn\"', which "
+        "linkwright-1.0-py3-none-any.whl needs" in capsys.readouterr().err
+    )
+
+
+def test_a_damaged_file_is_found(pack: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["learn", "pack", "--check", str(pack)]) == 0
+    file = pack / "wheels" / "pure-1.0-py3-none-any.whl"
+    file.write_bytes(file.read_bytes()[:-1] + b"x")
+    (pack / "wheels" / "pip-9.0-py3-none-any.whl").unlink()
+    capsys.readouterr()
+    assert main(["learn", "pack", "--check", str(pack)]) == 1
+    errors = capsys.readouterr().err
+    assert "error[LEARN305]: 'wheels/pure-1.0-py3-none-any.whl' is damaged or was changed" in errors
+    assert "error[LEARN305]: 'wheels/pip-9.0-py3-none-any.whl' cannot be read: No such file" in errors
+
+
+def test_a_package_that_a_list_lacks_is_found(pack: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = pack / "requirements" / "windows-py3.13.txt"
+    before = path.read_text()
+    path.write_text("".join(line for line in before.splitlines(keepends=True) if not line.startswith("pure")))
+    sums = (pack / "SHA256SUMS").read_text().splitlines()
+    kept = [line for line in sums if not line.endswith("windows-py3.13.txt")]
+    (pack / "SHA256SUMS").write_text("\n".join(kept) + "\n")
+    assert main(["learn", "pack", "--check", str(pack)]) == 1
+    errors = capsys.readouterr().err
+    assert "Windows, Python 3.13: no wheel for 'pure', which windows_only-1.0-py3-none-any.whl needs" in errors
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["--systems", "window"], "error[LEARN301]: a pack cannot be made for the system 'window'"),
+        (["--python", "3.9"], "error[LEARN301]: a pack cannot be made for Python '3.9'"),
+        (["--extras", "lern"], "error[LEARN301]: a pack cannot contain the extra 'lern'"),
+        (["--models", "voks-en"], "error[MODEL101]: there is no model 'voks-en'"),
+        (["--docs", "."], "error[LEARN309]: '.' has no index.html"),
+    ],
+)
+def test_unknown_names_are_errors(
+    index: FakeIndex, tmp_path: Path, words: list[str], message: str, capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:  # fmt: skip
+    monkeypatch.chdir(tmp_path)
+    assert index.pack(tmp_path / "pack", *words) == 1
+    errors = capsys.readouterr().err
+    assert message in errors
+    assert "hint" in errors
+
+
+def test_a_folder_with_other_files_is_left_alone(
+    index: FakeIndex, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "mine").mkdir()
+    (tmp_path / "mine" / "file").write_text("mine")
+    assert index.pack(tmp_path / "mine", *LINUX) == 1
+    assert "error[LEARN307]" in capsys.readouterr().err
+    assert [path.name for path in (tmp_path / "mine").iterdir()] == ["file"]
+    assert main(["learn", "pack", "--check", str(tmp_path / "mine")]) == 1
+    assert "is not a pack: No such file or directory" in capsys.readouterr().err
+
+
+def test_a_wheel_that_the_index_lacks_is_one_clear_error(
+    index: FakeIndex, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (index.folder / "pure-1.0-py3-none-any.whl").unlink()
+    assert index.pack(tmp_path / "pack", *LINUX) == 1
+    errors = capsys.readouterr().err
+    assert "error[LEARN303]: pip cannot get " in errors
+    assert "Could not find a version that satisfies the requirement pure==1.0" in errors
+    assert "repeat the command to continue" in errors
+
+
+def test_a_wheel_with_other_bytes_is_not_taken(
+    index: FakeIndex, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    write_wheel(index.folder, "pure", requires=["evil"])
+    assert index.pack(tmp_path / "pack", *LINUX) == 1
+    assert "error[LEARN303]: pip cannot get " in capsys.readouterr().err
+
+
+def test_a_source_that_needs_a_compiler_cannot_be_packed(
+    index: FakeIndex, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    source = write_source(index.folder, "source", tag="cp313-cp313-linux_x86_64")
+    index.table["source 1.0"].update(package(source))
+    assert index.pack(tmp_path / "pack", *LINUX) == 1
+    assert "the wheel that was built of 'source-1.0.tar.gz' is for this system only" in capsys.readouterr().err
+
+
+def test_both_wheels_of_linkwright_are_needed(
+    index: FakeIndex, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    index.own.pop()
+    assert index.pack(tmp_path / "pack", *LINUX) == 1
+    assert "error[LEARN302]: a pack needs a wheel of linkwright and one of linkwright-core" in capsys.readouterr().err
+
+
+def test_a_wheel_that_names_a_checkout_is_not_packed(
+    index: FakeIndex, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    write_wheel(index.own[1].parent, "linkwright", requires=["linkwright-core @ file:///home/me/core"])
+    assert index.pack(tmp_path / "pack", *LINUX) == 1
+    assert "depends on files of the computer that built it" in capsys.readouterr().err
+
+
+@needs_limits
+def test_a_full_disk_is_one_clear_error(index: FakeIndex, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    with full_disk(50):
+        status = index.pack(tmp_path / "pack", *LINUX)
+    errors = capsys.readouterr().err
+    assert status == 1
+    assert "error[LEARN304]: cannot write '" in errors
+    assert "free disk space" in errors
+
+
+def test_the_documentation_is_copied(index: FakeIndex, tmp_path: Path) -> None:
+    (tmp_path / "site" / "zh").mkdir(parents=True)
+    for name in ("index.html", "zh/index.html"):
+        (tmp_path / "site" / name).write_text("page")
+    assert index.pack(tmp_path / "pack", *LINUX, "--docs", str(tmp_path / "site")) == 0
+    assert (tmp_path / "pack" / "docs" / "zh" / "index.html").read_text() == "page"
+
+
+@pytest.fixture
+def installable(index: FakeIndex, tmp_path: Path) -> Path:
+    """A pack for this system with the pip of this Python."""
+    bundled = sorted((Path(ensurepip.__file__).parent / "_bundled").glob("pip-*.whl"))
+    if not bundled or sys.platform != "linux" or sys.version_info >= (3, 15):
+        pytest.skip("this Python has no pip of its own")
+    path = Path(shutil.copy(bundled[0], index.folder))
+    version = path.name.split("-")[1]
+    del index.table["pip 9.0"]  # type: ignore[attr-defined]
+    index.table[f"pip {version}"] = package(path)  # type: ignore[index]
+    assert index.pack(tmp_path / "pack", "--systems", "linux-x86_64", "--python", _this_python()) == 0
+    return tmp_path / "pack"
+
+
+def _this_python() -> str:
+    return f"{sys.version_info[0]}.{sys.version_info[1]}"
+
+
+def install(pack: Path, home: Path, *words: str, **variables: str) -> subprocess.CompletedProcess[str]:
+    home.mkdir(exist_ok=True)
+    environment = {"HOME": str(home), "PATH": "/usr/bin:/bin", "PYTHON": sys.executable, **variables}
+    command = ["sh", str(pack / "install.sh"), *words]
+    return subprocess.run(command, env=environment, capture_output=True, text=True, encoding="utf-8", check=False)
+
+
+def test_the_installer_installs_and_tries_linkwright(installable: Path, tmp_path: Path) -> None:
+    home = tmp_path / "home of a learner"
+    done = install(installable, home)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert f". '{home}/linkwright/bin/activate'" in done.stdout
+    assert "Linkwright 已安装" in done.stdout
+    again = install(installable, home)
+    assert (again.returncode, again.stderr) == (0, "")
+
+
+def test_the_installer_refuses_a_damaged_wheel(installable: Path, tmp_path: Path) -> None:
+    write_wheel(installable / "wheels", "pure", requires=["other"])
+    done = install(installable, tmp_path / "home")
+    assert done.returncode == 1
+    assert "THESE PACKAGES DO NOT MATCH THE HASHES" in done.stderr
+    assert "这一步失败了" in done.stderr
+
+
+def test_the_installer_leaves_a_folder_of_the_user_alone(installable: Path, tmp_path: Path) -> None:
+    (tmp_path / "home" / "linkwright").mkdir(parents=True)
+    (tmp_path / "home" / "linkwright" / "homework.urdf").write_text("mine")
+    done = install(installable, tmp_path / "home")
+    assert done.returncode == 1
+    assert "exists and is not an environment of Python" in done.stderr
+    assert "不是 Python 环境" in done.stderr
+
+
+def test_the_installer_names_the_targets_of_the_pack(pack: Path, tmp_path: Path) -> None:
+    shutil.rmtree(pack / "requirements")
+    done = install(pack, tmp_path / "home")
+    assert done.returncode == 1
+    assert "It has: windows, linux-x86_64; Python 3.12, 3.13." in done.stderr
+
+
+def test_without_a_python_the_installer_says_what_to_do(pack: Path, tmp_path: Path) -> None:
+    for name in ("install.sh",):
+        script = (pack / name).read_text().replace("/usr/local/bin/", "/nowhere/")
+        (pack / name).write_text(script)
+    tools = tmp_path / "tools"
+    tools.mkdir()
+    for name in ("dirname", "uname", "cat", "sh"):
+        (tools / name).symlink_to(shutil.which(name) or "")
+    done = install(pack, tmp_path / "home", PATH=str(tools), PYTHON="")
+    assert done.returncode == 1
+    assert "There is no Python that fits" in done.stderr
+    assert "没有合适的 Python" in done.stderr
+
+
+def test_an_archive_of_python_is_unpacked_for_computers_without_one(pack: Path, tmp_path: Path) -> None:
+    if sys.platform != "linux":
+        pytest.skip("for Linux")
+    (tmp_path / "python" / "bin").mkdir(parents=True)
+    program = tmp_path / "python" / "bin" / "python3"
+    program.write_text('#!/bin/sh\n[ "$1" = -c ] || echo "started $1"\n')
+    program.chmod(0o755)
+    (pack / "python").mkdir()
+    machine = subprocess.run(["uname", "-m"], capture_output=True, text=True, check=True).stdout.strip()
+    archive = pack / "python" / f"cpython-3.13.9+20261101-{machine}-unknown-linux-gnu-install_only.tar.gz"
+    subprocess.run(["tar", "-czf", archive, "-C", tmp_path, "python"], check=True)
+    tools = tmp_path / "tools"
+    tools.mkdir()
+    for name in ("dirname", "uname", "cat", "sh", "mkdir", "tar", "gzip"):
+        (tools / name).symlink_to(shutil.which(name) or "")
+    script = (pack / "install.sh").read_text().replace("/usr/local/bin/", "/nowhere/")
+    (pack / "install.sh").write_text(script)
+    done = install(pack, tmp_path / "home", PATH=str(tools), PYTHON="")
+    assert done.stdout == f"started {pack}/install.py\n"
+
+
+def test_a_pack_has_its_settings_in_both_languages(pack: Path) -> None:
+    settings = json.loads((pack / "pack.json").read_text(encoding="utf-8"))
+    assert settings["version"] == "1.0"
+    assert settings["systems"] == ["windows", "linux-x86_64"]
+    assert settings["missing"] == {}

@@ -1,0 +1,152 @@
+"""The user at the other end of a connection, as the tables of Linux tell it."""
+
+from __future__ import annotations
+
+import os
+import socket
+import subprocess
+import sys
+from asyncio import Transport
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from linkwright.page import peers
+from linkwright.page.peers import is_from_here, may_be_own_user
+from tests.waiting import SECONDS
+
+linux = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="tables of Linux")
+FAMILIES = ("127.0.0.1", "127.0.0.1"), ("127.0.0.1", "::ffff:127.0.0.1"), ("::1", "::1"), ("::", "127.0.0.1")
+NOBODY = 65534
+
+CONNECT = """
+import encodings.idna, os, socket, sys  # all imports first, as the other user may not be able to read Python's files
+os.setgid({user}); os.setuid({user})
+connection = socket.create_connection(("127.0.0.1", {port}))
+sys.stdin.read()
+"""
+
+
+class Connection(Transport):
+    """What asyncio tells of an accepted connection."""
+
+    def __init__(self, peer: Any, own: Any) -> None:
+        super().__init__({"peername": peer, "sockname": own})
+
+
+def accepted(listener: socket.socket) -> tuple[socket.socket, Connection]:
+    listener.settimeout(SECONDS)
+    ours, _ = listener.accept()
+    return ours, Connection(ours.getpeername(), ours.getsockname())
+
+
+def listen(host: str) -> socket.socket:
+    try:
+        is_ipv6 = ":" in host
+        return socket.create_server(
+            (host, 0), family=socket.AF_INET6 if is_ipv6 else socket.AF_INET, dualstack_ipv6=host == "::"
+        )
+    except (OSError, ValueError):
+        pytest.skip(f"this machine cannot listen at {host}")
+
+
+@contextmanager
+def connected(
+    listening: str = "127.0.0.1", connecting: str = "127.0.0.1"
+) -> Iterator[tuple[socket.socket, Connection]]:
+    """A socket of this process that is connected to a server in it."""
+    family = socket.AF_INET6 if ":" in connecting else socket.AF_INET
+    with listen(listening) as listener, socket.socket(family) as theirs:
+        theirs.connect((connecting, listener.getsockname()[1]))
+        ours, connection = accepted(listener)
+        with ours:
+            yield theirs, connection
+
+
+@pytest.mark.parametrize(("listening", "connecting"), FAMILIES)
+def test_a_program_of_the_same_user_is_accepted(listening: str, connecting: str) -> None:
+    with connected(listening, connecting) as (_, connection):
+        assert is_from_here(connection)
+        assert may_be_own_user(connection)
+
+
+@linux
+@pytest.mark.parametrize(("listening", "connecting"), FAMILIES)
+def test_another_user_is_refused(monkeypatch: pytest.MonkeyPatch, listening: str, connecting: str) -> None:
+    with connected(listening, connecting) as (_, connection):
+        monkeypatch.setattr(os, "geteuid", lambda: NOBODY - 1)
+        monkeypatch.setattr(peers, "_ROOT", None)
+        assert is_from_here(connection)
+        assert not may_be_own_user(connection)
+
+
+@linux
+@pytest.mark.skipif(not hasattr(os, "geteuid") or os.geteuid() != 0, reason="only root can become another user")
+@pytest.mark.parametrize(("user", "is_accepted"), [(NOBODY, False), (0, True)])
+def test_the_system_knows_the_user_of_another_process(user: int, is_accepted: bool) -> None:
+    with listen("127.0.0.1") as listener:
+        program = CONNECT.format(user=user, port=listener.getsockname()[1])
+        with subprocess.Popen([sys.executable, "-I", "-c", program], stdin=subprocess.PIPE) as process:
+            ours, connection = accepted(listener)
+            with ours:
+                assert may_be_own_user(connection) is is_accepted
+                process.communicate()
+                assert not may_be_own_user(connection), "a closed socket has no owner, and is listed as root's"
+
+
+@linux
+def test_root_is_accepted(monkeypatch: pytest.MonkeyPatch) -> None:
+    with connected() as (_, connection):
+        monkeypatch.setattr(os, "geteuid", lambda: NOBODY - 1)
+        monkeypatch.setattr(peers, "_ROOT", os.getuid())
+        assert may_be_own_user(connection)
+
+
+@linux
+def test_a_socket_that_was_closed_is_refused() -> None:
+    with connected() as (theirs, connection):
+        theirs.close()
+        assert not may_be_own_user(connection)
+
+
+@linux
+def test_a_socket_that_the_system_omitted_once_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    read = peers._read_tables
+    answers = iter(["  sl  local_address\n", "  sl  local_address\n"])
+    monkeypatch.setattr(peers, "_read_tables", lambda: next(answers, None) or read())
+    with connected() as (_, connection):
+        assert may_be_own_user(connection)
+
+
+def test_where_the_system_lists_no_sockets_every_user_of_this_machine_is_accepted(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    connection = Connection(("127.0.0.1", 1), ("127.0.0.1", 2))
+    monkeypatch.setattr(peers, "_TABLES", (tmp_path / "tcp", tmp_path / "tcp6"))
+    assert may_be_own_user(connection)
+    monkeypatch.setattr(sys, "platform", "darwin")
+    assert may_be_own_user(connection)
+
+
+@pytest.mark.parametrize("transport", [None, Connection(None, None), Connection(("127.0.0.1", 1), None)])
+def test_a_connection_that_was_lost_is_refused(transport: Connection | None) -> None:
+    assert not is_from_here(transport)
+    assert not may_be_own_user(transport)
+
+
+@pytest.mark.parametrize(
+    ("peer", "own", "is_here"),
+    [
+        (("127.0.0.2", 1), ("127.0.0.1", 2), True),
+        (("192.0.2.1", 1), ("192.0.2.1", 2), True),
+        (("192.0.2.1", 1), ("192.0.2.2", 2), False),
+        (("::1", 1, 0, 0), ("::1", 2, 0, 0), True),
+        (("::ffff:127.0.0.1", 1, 0, 0), ("::ffff:127.0.0.1", 2, 0, 0), True),
+        (("fe80::1%eth0", 1, 0, 2), ("fe80::2%eth0", 2, 0, 2), False),
+    ],
+)
+def test_loopback_and_own_addresses_are_this_machine(peer: Any, own: Any, is_here: bool) -> None:
+    assert is_from_here(Connection(peer, own)) is is_here

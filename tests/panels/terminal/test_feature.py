@@ -1,0 +1,334 @@
+"""Terminals as pages see them: who may have one, what is shown in which page, and how much is sent."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import sys
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from pathlib import Path
+from typing import Any
+
+import aiohttp
+import pytest
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.page import server
+from linkwright.page.page_server import PageServer
+from linkwright.panels.terminal import feature as terminals
+from linkwright.panels.terminal.feature import MAX_TERMINALS, TerminalFeature
+from linkwright.panels.terminal.process_session import session_processes
+from linkwright.panels.terminal.terminal import MAX_UNACKNOWLEDGED
+from tests.viewer.scene import World, page, world
+from tests.waiting import SECONDS, wait_until
+
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="pseudoterminals of POSIX")
+
+
+def real(path: Path) -> str:
+    """The path that `pwd -P` prints."""
+    return os.path.realpath(path)
+
+
+SIZE = {"columns": 80, "rows": 24}
+SHELL = ("/bin/sh", "-i")
+
+
+class Reader:
+    """The output that a page receives, which it acknowledges unless told otherwise."""
+
+    def __init__(self, client: Any, *, acknowledges: bool = True) -> None:
+        self.client = client
+        self.text = ""
+        self.acknowledges = acknowledges
+
+    async def until(self, part: str) -> None:
+        try:
+            await asyncio.wait_for(self._until(part), SECONDS)
+        except asyncio.TimeoutError:
+            pytest.fail(f"the terminal does not show {part!r}, but {self.text!r}")
+
+    async def _until(self, part: str) -> None:
+        while part not in self.text:
+            await self.next()
+
+    async def next(self) -> dict[str, Any]:
+        message: dict[str, Any] = await self.client.until("terminal_output")
+        self.text = message["text"] if message["is_replay"] else self.text + message["text"]
+        if self.acknowledges:
+            await self.client.send("acknowledge_terminal", terminal=message["terminal"], number=message["number"])
+        return message
+
+    async def type(self, text: str, terminal: int = 1) -> None:
+        await self.client.send("write_terminal", terminal=terminal, text=text, is_binary=False)
+
+
+@asynccontextmanager
+async def enabled(folder: Path, command: tuple[str, ...] = SHELL) -> AsyncIterator[World]:
+    async with world() as scene:
+        scene.viewer.add_feature(TerminalFeature).enable(folder, command)
+        yield scene
+
+
+async def open_terminal(client: Any) -> Reader:
+    await client.send("open_terminal", **SIZE)
+    await client.until("terminals", why_not="")
+    return Reader(client)
+
+
+async def state(client: Any, *, of: int = 1, **fields: Any) -> dict[str, Any]:
+    """Wait until a terminal has these fields."""
+    while True:
+        message = await client.until("terminals")
+        for item in message["terminals"]:
+            if item["id"] == of and all(item[name] == value for name, value in fields.items()):
+                return item  # type: ignore[no-any-return]
+
+
+def leader_of(scene: World, number: int = 1) -> int:
+    found = scene.viewer.add_feature(TerminalFeature)._terminals[number]
+    return found._pty._process.pid  # type: ignore[attr-defined,no-any-return]
+
+
+async def test_a_page_runs_commands_in_the_folder(tmp_path: Path) -> None:
+    async with enabled(tmp_path) as scene, page(scene.viewer) as client:
+        assert (await client.until("terminals"))["folder"] == str(tmp_path)
+        reader = await open_terminal(client)
+        await reader.type("pwd -P; echo 'Wort 小车'; echo $TERM $COLORTERM\r")
+        await reader.until(f"{real(tmp_path)}\r\nWort 小车\r\nxterm-256color truecolor\r\n")
+
+
+async def test_without_permission_every_request_is_refused(tmp_path: Path) -> None:
+    async with world() as scene, page(scene.viewer) as client:
+        await client.send("open_terminal", **SIZE)
+        refused = await client.until("terminals")
+        assert "--terminal" in refused["why_not"]
+        assert (refused["folder"], refused["terminals"]) == ("", [])
+        await client.send("write_terminal", terminal=1, text="touch /tmp/x\r", is_binary=False)
+        assert "--terminal" in (await client.until("terminals"))["why_not"]
+        assert scene.viewer.add_feature(TerminalFeature)._terminals == {}
+
+
+async def test_a_page_that_opens_without_permission_hears_nothing_of_terminals() -> None:
+    async with world() as scene, page(scene.viewer) as client:
+        await client.until("frame_table")
+        assert not any(isinstance(each, dict) and each["type"] == "terminals" for each in client.messages)
+
+
+async def test_pages_of_other_machines_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(server, "is_from_here", lambda _: False)
+    async with enabled(tmp_path) as scene, page(scene.viewer) as client:
+        await client.until("terminals")
+        await client.send("open_terminal", **SIZE)
+        assert "on the machine of the program" in (await client.until("terminals"))["why_not"]
+        assert scene.viewer.add_feature(TerminalFeature)._terminals == {}
+
+
+async def test_pages_of_other_users_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(server, "may_be_own_user", lambda _: False)
+    async with enabled(tmp_path) as scene, page(scene.viewer) as client:
+        await client.until("terminals")
+        await client.send("open_terminal", **SIZE)
+        assert "the user who started the program" in (await client.until("terminals"))["why_not"]
+        await client.send("write_terminal", terminal=1, text="touch x\r", is_binary=False)
+        assert "the user who started the program" in (await client.until("terminals"))["why_not"]
+        assert scene.viewer.add_feature(TerminalFeature)._terminals == {}
+
+
+@pytest.mark.parametrize("query", ["", "?token=wrong"])
+async def test_without_the_token_there_is_no_socket(tmp_path: Path, query: str) -> None:
+    async with enabled(tmp_path) as scene, aiohttp.ClientSession() as browser:
+        plain = scene.viewer.url.partition("?")[0]
+        with pytest.raises(aiohttp.WSServerHandshakeError) as refused:
+            await browser.ws_connect(f"{plain}ws{query}")
+        assert refused.value.status == 401
+
+
+async def test_a_page_of_another_origin_gets_no_socket(tmp_path: Path) -> None:
+    async with enabled(tmp_path) as scene, aiohttp.ClientSession() as browser:
+        address = scene.viewer.url.replace("/?", "/ws?")
+        with pytest.raises(aiohttp.WSServerHandshakeError) as refused:
+            await browser.ws_connect(address, origin="http://evil.example")
+        assert refused.value.status == 403
+
+
+@pytest.mark.parametrize("host", ["0.0.0.0", "::"])
+async def test_a_server_that_others_can_reach_does_not_open_with_a_terminal(host: str) -> None:
+    page_server = PageServer(host, 0, only_loopback=True)
+    with pytest.raises(LinkwrightError) as refused:
+        await page_server.open()
+    (diagnostic,) = refused.value.diagnostics
+    assert diagnostic.code == "VIEW104"
+    assert host in diagnostic.message
+    assert page_server.web is None
+    local = PageServer("127.0.0.1", 0, only_loopback=True)
+    await local.open()
+    await local.close()
+
+
+async def test_the_end_of_the_shell_is_shown_and_it_starts_again(tmp_path: Path) -> None:
+    async with enabled(tmp_path) as scene, page(scene.viewer) as client:
+        reader = await open_terminal(client)
+        await reader.type("echo first; exit 4\r")
+        await state(client, status=4)
+        await client.send("restart_terminal", terminal=1, columns=100, rows=30)
+        await state(client, status=None)
+        await reader.type("stty size\r")
+        await reader.until("30 100")
+
+
+async def test_another_page_takes_a_terminal_with_its_last_output(tmp_path: Path) -> None:
+    async with enabled(tmp_path) as scene, page(scene.viewer) as first:
+        reader = await open_terminal(first)
+        await reader.type("echo remem'ber'\r")
+        await reader.until("remember\r\n")
+        async with page(scene.viewer) as second:
+            assert (await second.until("terminals"))["terminals"][0]["shown"] == "elsewhere"
+            await second.send("show_terminal", terminal=1, columns=90, rows=20)
+            other = Reader(second)
+            assert (await other.next())["is_replay"]
+            assert "remember\r\n" in other.text
+            await state(first, shown="elsewhere")
+            await first.send("write_terminal", terminal=1, text="echo not'hing'\r", is_binary=False)
+            await state(first, shown="elsewhere")
+            await other.type("stty size; echo do'ne'\r")
+            await other.until("done\r\n")
+            assert "20 90" in other.text
+            assert "nothing" not in other.text
+
+
+async def test_a_reloaded_page_shows_its_terminal_again(tmp_path: Path) -> None:
+    async with enabled(tmp_path) as scene:
+        async with page(scene.viewer) as client:
+            reader = await open_terminal(client)
+            await reader.type("x=4''2\r")
+            await reader.until("x=4")
+        async with page(scene.viewer) as client:
+            await state(client, shown="nowhere")
+            await client.send("show_terminal", terminal=1, **SIZE)
+            reader = Reader(client)
+            await reader.type("echo <$x>\r".replace("<$x>", '"<$x>"'))
+            await reader.until("<42>")
+
+
+async def test_endless_output_waits_for_the_page_and_then_continues(tmp_path: Path) -> None:
+    async with enabled(tmp_path) as scene, page(scene.viewer) as client:
+        reader = await open_terminal(client)
+        reader.acknowledges = False
+        await reader.type("yes\r")
+        numbers = [(await reader.next())["number"] for _ in range(MAX_UNACKNOWLEDGED)]
+        terminal = scene.viewer.add_feature(TerminalFeature)._terminals[1]
+        await asyncio.sleep(0.1)
+        assert terminal._sent == numbers[-1]
+        size = terminal._history._size
+        await asyncio.sleep(0.1)
+        assert terminal._history._size == size
+        reader.acknowledges = True
+        await client.send("acknowledge_terminal", terminal=1, number=numbers[-1])
+        await reader.next()
+        await reader.type("\x03echo do'ne'\r")
+        await reader.until("done\r\n")
+
+
+async def test_programs_continue_while_no_page_shows_them(tmp_path: Path) -> None:
+    async with enabled(tmp_path) as scene:
+        async with page(scene.viewer) as client:
+            reader = await open_terminal(client)
+            await reader.type("seq 300000; touch finished\r")
+        await asyncio.to_thread(wait_until, (tmp_path / "finished").exists, SECONDS)
+        async with page(scene.viewer) as client:
+            await client.send("show_terminal", terminal=1, **SIZE)
+            reader = Reader(client)
+            await reader.until("\r\n300000\r\n")
+            assert "\r\n1\r\n" not in reader.text
+
+
+async def test_closing_a_terminal_ends_its_programs(tmp_path: Path) -> None:
+    async with enabled(tmp_path) as scene, page(scene.viewer) as client:
+        reader = await open_terminal(client)
+        await reader.type("sleep 1000 & sleep 1000 & echo do'ne'\r")
+        await reader.until("done\r\n")
+        leader = leader_of(scene)
+        await client.send("close_terminal", terminal=1)
+        while (await client.until("terminals"))["terminals"]:
+            pass
+        await asyncio.to_thread(wait_until, lambda: not list(session_processes(leader)), SECONDS)
+
+
+async def test_closing_the_server_ends_all_programs(tmp_path: Path) -> None:
+    async with enabled(tmp_path) as scene, page(scene.viewer) as client:
+        reader = await open_terminal(client)
+        await reader.type("trap '' HUP; (trap '' HUP; sleep 1000) & echo do'ne'\r")
+        await reader.until("done\r\n")
+        leader = leader_of(scene)
+        assert list(session_processes(leader))
+    assert list(session_processes(leader)) == []
+
+
+async def test_too_many_terminals_are_refused(tmp_path: Path) -> None:
+    async with enabled(tmp_path, ("/bin/sleep", "1000")) as scene, page(scene.viewer) as client:
+        for _ in range(MAX_TERMINALS + 1):
+            await client.send("open_terminal", **SIZE)
+        refused = await client.until(
+            "terminals", why_not=f"there are already {MAX_TERMINALS} terminals: close one first"
+        )
+        assert len(refused["terminals"]) == MAX_TERMINALS
+
+
+async def test_a_shell_that_cannot_start_is_explained(tmp_path: Path) -> None:
+    async with enabled(tmp_path / "gone") as scene, page(scene.viewer) as client:
+        await client.until("terminals")
+        await client.send("open_terminal", **SIZE)
+        assert "No such file" in (await client.until("terminals"))["why_not"]
+
+
+async def test_a_missing_package_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def fail(*_: object) -> None:
+        raise ModuleNotFoundError("no winpty", name="winpty")
+
+    monkeypatch.setattr(terminals, "open_pty", fail)
+    async with enabled(tmp_path) as scene, page(scene.viewer) as client:
+        await client.until("terminals")
+        await client.send("open_terminal", **SIZE)
+        assert "[learn]" in (await client.until("terminals"))["why_not"]
+
+
+async def test_input_for_a_program_that_does_not_read_is_bounded(tmp_path: Path) -> None:
+    script = "stty raw -echo; echo ready; exec sleep 1000"
+    async with enabled(tmp_path, ("/bin/sh", "-c", script)) as scene, page(scene.viewer) as client:
+        reader = await open_terminal(client)
+        await reader.until("ready")
+        for _ in range(5):
+            await reader.type("x" * 300_000)
+        assert (await client.until("terminal_input_lost"))["size"] == 300_000
+        assert scene.viewer.add_feature(TerminalFeature)._terminals[1]._pty.unwritten_size <= 1024 * 1024
+
+
+async def test_binary_input_reaches_the_program_as_bytes(tmp_path: Path) -> None:
+    script = "stty raw -echo; echo ready; head -c 2 | od -An -tu1"
+    async with enabled(tmp_path, ("/bin/sh", "-c", script)) as scene, page(scene.viewer) as client:
+        reader = await open_terminal(client)
+        await reader.until("ready")
+        await client.send("write_terminal", terminal=1, text="\xff\x80", is_binary=True)
+        await reader.until("255 128")
+
+
+async def test_a_character_in_two_blocks_arrives_whole(tmp_path: Path) -> None:
+    script = r"stty raw; printf '\346'; read -r a; printf '\234\272<'"
+    async with enabled(tmp_path, ("/bin/sh", "-c", script)) as scene, page(scene.viewer) as client:
+        reader = await open_terminal(client)
+        await reader.type("\n")
+        await reader.until("机<")
+
+
+async def test_the_terminal_has_the_commands_of_linkwright_shell(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("SHELL", "/bin/sh")
+    async with world() as scene, page(scene.viewer) as client:
+        scene.viewer.add_feature(TerminalFeature).enable(tmp_path)
+        reader = await open_terminal(client)
+        await reader.type("command -v ros2; command -v linkwright\r")
+        await reader.until("/ros2\r\n")
+        await reader.until("/linkwright\r\n")

@@ -1,0 +1,57 @@
+"""What a page sees of the output before it."""
+
+from __future__ import annotations
+
+from linkwright.panels.terminal.environment import terminal_environment
+from linkwright.panels.terminal.history import LINES, TerminalHistory
+
+
+def history(*parts: str) -> str:
+    made = TerminalHistory()
+    for part in parts:
+        made.add(part)
+    return made.text()
+
+
+def test_short_output_is_shown_as_it_was() -> None:
+    assert history() == ""
+    assert history("\x1b[31mred\x1b[0m\r\n", "$ ") == "\x1b[31mred\x1b[0m\r\n$ "
+
+
+def test_only_the_last_lines_are_shown() -> None:
+    lines = [f"{number}\r\n" for number in range(3 * LINES)]
+    shown = history(*lines, "$ ").splitlines()
+    assert len(shown) == LINES
+    assert (shown[0], shown[-1]) == (str(2 * LINES + 1), "$ ")
+
+
+def test_a_mode_that_was_set_long_ago_is_still_set() -> None:
+    text = history("\x1b[?1049h\x1b[?2004;25h\x1b[?25l", *(f"{number}\r\n" for number in range(2 * LINES)))
+    assert text.startswith("\x1b[?1049h\x1b[?2004h\x1b[?25l")
+    assert history("\x1b[?1049h", "\x1bc", "x\n" * 2 * LINES).startswith("x")
+
+
+def test_endless_output_without_lines_takes_a_bounded_memory() -> None:
+    made = TerminalHistory()
+    made.add("\x1b[?1000h")
+    for _ in range(400):
+        made.add("x" * 10_000)
+        assert made._size <= 1024 * 1024 + 10_000
+    assert made.text().startswith("\x1b[?1000h")
+    assert len(made.text()) <= 512 * 1024 + 100
+
+
+def test_modes_are_found_in_discarded_output() -> None:
+    made = TerminalHistory()
+    made.add("\x1b[?1h\n")
+    made.add(("y" * 1000 + "\n") * 2000)
+    assert made.text().startswith("\x1b[?1hy")
+
+
+def test_a_shell_without_a_locale_gets_utf8() -> None:
+    assert terminal_environment({})["LC_CTYPE"] in ("C.UTF-8", "UTF-8")
+    assert "LC_CTYPE" not in terminal_environment({"LANG": "zh_CN.UTF-8"})
+    assert "LC_CTYPE" not in terminal_environment({"LC_ALL": "C"})
+    made = terminal_environment({"TERM": "dumb", "COLUMNS": "3", "PATH": "/bin"})
+    assert (made["TERM"], made["COLORTERM"], made["PATH"]) == ("xterm-256color", "truecolor", "/bin")
+    assert "COLUMNS" not in made
