@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
 from pathlib import Path
 from typing import Any
@@ -15,6 +15,7 @@ from linkwright.cli.command import _begins_without_verb
 from linkwright.cli.learn.verb import VERBS
 from linkwright.learning.classroom import Classroom, open_classroom, workspace_at
 from linkwright.learning.course import find_course
+from linkwright.learning.page.course_guide import CourseGuide
 from linkwright.learning.page.feature import CourseFeature
 from linkwright.learning.page.step_html import step_html
 from tests.viewer.scene import page, world
@@ -30,12 +31,18 @@ class Shown:
         self.paths: list[Path | None] = []
 
 
+def show_course(scene: Any, room: Classroom, on_changed: Callable[[Path | None], object]) -> None:
+    context = scene.viewer.context
+    guide = CourseGuide(room, context.pages.publish, context.node.get_logger(), on_changed)
+    scene.viewer.add_feature(CourseFeature).show(guide)
+
+
 @asynccontextmanager
 async def classroom(workspace: Path, shown: Shown | None = None) -> AsyncIterator[Any]:
     workspace.mkdir(exist_ok=True)  # noqa: ASYNC240 - nothing else runs
     async with world() as scene:
         room = open_classroom(workspace, "example")
-        scene.viewer.add_feature(CourseFeature).enable(room, (shown or Shown()).paths.append)
+        show_course(scene, room, (shown or Shown()).paths.append)
         async with page(scene.viewer) as client:
             yield client
 
@@ -74,7 +81,7 @@ async def test_a_page_that_opens_receives_the_course_the_step_and_the_last_resul
         workspace = tmp_path / "ws"
         workspace.mkdir()
         room = open_classroom(workspace, "example")
-        scene.viewer.add_feature(CourseFeature).enable(room, lambda _: None)
+        show_course(scene, room, lambda _: None)
         async with page(scene.viewer) as client:
             await results(client)
         async with page(scene.viewer) as client:

@@ -76,9 +76,10 @@ export class LessonPanel implements Panel {
     this.back.disabled = state.neighbor(-1) === undefined;
     this.next.disabled = state.neighbor(1) === undefined;
     this.next.classList.toggle("primary", state.isPassed);
+    this.hint.hidden = step.hint_count === 0;
     this.hint.disabled = step.hints.length >= step.hint_count;
     this.hint.lastChild?.replaceWith(words.hintOf(step.hints.length, step.hint_count));
-    this.solution.disabled = step.solution.length === 0;
+    this.solution.hidden = step.solution.length === 0;
     this.problem.hidden = state.problem === null;
     this.problem.textContent = state.problem ? `${state.problem.message} ${state.problem.hint}`.trim() : "";
     if (this.isOutlineShown) this.outline.draw();

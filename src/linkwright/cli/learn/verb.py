@@ -20,7 +20,9 @@ VERBS = {
     "solution": SubVerb(steps.configure_solution, steps.run_solution, help="copy the solution of a step"),
     "exercises": SubVerb(judge.configure_exercises, judge.run_exercises, help="list the exercises with a judge"),
     "judge": SubVerb(judge.configure_judge, judge.run_judge, help="judge a program for an exercise in several worlds"),
-    "world": SubVerb(judge.configure_world, judge.run_world, help="simulate the world of an exercise in real time"),
+    "world": SubVerb(
+        judge.configure_world, judge.run_world, help="open an exercise in the page, with its world and judge"
+    ),
     "new": SubVerb(lessons.configure_new, lessons.run_new, help="create a course with a first lesson to edit"),
     "test": SubVerb(lessons.configure_test, lessons.run_test, help="test the checks of a course against its solutions"),
     "pack": SubVerb(pack.configure, pack.run, help="make a folder from which a class installs without a network"),

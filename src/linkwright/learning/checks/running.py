@@ -27,7 +27,10 @@ TIME_LIMIT = 120.0
 """The seconds after which the process of a step's checks is ended. Checks with simulated worlds take the longest."""
 
 _DOMAINS = 100
-"""The number of ROS domains among which the process of a check selects its own, without domain 0, the default."""
+"""The number of ROS domains among which the process of a check selects one, without domain 0, the default.
+
+The domain of the learner's own programs is left out, too.
+"""
 
 PYTHON = [sys.executable]
 """The command that runs Python for checks. Tests measure the coverage of its processes."""
@@ -183,7 +186,8 @@ def _read(output: Path) -> Any:
 def main(words: Sequence[str]) -> int:
     """Run the checks of a step, as `check_command` requests it."""
     os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
-    os.environ["ROS_DOMAIN_ID"] = str(1 + os.getpid() % _DOMAINS)
+    domains = [domain for domain in range(1, _DOMAINS + 1) if str(domain) != os.environ.get("ROS_DOMAIN_ID")]
+    os.environ["ROS_DOMAIN_ID"] = str(domains[os.getpid() % len(domains)])
     lesson_folder, step_id, workspace, output, *answers = words
     lesson = load_lesson(Path(lesson_folder))
     step = next(step for step in lesson.steps if step.id == step_id)

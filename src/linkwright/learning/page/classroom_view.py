@@ -78,9 +78,12 @@ class ClassroomView(ModelView):
         return str(self._room.workspace)
 
     def _set_viewer(self, viewer: Viewer) -> None:
+        from linkwright.learning.page.course_guide import CourseGuide
         from linkwright.learning.page.feature import CourseFeature
         from linkwright.panels.source_editor.feature import SourceEditorFeature
 
         super()._set_viewer(viewer)
         viewer.add_feature(SourceEditorFeature).edit_workspace(self._room.workspace)
-        viewer.add_feature(CourseFeature).enable(self._room, self.show)
+        context = viewer.context
+        guide = CourseGuide(self._room, context.pages.publish, context.node.get_logger(), self.show)
+        viewer.add_feature(CourseFeature).show(guide)
