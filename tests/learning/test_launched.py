@@ -44,6 +44,7 @@ def test_nodes_messages_and_transforms_are_waited_for(package):
         assert "<robot" in running.wait_for_message("/robot_description").data
         running.expect_transform("base_link", "left_wheel_link", (0, 0.19, -0.05))
         assert "/robot_state_publisher" in running.nodes()
+        assert running.subscribers("/joint_states") == ["/robot_state_publisher"]
         assert running.wait_for_parameter("/robot_state_publisher", "publish_frequency") > 0
         begin = time.monotonic()
         with pytest.raises(NotYet, match="/robot_state_publisher has no parameter 'colour'"):

@@ -137,6 +137,12 @@ class LaunchCheck:
             if name != _NODE
         ]
 
+    def subscribers(self, topic: str) -> list[str]:
+        """Return the full names of the nodes that subscribe to a topic now."""
+        infos = self._call(lambda: self._checker.get_subscriptions_info_by_topic(topic))
+        nodes = {(info.node_namespace.rstrip("/"), info.node_name) for info in infos}
+        return sorted(f"{namespace}/{name}" for namespace, name in nodes if name != _NODE)
+
     def wait_for_parameter(self, node: str, name: str) -> Any:
         """Return the value of a node's parameter as soon as the node runs and has declared it.
 
