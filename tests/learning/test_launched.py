@@ -14,6 +14,7 @@ from std_msgs.msg import String
 
 rclpy.init()
 node = rclpy.create_node("talker")
+node.declare_parameter("greeting", "hello")
 publisher = node.create_publisher(String, "greeting", 10)
 node.create_timer(0.1, lambda: publisher.publish(String(data="hello")))
 rclpy.spin(node)
@@ -42,7 +43,12 @@ def test_nodes_messages_and_transforms_are_waited_for(package):
         assert "left_wheel_joint" in running.wait_for_message("/joint_states").name
         assert "<robot" in running.wait_for_message("/robot_description").data
         running.expect_transform("base_link", "left_wheel_link", (0, 0.19, -0.05))
+        assert "/robot_state_publisher" in running.nodes()
+        assert running.subscribers("/joint_states") == ["/robot_state_publisher"]
+        assert running.wait_for_parameter("/robot_state_publisher", "publish_frequency") > 0
         begin = time.monotonic()
+        with pytest.raises(NotYet, match="/robot_state_publisher has no parameter 'colour'"):
+            running.wait_for_parameter("/robot_state_publisher", "colour")
         with pytest.raises(NotYet, match="no node '/robot_state_publishr'; there is '/robot_state_publisher'"):
             running.expect_node("/robot_state_publishr")
         with pytest.raises(NotYet, match="no topic '/jont_states'; there is '/joint_states'"):
@@ -71,4 +77,5 @@ def test_a_program_of_the_learner_is_seen_over_the_network(package, tmp_path):
     (package.folder / "launch" / "talk.launch.py").write_text(LAUNCH.format(program=str(program)))
     with package.launch("talk.launch.py") as running:
         running.expect_node("/talker")
+        assert running.wait_for_parameter("/talker", "greeting") == "hello"
         assert running.wait_for_message("/greeting").data == "hello"

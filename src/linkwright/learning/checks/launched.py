@@ -127,7 +127,53 @@ class LaunchCheck:
         Raises:
             NotYet: the node did not start in time.
         """
-        self._wait_until(lambda: name in self._nodes(), lambda: _missing("node", name, self._nodes()))
+        self._wait_until(lambda: name in self.nodes(), lambda: _missing("node", name, self.nodes()))
+
+    def nodes(self) -> list[str]:
+        """Return the full names of the nodes that run now."""
+        return [
+            f"{namespace.rstrip('/')}/{name}"
+            for name, namespace in self._call(self._checker.get_node_names_and_namespaces)
+            if name != _NODE
+        ]
+
+    def subscribers(self, topic: str) -> list[str]:
+        """Return the full names of the nodes that subscribe to a topic now."""
+        infos = self._call(lambda: self._checker.get_subscriptions_info_by_topic(topic))
+        nodes = {(info.node_namespace.rstrip("/"), info.node_name) for info in infos}
+        return sorted(f"{namespace}/{name}" for namespace, name in nodes if name != _NODE)
+
+    def wait_for_parameter(self, node: str, name: str) -> Any:
+        """Return the value of a node's parameter as soon as the node runs and has declared it.
+
+        Args:
+            node: the full name of the node.
+            name: the name of the parameter.
+
+        Raises:
+            NotYet: the node did not start in time, or has no such parameter.
+        """
+        from linkwright.graph.parameters.client import AsyncParameterClient
+        from linkwright.graph.parameters.parameter import parameter_value_to_python
+
+        self.expect_node(node)
+        client = self._call(lambda: AsyncParameterClient(self._checker, node))
+        pending: list[Any] = []
+        found: list[Any] = []
+
+        def has_value() -> bool:
+            """Ask again after each response, because a node starts before it declares its parameters."""
+            if pending and pending[0].ended():
+                found[:] = [value for value in pending.pop().result().values if value.type]
+            if not pending and not found and self._call(client.services_are_ready):
+                pending.append(self._call(lambda: client.get_parameters([name])))
+            return bool(found)
+
+        try:
+            self._wait_until(has_value, phrase("{node} has no parameter '{name}'", node=node, name=name))
+        finally:
+            self._call(client.destroy)
+        return parameter_value_to_python(found[0])
 
     def wait_for_message(self, topic: str, accept: Callable[[Any], bool] | None = None) -> Any:
         """Return the next message of a topic.
@@ -217,13 +263,6 @@ class LaunchCheck:
             return []
         return [(translation.x, translation.y, translation.z)]
 
-    def _nodes(self) -> list[str]:
-        return [
-            f"{namespace.rstrip('/')}/{name}"
-            for name, namespace in self._call(self._checker.get_node_names_and_namespaces)
-            if name != _NODE
-        ]
-
     def _topics(self) -> list[str]:
         return [name for name, _ in self._call(self._checker.get_topic_names_and_types)]
 
@@ -255,7 +294,7 @@ class LaunchCheck:
 
     def _graph(self) -> tuple[Sequence[str], Sequence[str]]:
         """Return the nodes and topics of the graph; both are empty before the launch starts."""
-        return ([], []) if self._node is None or self._run.done() else (self._nodes(), self._topics())
+        return ([], []) if self._node is None or self._run.done() else (self.nodes(), self._topics())
 
     @property
     def _quiet_seconds(self) -> float:

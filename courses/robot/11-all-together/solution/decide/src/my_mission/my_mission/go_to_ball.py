@@ -1,0 +1,6 @@
+def main():
+    print('Hello from my_mission.')
+
+
+if __name__ == '__main__':
+    main()

@@ -1,0 +1,61 @@
+import rclpy
+from geometry_msgs.msg import PointStamped, Twist
+from my_mission.decisions import velocity
+from rclpy.duration import Duration
+from rclpy.executors import ExternalShutdownException
+from rclpy.node import Node
+from rclpy.signals import SignalHandlerOptions
+from std_msgs.msg import String
+
+FRESH = Duration(seconds=0.5)
+
+
+class GoToBall(Node):
+    def __init__(self):
+        super().__init__('go_to_ball')
+        self.declare_parameter('stop_distance', 0.5)
+        self.declare_parameter('speed', 0.3)
+        self.declare_parameter('turn_speed', 1.0)
+        self.target = ''
+        self.ball = None
+        self.seen = None
+        self.velocity = self.create_publisher(Twist, 'cmd_vel', 10)
+        self.create_subscription(String, 'target', self.on_target, 10)
+        self.create_subscription(PointStamped, 'ball', self.on_ball, 10)
+        self.create_timer(0.1, self.decide)
+
+    def on_target(self, message):
+        self.target = message.data
+        self.ball = None
+
+    def on_ball(self, message):
+        self.ball = message.point
+        self.seen = self.get_clock().now()
+
+    def value(self, name):
+        return self.get_parameter(name).value
+
+    def decide(self):
+        if self.target and self.ball and self.get_clock().now() - self.seen < FRESH:
+            self.drive(*velocity(self.ball.x, self.ball.y, self.value('stop_distance'),
+                                 self.value('speed'), self.value('turn_speed')))
+        else:
+            self.drive(0.0, 0.0)
+
+    def drive(self, speed, turn):
+        message = Twist()
+        message.linear.x = speed
+        message.angular.z = turn
+        self.velocity.publish(message)
+
+
+def main():
+    rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
+    node = GoToBall()
+    try:
+        rclpy.spin(node)
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass
+    finally:
+        node.drive(0.0, 0.0)
+        rclpy.try_shutdown()

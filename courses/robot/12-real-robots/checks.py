@@ -1,0 +1,328 @@
+import numpy as np
+
+from linkwright.control.hardware.description import hardware_from_robot
+from linkwright.diagnostics import SourceText
+from linkwright.graph import QoSProfile, ReliabilityPolicy
+from linkwright.learning import NotYet, check
+from linkwright.messages import get_message
+from linkwright.packages.readers.cmake import read_cmake
+from linkwright.testing import SteppedGraph
+from linkwright.xmltree import parse_file
+
+String, Image, CameraInfo, PointStamped = (
+    get_message(name)
+    for name in (
+        "std_msgs/msg/String",
+        "sensor_msgs/msg/Image",
+        "sensor_msgs/msg/CameraInfo",
+        "geometry_msgs/msg/PointStamped",
+    )
+)
+WIDTH, HEIGHT, FOCAL_LENGTH = 320, 240, 240.0
+BALL_COLUMN = 80
+RELIABLE = QoSProfile(depth=10)
+BEST_EFFORT = QoSProfile(depth=5, reliability=ReliabilityPolicy.BEST_EFFORT)
+
+
+def ball_image(color, encoding, stamp):
+    """Return an image of a ball on the left, in an encoding."""
+    pixels = np.full((HEIGHT, WIDTH, 3), 90, np.uint8)
+    columns, rows = np.meshgrid(np.arange(WIDTH), np.arange(HEIGHT))
+    value = {"red": (200, 20, 20), "blue": (20, 30, 200)}[color]
+    pixels[np.hypot(columns - BALL_COLUMN, rows - 120) < 20] = value if encoding == "rgb8" else value[::-1]
+    if encoding == "mono8":
+        pixels = pixels[:, :, :1]
+    image = Image(height=HEIGHT, width=WIDTH, encoding=encoding, step=pixels.strides[0], data=pixels.tobytes())
+    image.header.stamp = stamp
+    image.header.frame_id = "camera"
+    return image
+
+
+def see(work, color, encoding, profile=RELIABLE, target="red"):
+    """Show images to color_finder, and return the balls that it publishes."""
+    main = work.package("my_senses").program("color_finder")
+    with SteppedGraph() as test:
+        balls = test.record("/ball", "geometry_msgs/msg/PointStamped")
+        test.start_program(main)
+        test.advance(0.5)
+        test.publish("/target", String(data=target))
+        test.advance(0.1)
+        for _ in range(5):
+            stamp = test.node.get_clock().now().to_msg()
+            lens = CameraInfo(height=HEIGHT, width=WIDTH)
+            lens.k = [FOCAL_LENGTH, 0.0, WIDTH / 2, 0.0, FOCAL_LENGTH, HEIGHT / 2, 0.0, 0.0, 1.0]
+            lens.header.stamp = stamp
+            test.publish("/camera/camera_info", lens, profile)
+            test.publish("/camera/image_raw", ball_image(color, encoding, stamp), profile)
+            test.advance(0.1)
+        return list(balls)
+
+
+def expect_ball(balls, what_en, what_zh):
+    if not balls:
+        raise NotYet(
+            en=f"{what_en}, color_finder publishes nothing on /ball.",
+            zh=f"{what_zh}，color_finder 没有在 /ball 上发布。",
+        )
+    point = balls[-1].point
+    if not (1.5 < point.x < 2.1 and 0.4 < point.y < 0.8):
+        raise NotYet(
+            en=f"{what_en}, the ball is at x = {point.x:.2f}, y = {point.y:.2f}, but should be near 1.8, 0.6.",
+            zh=f"{what_zh}，球在 x = {point.x:.2f}，y = {point.y:.2f}，应当在 1.8，0.6 附近。",
+        )
+
+
+@check(
+    "camera",
+    en="color_finder finds the red ball in bgr8 and in rgb8.",
+    zh="color_finder 在 bgr8 和 rgb8 图像中都能找到红球。",
+)
+def finds_in_encodings(work):
+    for encoding in ("rgb8", "bgr8"):
+        expect_ball(
+            see(work, "red", encoding),
+            f"For a red ball in an image of encoding {encoding}",
+            f"图像编码为 {encoding}、其中有红球时",
+        )
+
+
+@check("camera", en="It does not take a blue ball for a red one.", zh="它不会把蓝球当作红球。")
+def keeps_colors_apart(work):
+    for encoding in ("rgb8", "bgr8"):
+        if see(work, "blue", encoding):
+            raise NotYet(
+                en=f"In an image of encoding {encoding}, it takes the blue ball for the red one.",
+                zh=f"图像编码为 {encoding} 时，它把蓝球当作了红球。",
+            )
+
+
+@check("camera", en="An image without colors does not end it.", zh="没有颜色的图像不会让它退出。")
+def survives_other_encodings(work):
+    if see(work, "red", "mono8"):
+        raise NotYet(
+            en="It finds a red ball in an image of encoding mono8, which has no colors.",
+            zh="它在编码为 mono8 的图像中找到了红球，而这种图像没有颜色。",
+        )
+
+
+@check(
+    "qos",
+    en="color_finder receives images that are sent with best effort.",
+    zh="color_finder 能收到以 best effort 发送的图像。",
+)
+def receives_best_effort(work):
+    expect_ball(see(work, "red", "rgb8", BEST_EFFORT), "For a camera with best effort", "摄像头以 best effort 发布时")
+
+
+@check("qos", en="It still receives those of the simulated camera.", zh="它仍然能收到仿真摄像头的图像。")
+def receives_reliable(work):
+    expect_ball(see(work, "red", "rgb8", RELIABLE), "For a reliable camera", "摄像头以 reliable 发布时")
+
+
+@check(
+    "give-up",
+    en="After search_time without a ball, go_to_ball stops and waits.",
+    zh="search_time 内没看到球，go_to_ball 就停下等待。",
+)
+def gives_up(work):
+    for arguments, before, after in (([], 18.0, 22.0), (["--ros-args", "-p", "search_time:=5.0"], 4.0, 6.0)):
+        named = " ".join(arguments[2:])
+        with_en, with_zh = (f" with {named}", f"（{named}）") if named else ("", "")
+        with SteppedGraph() as test:
+            commands, states = start_driver(work, test, arguments)
+            test.publish("/target", String(data="red"))
+            test.advance(before)
+            if not commands.last.angular.z:
+                raise NotYet(
+                    en=f"{before:g} s after the command{with_en}, it no longer searches.",
+                    zh=f"命令之后 {before:g} s{with_zh}，它已经不再寻找。",
+                )
+            test.advance(after - before)
+            if commands.last.angular.z or states.last.data != "waiting":
+                raise NotYet(
+                    en=f"{after:g} s after the command{with_en}, it is {states.last.data} and turns at "
+                    f"{commands.last.angular.z:g} rad/s.",
+                    zh=f"命令之后 {after:g} s{with_zh}，它的状态是 {states.last.data}，"
+                    f"以 {commands.last.angular.z:g} rad/s 转弯。",
+                )
+
+
+@check("give-up", en="A ball that it sees starts the time anew.", zh="看到球之后，时间重新开始计算。")
+def searches_again(work):
+    with SteppedGraph() as test:
+        commands, _ = start_driver(work, test, ["--ros-args", "-p", "search_time:=5.0"])
+        test.publish("/target", String(data="red"))
+        test.advance(4.0)
+        ball = PointStamped()
+        ball.point.x, ball.point.y = 2.0, 0.1
+        for _ in range(20):
+            ball.header.stamp = test.node.get_clock().now().to_msg()
+            test.publish("/ball", ball)
+            test.advance(0.1)
+        if not commands.last.linear.x:
+            raise NotYet(en="It does not drive to a ball that it finds.", zh="找到球之后，它没有驶向球。")
+        test.advance(3.0)
+        if not commands.last.angular.z:
+            raise NotYet(
+                en="When it loses the ball, it does not search for another 5 s.",
+                zh="球丢失之后，它没有再寻找 5 s。",
+            )
+
+
+def start_driver(work, test, arguments):
+    commands = test.record("/cmd_vel", "geometry_msgs/msg/Twist")
+    states = test.record("/state", "std_msgs/msg/String")
+    test.start_program(work.package("my_mission").program("go_to_ball"), arguments)
+    test.advance(0.5)
+    if not len(commands) or not len(states):
+        raise NotYet(
+            en="go_to_ball publishes nothing on /cmd_vel or /state.",
+            zh="go_to_ball 没有在 /cmd_vel 或 /state 上发布。",
+        )
+    return commands, states
+
+
+BRINGUP, MODEL, LAUNCH = "my_robot_bringup", "urdf/mbot_hardware.xacro", "robot.launch.py"
+REAL, MOCK = "diffdrive_arduino/DiffDriveArduinoHardware", "mock_components/GenericSystem"
+WHEELS = ("left_wheel_joint", "right_wheel_joint")
+
+
+def hardware(work, **arguments):
+    """Return the only <ros2_control> of the learner's robot."""
+    found, _ = hardware_from_robot(work.package(BRINGUP).robot(MODEL, **arguments).robot)
+    if len(found) != 1:
+        raise NotYet(
+            en=f"The robot has {len(found)} elements <ros2_control>, but should have one.",
+            zh=f"机器人有 {len(found)} 个 <ros2_control>，应当有一个。",
+        )
+    return found[0]
+
+
+@check(
+    "hardware",
+    en="Both wheels take velocities, and report position and velocity.",
+    zh="两个轮子都接受速度命令，并报告位置和速度。",
+)
+def wheels_have_interfaces(work):
+    joints = {joint.name: joint for joint in hardware(work).joints}
+    for name in WHEELS:
+        if name not in joints:
+            raise NotYet(en=f"<ros2_control> has no joint '{name}'.", zh=f"<ros2_control> 中没有关节“{name}”。")
+        commands, states = (
+            {each.name for each in each_kind} for each_kind in (joints[name].commands, joints[name].states)
+        )
+        if commands != {"velocity"} or states != {"position", "velocity"}:
+            actual = f"{', '.join(sorted(commands)) or '-'}; {', '.join(sorted(states)) or '-'}"
+            raise NotYet(
+                en=f"The interfaces of '{name}' are: {actual}; they should be: velocity; position, velocity.",
+                zh=f"“{name}”的命令接口和状态接口是：{actual}。应当是 velocity；position, velocity。",
+            )
+
+
+@check("hardware", en="The arguments hardware and device are used.", zh="参数 hardware 和 device 起作用。")
+def arguments_select_hardware(work):
+    for arguments, plugin, device in (
+        ({}, REAL, "/dev/ttyUSB0"),
+        ({"hardware": MOCK}, MOCK, "/dev/ttyUSB0"),
+        ({"device": "/dev/ttyACM1"}, REAL, "/dev/ttyACM1"),
+    ):
+        system = hardware(work, **arguments)
+        named = ", ".join(f"{name}:={value}" for name, value in arguments.items())
+        actual = system.plugin, system.parameters.get("device", "-")
+        if actual != (plugin, device):
+            raise NotYet(
+                en=f"With {named or 'no arguments'}, plugin and device are {actual[0]} and {actual[1]}, but should be "
+                f"{plugin} and {device}.",
+                zh=f"参数为“{named or '无'}”时，插件和设备是 {actual[0]} 和 {actual[1]}，应当是 {plugin} 和 {device}。",
+            )
+
+
+@check(
+    "bringup",
+    en="robot.launch.py starts the controllers and the mission.",
+    zh="robot.launch.py 启动控制器和任务的节点。",
+)
+def launch_starts_robot(work):
+    with work.package(BRINGUP).launch(LAUNCH, hardware=MOCK, camera="false") as running:
+        for name in (
+            "/robot_state_publisher",
+            "/controller_manager",
+            "/base_controller",
+            "/color_finder",
+            "/go_to_ball",
+        ):
+            running.expect_node(name)
+        running.wait_for_message("/joint_states", lambda message: set(WHEELS) <= set(message.name))
+        if "/gazebo" in running.nodes():
+            raise NotYet(en="The simulator starts, too.", zh="仿真器也启动了。")
+        for name in ("/go_to_ball", "/color_finder"):
+            if running.wait_for_parameter(name, "use_sim_time"):
+                raise NotYet(
+                    en=f"{name} waits for simulated time: use_sim_time is true.",
+                    zh=f"{name} 在等待仿真时间：use_sim_time 是 true。",
+                )
+        subscribers = running.subscribers("/cmd_vel")
+    if "/base_controller" not in subscribers:
+        raise NotYet(
+            en=f"base_controller does not subscribe to /cmd_vel; its subscribers are: {', '.join(subscribers) or '-'}.",
+            zh=f"base_controller 没有订阅 /cmd_vel；订阅者是：{', '.join(subscribers) or '-'}。",
+        )
+
+
+NEEDED = ("controller_manager", "launch_ros", "my_mission", "my_robot_description", "usb_cam", "xacro")
+FILES = ("config/controllers.yaml", f"launch/{LAUNCH}", MODEL)
+
+
+@check(
+    "install",
+    en="CMakeLists.txt installs the folders config, launch and urdf.",
+    zh="CMakeLists.txt 安装文件夹 config、launch 和 urdf。",
+)
+def cmake_installs(work):
+    package = work.package(BRINGUP)
+    path = package.file("CMakeLists.txt")
+    rules = read_cmake(SourceText(str(path), path.read_text(encoding="utf-8")), package.folder)
+    try:
+        installed = {file.destination for file in rules.installed(package.folder)}
+    except FileNotFoundError as error:
+        raise NotYet(
+            en=f"CMakeLists.txt installs '{error}', which does not exist.",
+            zh=f"CMakeLists.txt 安装了不存在的“{error}”。",
+        ) from None
+    for name in FILES:
+        package.file(name)
+        if f"share/{BRINGUP}/{name}" not in installed:
+            raise NotYet(
+                en=f"CMakeLists.txt does not install '{name}' as share/{BRINGUP}/{name}.",
+                zh=f"CMakeLists.txt 没有把“{name}”安装为 share/{BRINGUP}/{name}。",
+            )
+
+
+@check("install", en="package.xml lists what the launch file needs.", zh="package.xml 列出了 launch 文件需要的东西。")
+def manifest_lists_needed(work):
+    root = parse_file(work.package(BRINGUP).file("package.xml")).root
+    listed = {element.text().strip() for element in root.elements() if element.tag in {"depend", "exec_depend"}}
+    if missing := sorted(set(NEEDED) - listed):
+        raise NotYet(
+            en=f"package.xml does not list '{missing[0]}' as a dependency at run time.",
+            zh=f"package.xml 没有把“{missing[0]}”列为运行时依赖。",
+        )
+
+
+@check("install", en="No package has findings.", zh="所有功能包都没有问题。")
+def packages_have_no_findings(work):
+    for name in (BRINGUP, "my_mission", "my_senses"):
+        work.package(name).expect_no_findings()
+
+
+@check("domain", en="The port is right.", zh="端口正确。")
+def knows_port(work):
+    slips = {
+        7442: NotYet(en="Each domain has 250 ports, not one.", zh="每个域有 250 个端口，不是一个。"),
+        10500: NotYet(en="Add the 7400 of domain 0.", zh="请加上域 0 的 7400。"),
+        7650: NotYet(en="That is the port of domain 1.", zh="这是域 1 的端口。"),
+        18150: NotYet(
+            en="That is the port of domain 43; domain 0 has 7400.", zh="这是域 43 的端口；域 0 的端口是 7400。"
+        ),
+    }
+    work.expect_number(17900, tolerance=0.5, slips=slips)

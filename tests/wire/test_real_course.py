@@ -1,0 +1,202 @@
+"""The nodes of the course's solutions run under the real rclpy, unchanged, beside ours; see `test_real_ros`."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from math import inf
+from pathlib import Path
+
+import pytest
+
+from linkwright.learning.course import find_course, load_course
+from linkwright.messages import String, get_message, get_service
+from linkwright.packages.programs.source_programs import source_programs
+
+PYTHON = os.environ.get("LINKWRIGHT_ROS_PYTHON", "")
+SECONDS = 90.0
+RED_BALL = (-1.5, 1.8)
+
+Float64, Twist = get_message("std_msgs/msg/Float64"), get_message("geometry_msgs/msg/Twist")
+Odometry, LaserScan = get_message("nav_msgs/msg/Odometry"), get_message("sensor_msgs/msg/LaserScan")
+
+pytestmark = [
+    pytest.mark.skipif(not PYTHON, reason="LINKWRIGHT_ROS_PYTHON names no interpreter with rclpy"),
+    pytest.mark.extra("learn"),
+]
+
+
+@pytest.fixture(scope="module")
+def workspace(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The workspace of a learner who has reached the end of lesson 11."""
+    folder = tmp_path_factory.mktemp("workspace")
+    for lesson in load_course(find_course("robot")).lessons:
+        if lesson.id >= "12":
+            break
+        for source in (lesson.start, *(step.solution for step in lesson.steps)):
+            if source.is_dir():
+                shutil.copytree(source, folder, dirs_exist_ok=True)
+    return folder
+
+
+@pytest.fixture
+def run(workspace):
+    """Starts an executable of the workspace in the real ROS 2; gone after the test."""
+    started: list[subprocess.Popen[str]] = []
+
+    def start(package: str, executable: str, *parameters: str) -> subprocess.Popen[str]:
+        folder = workspace / "src" / package
+        entry = source_programs(folder).entry_points[executable]
+        words = [word for parameter in parameters for word in ("-p", parameter)]
+        started.append(
+            subprocess.Popen(
+                [PYTHON, "-c", f"from {entry.module} import {entry.function} as main; main()", "--ros-args", *words],
+                env={**os.environ, "PYTHONPATH": str(folder), "RMW_IMPLEMENTATION": "rmw_fastrtps_cpp"},
+                stderr=subprocess.PIPE,
+                text=True,
+            )
+        )
+        return started[-1]
+
+    yield start
+    for each in started:
+        each.kill()
+        each.communicate()
+
+
+@pytest.fixture
+def velocities(processes):
+    """Our node, and what it hears on /cmd_vel."""
+    us = processes("ours")
+    heard: list[tuple[float, float]] = []
+    us.node.create_subscription(
+        Twist, "/cmd_vel", lambda message: heard.append((message.linear.x, message.angular.z)), 10
+    )
+    return us, heard
+
+
+def interrupt(process: subprocess.Popen[str]) -> str:
+    """End a program as Ctrl-C does, and return its errors."""
+    process.send_signal(signal.SIGINT)
+    return process.communicate(timeout=SECONDS)[1]
+
+
+def test_first_move_drives_by_its_parameters_and_stops_the_robot_at_ctrl_c(velocities, run):
+    us, heard = velocities
+    program = run("my_control", "first_move", "speed:=0.4", "duration:=60.0")
+    us.spin_until(lambda: (0.4, 0.5) in heard, SECONDS)
+    assert "Traceback" not in interrupt(program)
+    us.spin_until(lambda: heard[-1] == (0.0, 0.0), SECONDS)
+
+
+def test_the_odometer_adds_up_and_is_reset(processes, run):
+    us = processes("ours")
+    distances: list[float] = []
+    us.node.create_subscription(Float64, "/distance", lambda message: distances.append(message.data), 10)
+    publisher = us.node.create_publisher(Odometry, "/odom", 10)
+    trigger = get_service("std_srvs/srv/Trigger")
+    client = us.node.create_client(trigger, "/reset_distance")
+    run("my_control", "odometer")
+    us.spin_until(lambda: publisher.get_subscription_count() and us.node.count_publishers("/distance"), SECONDS)
+    for x in (0.0, 1.0, 0.0):
+        message = Odometry()
+        message.pose.pose.position.x = x
+        publisher.publish(message)
+    us.spin_until(lambda: distances and distances[-1] == 2.0, SECONDS)
+    us.spin_until(client.service_is_ready, SECONDS)
+    answer = client.call_async(trigger.Request())
+    us.spin_until(answer.done, SECONDS)
+    assert answer.result().success
+
+
+def odometry(x):
+    message = Odometry()
+    message.pose.pose.position.x = x
+    message.pose.pose.orientation.w = 1.0
+    return message
+
+
+def scan(distance):
+    return LaserScan(
+        angle_min=-1.5, angle_max=1.5, angle_increment=0.1, range_min=0.1, range_max=10.0, ranges=[distance] * 31
+    )
+
+
+@pytest.mark.parametrize(
+    ("executable", "topic", "drives", "does_not_drive"),
+    [
+        ("drive_meter", "/odom", odometry(0.0), odometry(1.0)),
+        ("drive_square", "/odom", odometry(0.2), None),
+        ("stop_at_wall", "/scan", scan(inf), scan(0.4)),
+        ("wander", "/scan", scan(5.0), scan(0.4)),
+    ],
+)
+def test_nodes_drive_by_what_they_measure(velocities, run, executable, topic, drives, does_not_drive):
+    us, heard = velocities
+    publisher = us.node.create_publisher(type(drives), topic, 10)
+    program = run("my_control", executable)
+    us.spin_until(lambda: publisher.get_subscription_count() and us.node.count_publishers("/cmd_vel"), SECONDS)
+
+    def tell(message, condition):
+        publisher.publish(message)
+        return heard and condition(heard[-1][0])
+
+    us.spin_until(lambda: tell(drives, lambda speed: speed > 0.0), SECONDS)
+    if does_not_drive is not None:
+        us.spin_until(lambda: tell(does_not_drive, lambda speed: speed == 0.0), SECONDS)
+    assert "Traceback" not in interrupt(program)
+
+
+@pytest.mark.extra("sim")
+def test_the_mission_is_told_in_chinese_and_arrives_at_the_red_ball(workspace, processes, run):
+    """The world is ours, and each node of the learner runs under the real rclpy."""
+    us = processes("ours")
+    states: list[str] = []
+    places: list[tuple[float, float]] = []
+    us.node.create_subscription(String, "/state", lambda message: states.append(message.data), 10)
+    us.node.create_subscription(
+        Odometry,
+        "/odom",
+        lambda message: places.append((message.pose.pose.position.x, message.pose.pose.position.y)),
+        10,
+    )
+    commands = us.node.create_publisher(String, "/command", 10)
+    words = [sys.executable, "-m", "linkwright", "launch", "my_playroom", "playroom.launch.py"]
+    with subprocess.Popen(
+        words, cwd=workspace, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True
+    ) as world:
+        try:
+            programs = [
+                run(package, name, "use_sim_time:=true")
+                for package, name in (
+                    ("my_senses", "command_listener"),
+                    ("my_senses", "color_finder"),
+                    ("my_mission", "go_to_ball"),
+                )
+            ]
+            us.spin_until(lambda: states and places and commands.get_subscription_count(), SECONDS)
+            us.spin_until(lambda: us.node.count_subscribers("/target") == 2, SECONDS)
+            us.spin_until(lambda: us.node.count_publishers("/camera/image_raw"), SECONDS)
+
+            told = -inf
+
+            def is_driving():
+                """Repeat the command, because not all nodes may know each other yet when the first one comes."""
+                nonlocal told
+                if time.monotonic() > told + 4.0:
+                    commands.publish(String(data="去红球那里"))
+                    told = time.monotonic()
+                return "driving" in states
+
+            us.spin_until(is_driving, SECONDS)
+            us.spin_until(lambda: states[-1] == "arrived", SECONDS)
+            x, y = places[-1]
+            assert 0.4 < ((x - RED_BALL[0]) ** 2 + (y - RED_BALL[1]) ** 2) ** 0.5 < 1.0
+            assert not any("Traceback" in interrupt(program) for program in programs)
+        finally:
+            world.send_signal(signal.SIGINT)
+            world.wait(SECONDS)
