@@ -8,6 +8,7 @@ from linkwright.messages import get_message
 from linkwright.testing import SteppedGraph
 
 IMAGE, INFO, POINT = "sensor_msgs/msg/Image", "sensor_msgs/msg/CameraInfo", "geometry_msgs/msg/PointStamped"
+DETECTIONS = "vision_msgs/msg/Detection2DArray"
 IMAGES = "/camera/image_raw"
 WIDTH, HEIGHT = 320, 240
 CAMERA = 0.17, 0.0, 0.21
@@ -15,7 +16,7 @@ BALL = 2.0, 0.3, 0.15
 MARKERS = {7: (2.0, 0.4, 0.3), 23: (2.5, -0.7, 0.35)}
 STARTS = ((0.0, 0.0, 0.0), (0.6, -0.3, 0.35), (3.2, 1.0, -2.6))
 
-RED = {"red": (205, 25, 25), "dark red": (92, 12, 10), "light red": (255, 70, 66)}
+RED = {"red": (205, 25, 25), "crimson": (190, 15, 45), "dark red": (92, 12, 10), "light red": (255, 70, 66)}
 OTHERS = {
     "white": (255, 255, 255),
     "gray": (128, 128, 128),
@@ -26,6 +27,7 @@ OTHERS = {
 }
 CHINESE = {
     "red": "红色",
+    "crimson": "绯红色",
     "dark red": "深红色",
     "light red": "浅红色",
     "white": "白色",
@@ -103,9 +105,10 @@ def has_optical_frame(work):
     if not np.allclose(rotation, [(0, 0, 1), (-1, 0, 0), (0, -1, 0)], atol=0.02):
         x, y, z = (round(float(value), 2) + 0.0 for value in rotation[:, 2])
         raise NotYet(
-            en=f"The z axis of camera_optical_frame points along {x:g} {y:g} {z:g} in camera_link. z must point forward "
-            "(1 0 0), and x to the right (0 -1 0).",
-            zh=f"camera_optical_frame 的 z 轴在 camera_link 中指向 {x:g} {y:g} {z:g}。z 应当指向前方（1 0 0），x 应当指向右方（0 -1 0）。",
+            en=f"The z axis of camera_optical_frame points along {x:g} {y:g} {z:g} in camera_link. "
+            "z must point forward (1 0 0), and x to the right (0 -1 0).",
+            zh=f"camera_optical_frame 的 z 轴在 camera_link 中指向 {x:g} {y:g} {z:g}。"
+            "z 应当指向前方（1 0 0），x 应当指向右方（0 -1 0）。",
         )
 
 
@@ -151,21 +154,19 @@ def mask_of(work, encoding="rgb8"):
 @check("red", en="The mask contains what is red, dark or light.", zh="掩膜包含红色的部分，无论深浅。")
 def mask_has_red(work):
     _, shares = mask_of(work)
-    for name in RED:
+    for name, color in RED.items():
         if shares[name] < 0.9:
-            raise NotYet(
-                en=f"The mask lacks {name}, rgb {RED[name]}.", zh=f"掩膜中缺少{CHINESE[name]}，rgb {RED[name]}。"
-            )
+            raise NotYet(en=f"The mask lacks {name}, rgb {color}.", zh=f"掩膜中缺少{CHINESE[name]}，rgb {color}。")
 
 
 @check("red", en="It contains no other color.", zh="掩膜不包含其他颜色。")
 def mask_has_nothing_else(work):
     _, shares = mask_of(work)
-    for name in OTHERS:
+    for name, color in OTHERS.items():
         if shares[name] > 0.1:
             raise NotYet(
-                en=f"The mask contains {name}, rgb {OTHERS[name]}.",
-                zh=f"掩膜包含{CHINESE[name]}，rgb {OTHERS[name]}。",
+                en=f"The mask contains {name}, rgb {color}.",
+                zh=f"掩膜包含{CHINESE[name]}，rgb {color}。",
             )
 
 
@@ -174,8 +175,8 @@ def mask_obeys_encoding(work):
     _, shares = mask_of(work, "bgr8")
     if shares["red"] < 0.9 or shares["blue"] > 0.1:
         raise NotYet(
-            en="In an image with the encoding bgr8, the mask has other colors than in one with rgb8; let CvBridge convert "
-            "to one of them.",
+            en="In an image with the encoding bgr8, the mask has other colors than in one with rgb8; "
+            "let CvBridge convert to one of them.",
             zh="对于编码为 bgr8 的图像，掩膜中的颜色与 rgb8 的不同；请让 CvBridge 转换成其中一种。",
         )
 
@@ -223,7 +224,7 @@ def find_ball(work, start):
     return balls
 
 
-def metres(point):
+def meters(point):
     return " ".join(f"{value:.2f}" for value in point)
 
 
@@ -254,15 +255,16 @@ def ball_is_right(work):
         expected = seen_from(start, BALL)
         if not len(balls):
             raise NotYet(
-                en=f"The ball is at {metres(expected)} in camera_link, but nothing is published on /ball.",
-                zh=f"球在 camera_link 中位于 {metres(expected)}，但 /ball 上没有消息。",
+                en=f"The ball is at {meters(expected)} in camera_link, but nothing is published on /ball.",
+                zh=f"球在 camera_link 中位于 {meters(expected)}，但 /ball 上没有消息。",
             )
         point = balls.last.point
         actual = point.x, point.y, point.z
         if math.dist(actual, expected) > 0.08 + 0.05 * expected[0]:
             raise NotYet(
-                en=f"/ball says {metres(actual)}, but the ball is at {metres(expected)} in camera_link (forward, left, up).",
-                zh=f"/ball 是 {metres(actual)}，而球在 camera_link 中位于 {metres(expected)}（前、左、上）。",
+                en=f"/ball says {meters(actual)}, but the ball is at {meters(expected)} in camera_link "
+                "(forward, left, up).",
+                zh=f"/ball 是 {meters(actual)}，而球在 camera_link 中位于 {meters(expected)}（前、左、上）。",
             )
 
 
@@ -333,8 +335,9 @@ def markers_are_right(work):
             actual = position.x, position.y, position.z
             if math.dist(actual, expected) > 0.05 + 0.05 * forward:
                 raise NotYet(
-                    en=f"'marker_{number}' is at {metres(actual)} in camera_optical_frame, but should be at {metres(expected)}.",
-                    zh=f"“marker_{number}”在 camera_optical_frame 中位于 {metres(actual)}，应当是 {metres(expected)}。",
+                    en=f"'marker_{number}' is at {meters(actual)} in camera_optical_frame, "
+                    f"but should be at {meters(expected)}.",
+                    zh=f"“marker_{number}”在 camera_optical_frame 中位于 {meters(actual)}，应当是 {meters(expected)}。",
                 )
 
 
@@ -345,7 +348,8 @@ def markers_face_camera(work):
         toward_camera = -(1 - 2 * (q.x * q.x + q.y * q.y))
         if toward_camera < 0.9:
             raise NotYet(
-                en=f"The z axis of '{name}' does not point toward the camera; its rotation is {q.x:.2f} {q.y:.2f} {q.z:.2f} {q.w:.2f}.",
+                en=f"The z axis of '{name}' does not point toward the camera; "
+                f"its rotation is {q.x:.2f} {q.y:.2f} {q.z:.2f} {q.w:.2f}.",
                 zh=f"“{name}”的 z 轴没有指向相机；它的旋转是 {q.x:.2f} {q.y:.2f} {q.z:.2f} {q.w:.2f}。",
             )
 
@@ -463,9 +467,7 @@ def ignores_others(work):
     expect_turn(work, 0, "Without a detection", "没有检测结果时")
     expect_turn(work, 0, "With a cone at the left edge and no ball", "左边有锥桶而没有球时", detection("cone", 40, 50))
     both = detection("ball", 280, 20), detection("ball", 40, 60), detection("ball", 270, 25)
-    expect_turn(
-        work, 1, "With a near ball on the left and two far ones on the right", "左边有近的球、右边有两个远的球时", *both
-    )
+    expect_turn(work, 1, "With a near ball on the left and far ones on the right", "左边有近球、右边有远球时", *both)
 
 
 @check(
@@ -478,7 +480,6 @@ def launches(work):
         return any(each.results[0].hypothesis.class_id == "ball" for each in message.detections)
 
     with work.package("my_vision").launch("seeing.launch.py") as running:
-        running.expect_node("/yolo/detector")
         running.expect_node("/watch_ball")
         running.wait_for_message("/yolo/detections", has_ball)
         running.wait_for_message("/cmd_vel")
