@@ -225,4 +225,11 @@ CASES = [
         Edit(SETUP, "            'watch_ball = my_vision.watch_ball:main',\n", ""),
         says="'watch_ball'",
     ),
+    wrong("detector", "not installed", Edit(SETUP, "glob('launch/*')", "[]"), says="does not install"),
+    wrong(
+        "detector",
+        "a missing dependency",
+        Edit(PACKAGE + "package.xml", "  <exec_depend>my_robot_vision</exec_depend>\n", ""),
+        says="'my_robot_vision'",
+    ),
 ]

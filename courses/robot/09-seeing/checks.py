@@ -6,6 +6,7 @@ from linkwright import SteppedSimulation
 from linkwright.learning import NotYet, check
 from linkwright.messages import get_message
 from linkwright.testing import SteppedGraph
+from linkwright.xmltree import parse_file
 
 IMAGE, INFO, POINT = "sensor_msgs/msg/Image", "sensor_msgs/msg/CameraInfo", "geometry_msgs/msg/PointStamped"
 DETECTIONS = "vision_msgs/msg/Detection2DArray"
@@ -483,3 +484,22 @@ def launches(work):
         running.expect_node("/watch_ball")
         running.wait_for_message("/yolo/detections", has_ball)
         running.wait_for_message("/cmd_vel")
+
+
+@check(
+    "detector",
+    en="setup.py installs it, and package.xml lists what it needs.",
+    zh="setup.py 安装了它，package.xml 列出了所需的功能包。",
+)
+def lists_dependencies(work):
+    package = work.package("my_vision")
+    package.expect_installed("launch/seeing.launch.py")
+    root = parse_file(package.file("package.xml")).root
+    listed = {element.text().strip() for element in root.elements() if element.tag in {"depend", "exec_depend"}}
+    for name in ("my_robot_vision", "my_worlds", "launch_ros"):
+        if name not in listed:
+            raise NotYet(
+                en=f"package.xml does not list '{name}' as a dependency at run time.",
+                zh=f"package.xml 没有把“{name}”列为运行时依赖。",
+            )
+    package.expect_no_findings()

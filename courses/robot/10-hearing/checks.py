@@ -2,9 +2,11 @@ import math
 
 import numpy as np
 
+from linkwright.diagnostics import LinkwrightError, phrase
 from linkwright.learning import NotYet, check
 from linkwright.messages import get_message
 from linkwright.testing import SteppedGraph
+from linkwright.xmltree import parse_file
 
 TWIST, STRING = "geometry_msgs/msg/Twist", "std_msgs/msg/String"
 String = get_message(STRING)
@@ -31,6 +33,7 @@ class Listening:
         self.arguments = ["--ros-args", *(word for value in parameters for word in ("-p", value))]
         self.test = SteppedGraph()
         self.type_name = type_name
+        self.said = ""
 
     def __enter__(self):
         self.test.__enter__()
@@ -43,6 +46,7 @@ class Listening:
         return self.test.__exit__(*error)
 
     def say(self, text, seconds=0.3):
+        self.said = text
         self.test.publish(TEXTS, String(data=text))
         self.test.advance(seconds)
 
@@ -51,9 +55,8 @@ class Listening:
         """The last speed and turn rate."""
         if not len(self.recording):
             raise NotYet(
-                en=f"After a text on {TEXTS}, {self.name} publishes nothing on {self.topic}; "
-                "does main() spin the node?",
-                zh=f"在 {TEXTS} 上收到文本之后，{self.name} 没有在 {self.topic} 上发布消息；main() 有没有让节点 spin？",
+                en=f"After '{self.said}' on {TEXTS}, {self.name} publishes nothing on {self.topic}.",
+                zh=f"在 {TEXTS} 上收到“{self.said}”之后，{self.name} 没有在 {self.topic} 上发布消息。",
             )
         return self.recording.last.linear.x, self.recording.last.angular.z
 
@@ -273,7 +276,20 @@ def understand(work, text):
     """Return the action for a text in the learner's file of commands, and its values; None if there is none."""
     from linkwright.speech.commands.command_file import read_command_file
 
-    match = read_command_file(work.package("my_voice").file("config/commands.yaml")).understand(text)
+    try:
+        match = read_command_file(work.package("my_voice").file("config/commands.yaml")).understand(text)
+    except LinkwrightError as error:
+        finding = error.diagnostics[0]
+        line = finding.span.line if finding.span else 1
+        raise NotYet(
+            phrase(
+                "{file}, line {line}: {message} [{code}]",
+                file="commands.yaml",
+                line=line,
+                message=finding.message,
+                code=finding.code,
+            )
+        ) from None
     return None if match is None else (match.command.action, match.values)
 
 
@@ -362,7 +378,20 @@ def recognizes_recording(work):
         running.wait_for_message("/cmd_vel", lambda message: message.angular.z > 0)
 
 
-@check("listen", en="package.xml lists what it needs.", zh="package.xml 列出了所需的功能包。")
-def has_no_findings(work):
-    work.package("my_voice").expect_installed("launch/hearing.launch.py")
-    work.package("my_voice").expect_no_findings()
+@check(
+    "listen",
+    en="setup.py installs it, and package.xml lists what it needs.",
+    zh="setup.py 安装了它，package.xml 列出了所需的功能包。",
+)
+def lists_dependencies(work):
+    package = work.package("my_voice")
+    package.expect_installed("launch/hearing.launch.py")
+    root = parse_file(package.file("package.xml")).root
+    listed = {element.text().strip() for element in root.elements() if element.tag in {"depend", "exec_depend"}}
+    for name in ("my_robot_voice", "my_worlds", "launch_ros"):
+        if name not in listed:
+            raise NotYet(
+                en=f"package.xml does not list '{name}' as a dependency at run time.",
+                zh=f"package.xml 没有把“{name}”列为运行时依赖。",
+            )
+    package.expect_no_findings()
