@@ -7,7 +7,7 @@ RED, BALL, MARKER, WATCH = (
 )
 SETUP, LAUNCH = PACKAGE + "setup.py", PACKAGE + "launch/seeing.launch.py"
 
-BOTH_ENDS = "cv2.inRange(hsv, (0, 120, 50), (8, 255, 255)) | cv2.inRange(hsv, (172, 120, 50), (179, 255, 255))"
+BOTH_ENDS = "low | high"
 
 NUMPY_MASK = """import numpy as np
 import rclpy
@@ -144,7 +144,7 @@ CASES = [
     wrong(
         "red",
         "one end of the hues",
-        Edit(RED, BOTH_ENDS, "cv2.inRange(hsv, (0, 120, 50), (8, 255, 255))"),
+        Edit(RED, BOTH_ENDS, "low"),
         says="lacks crimson",
     ),
     wrong("red", "the red channel alone", Edit(RED, BOTH_ENDS, "cv2.inRange(image[:, :, 2], 90, 255)"), says="white"),
@@ -175,6 +175,7 @@ CASES = [
         Edit(BALL, "        if np.count_nonzero(mask) < LEAST_AREA:\n            return\n", ""),
         says="looks away from the ball",
     ),
+    wrong("ball", "a misspelt field", Edit(BALL, "header.frame_id", "header.frame"), says="ball_finder.py, line"),
     wrong(
         "ball",
         "no executable",

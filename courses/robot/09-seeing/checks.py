@@ -94,7 +94,9 @@ def has_optical_frame(work):
     with simulate(work) as test:
         images = test.record(IMAGES, IMAGE)
         test.advance(0.3)
-    frame = images.last.header.frame_id if len(images) else ""
+    if not len(images):
+        raise NotYet(en=f"Nothing is published on {IMAGES}.", zh=f"{IMAGES} 上没有消息。")
+    frame = images.last.header.frame_id
     if frame != "camera_optical_frame":
         raise NotYet(
             en=f"The frame of the images is '{frame}', but should be 'camera_optical_frame'.",

@@ -10,6 +10,7 @@ def generate_launch_description():
     return LaunchDescription([
         IncludeLaunchDescription(PythonLaunchDescriptionSource(str(mbot))),
         Node(package='my_robot_vision', executable='detector', namespace='yolo', output='screen',
-             parameters=[{'model': 'things', 'input_image_topic': '/camera/image_raw', 'use_sim_time': True}]),
+             parameters=[{'model': 'things', 'input_image_topic': '/camera/image_raw',
+                          'use_sim_time': True}]),
         Node(package='my_vision', executable='watch_ball', parameters=[{'use_sim_time': True}]),
     ])

@@ -35,7 +35,8 @@ class MarkerFinder(Node):
         image = self.bridge.imgmsg_to_cv2(message, 'mono8')
         found, numbers, _ = self.detector.detectMarkers(image)
         for corners, number in zip(found, [] if numbers is None else numbers.ravel()):
-            _, rotation, position = cv2.solvePnP(CORNERS, corners, *self.lens, flags=cv2.SOLVEPNP_IPPE_SQUARE)
+            _, rotation, position = cv2.solvePnP(
+                CORNERS, corners, *self.lens, flags=cv2.SOLVEPNP_IPPE_SQUARE)
             transform = TransformStamped()
             transform.header = message.header
             transform.child_frame_id = f'marker_{number}'
@@ -47,8 +48,8 @@ def set_pose(transform, rotation, position):
     """Set a transform to a position, and to a rotation around an axis by its length."""
     angle = float(np.linalg.norm(rotation))
     axis = rotation / angle if angle else rotation
-    transform.translation.x, transform.translation.y, transform.translation.z = map(float, position)
-    q = transform.rotation
+    p, q = transform.translation, transform.rotation
+    p.x, p.y, p.z = map(float, position)
     q.x, q.y, q.z = (float(value * math.sin(angle / 2)) for value in axis)
     q.w = math.cos(angle / 2)
 

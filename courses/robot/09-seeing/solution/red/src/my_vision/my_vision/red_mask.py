@@ -9,7 +9,9 @@ from sensor_msgs.msg import Image
 def find_red(image):
     """Return a mask of an image in BGR: 255 where it is red, 0 elsewhere."""
     hsv = cv2.cvtColor(image, cv2.COLOR_BGR2HSV)
-    return cv2.inRange(hsv, (0, 120, 50), (8, 255, 255)) | cv2.inRange(hsv, (172, 120, 50), (179, 255, 255))
+    low = cv2.inRange(hsv, (0, 120, 50), (8, 255, 255))
+    high = cv2.inRange(hsv, (172, 120, 50), (179, 255, 255))
+    return low | high
 
 
 class RedMask(Node):

@@ -14,8 +14,10 @@ def generate_launch_description():
     words, wav = LaunchConfiguration('words'), LaunchConfiguration('wav')
 
     return LaunchDescription([
-        DeclareLaunchArgument('words', default_value='', description='A file of enrolled words; empty for your own'),
-        DeclareLaunchArgument('wav', default_value='', description='A recording instead of the microphone'),
+        DeclareLaunchArgument('words', default_value='',
+                              description='A file of enrolled words; empty for your own'),
+        DeclareLaunchArgument('wav', default_value='',
+                              description='A recording instead of the microphone'),
         IncludeLaunchDescription(PythonLaunchDescriptionSource(str(mbot))),
         Node(package='my_robot_voice', executable='voice_commander', output='screen',
              parameters=[{'use_sim_time': True, 'engine': 'enrolled', 'open_listening': True,
