@@ -7,13 +7,13 @@ import json
 import sys
 from contextlib import redirect_stdout
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
 from linkwright.cli.simulation_options import add_simulation_options
 from linkwright.cli.view import add_viewer_options
 from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, phrase
 from linkwright.diagnostics.translation import language, localized
+from linkwright.files.scratch_folders import ScratchFolder
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -111,7 +111,7 @@ def run_world(arguments: argparse.Namespace) -> int:
     from linkwright.packages import PackageFinder
 
     exercise = find_exercise(arguments.exercise)
-    with TemporaryDirectory(prefix="linkwright-exercise-") as folder:
+    with ScratchFolder("exercise") as folder:
         arrangement = write_world(exercise, arguments.seed, Path(folder), publishes=True)
         words = [str(arrangement.world)]
         if exercise.robot:

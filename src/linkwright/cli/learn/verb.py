@@ -4,10 +4,14 @@ from __future__ import annotations
 
 from functools import partial
 
-from linkwright.cli.learn import judge, lessons, pack, steps
+from linkwright.cli.learn import classroom, judge, lessons, pack, steps
 from linkwright.cli.nested import SubVerb, configure_nested, run_nested
 
+DEFAULT_VERB = "open"
+"""The subcommand that runs if none is named."""
+
 VERBS = {
+    "open": SubVerb(classroom.configure, classroom.run, help="open a course in the page, with your files and robot"),
     "list": SubVerb(steps.configure_list, steps.run_list, help="list the lessons and steps of a course, with progress"),
     "show": SubVerb(steps.configure_show, steps.run_show, help="print the text of a step, and copy its lesson's files"),
     "check": SubVerb(steps.configure_check, steps.run_check, help="check a step, and print what is still missing"),

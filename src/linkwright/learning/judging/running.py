@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import tempfile
 import traceback
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from linkwright.files.scratch_folders import ScratchFolder
 from linkwright.learning.judging.exercise import Exercise
 from linkwright.learning.judging.judge import Judge
 from linkwright.learning.judging.world import JudgePlugin, status, write_world
@@ -61,7 +61,7 @@ def judge_program(
         OSError: the program cannot be read.
     """
     for seed in seeds:
-        with tempfile.TemporaryDirectory(prefix="linkwright-judge-") as folder:
+        with ScratchFolder("judge") as folder:
             yield _run(exercise, program, seed, Path(folder), budget)
 
 
