@@ -55,6 +55,7 @@ def test_hints_come_one_by_one_and_the_solution_keeps_what_it_replaces(workspace
     assert (status, out) == (0, "robot.urdf\n")
     (kept,) = (workspace / "replaced").rglob("robot.urdf")
     assert kept.read_text() == "mine"
+    assert (workspace / "replaced" / "COLCON_IGNORE").is_file()  # a copy of a package is not one more package
     text = (workspace / "learn.yaml").read_text()
     assert "hints: 2" in text
     assert "solution: true" in text

@@ -130,7 +130,7 @@ class Classroom:
     def take_solution(self, step: Step) -> list[Path]:
         """Copy the solution of a step into the workspace.
 
-        Files with another content are moved to the folder `REPLACED_FOLDER` first.
+        Files with another content are copied to the folder `REPLACED_FOLDER` first, in which colcon finds no packages.
 
         Returns:
             The files that were written.
@@ -151,6 +151,7 @@ class Classroom:
                     continue
                 if target.exists():
                     _copy(target, replaced / target.relative_to(self.workspace))
+                    (replaced.parent / "COLCON_IGNORE").touch()
                 _copy(source, target)
                 written.append(target)
         self._note(step, solution=True)
