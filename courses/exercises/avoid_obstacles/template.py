@@ -1,4 +1,7 @@
-"""Drive to the other end of the hall (x = 11 m) without touching anything: /scan tells distances, /odom the pose."""
+"""Drive to the other end of the hall (x = 11 m) without touching anything.
+
+/scan has distances, /odom the pose.
+"""
 
 import rclpy
 from geometry_msgs.msg import Twist

@@ -1,4 +1,7 @@
-"""Keep the pole upright: /joint_states has the cart (slider) and the pole (hinge), cmd_force pushes the cart."""
+"""Keep the pole upright.
+
+/joint_states has the cart (slider) and the pole (hinge), cmd_force pushes the cart.
+"""
 
 import rclpy
 from rclpy.node import Node
@@ -13,7 +16,8 @@ class Balance(Node):
         self.create_subscription(JointState, "joint_states", self.on_joints, 10)
 
     def on_joints(self, joints):
-        # joints.position and joints.velocity have the values of joints.name: 'slider' in m, 'hinge' in rad
+        # joints.position and joints.velocity have the values of joints.name:
+        # 'slider' in m, 'hinge' in rad
         self.force.publish(Float64(data=0.0))
 
 

@@ -1,4 +1,7 @@
-"""Tell on /estimate where the robot is in the house: /scan tells distances, /odom how it has moved."""
+"""Publish on /estimate where the robot is in the house.
+
+/scan has distances, /odom how it has moved.
+"""
 
 import rclpy
 from geometry_msgs.msg import PoseStamped, Twist

@@ -1,4 +1,7 @@
-"""Drive two laps between the walls faster than the other robot, and touch nothing: /scan tells distances."""
+"""Drive two laps between the walls faster than the other robot, and touch nothing.
+
+/scan has distances.
+"""
 
 import rclpy
 from geometry_msgs.msg import Twist

@@ -1,4 +1,7 @@
-"""Bring each block to the tile of its colour: the camera looks down, the joints turn the arm, /grip lifts."""
+"""Bring each block to the tile of its color.
+
+The camera looks down, the joints turn the arm, /grip lifts.
+"""
 
 import rclpy
 from rclpy.node import Node

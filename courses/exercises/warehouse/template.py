@@ -1,4 +1,7 @@
-"""Carry the shelf to the green tile: drive below it, publish True on /lift, drive on, and publish False."""
+"""Carry the shelf to the green tile.
+
+Drive below it, publish True on /lift, drive on, and publish False.
+"""
 
 import rclpy
 from geometry_msgs.msg import Twist

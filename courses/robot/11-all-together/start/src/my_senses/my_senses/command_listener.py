@@ -9,7 +9,7 @@ GOES = ('去', '到', 'go to')
 
 
 class CommandListener(Node):
-    """Publish the color that a spoken or typed command names as the target, and no color to stop."""
+    """Publish the color that a command names as the target, and no color to stop."""
 
     def __init__(self):
         super().__init__('command_listener')

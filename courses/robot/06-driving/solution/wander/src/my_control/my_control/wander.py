@@ -30,7 +30,8 @@ class Wander(Node):
         distances = [
             distance
             for index, distance in enumerate(scan.ranges)
-            if first <= scan.angle_min + index * scan.angle_increment <= last and distance > scan.range_min
+            if first <= scan.angle_min + index * scan.angle_increment <= last
+            and distance > scan.range_min
         ]
         return min(distances, default=math.inf)
 

@@ -16,7 +16,8 @@ def generate_launch_description():
     robot_description = {'robot_description': ParameterValue(description, value_type=str)}
 
     return LaunchDescription([
-        DeclareLaunchArgument('hardware', default_value='diffdrive_arduino/DiffDriveArduinoHardware',
+        DeclareLaunchArgument('hardware',
+                              default_value='diffdrive_arduino/DiffDriveArduinoHardware',
                               description='The plugin of ros2_control that moves the wheels'),
         DeclareLaunchArgument('camera', default_value='true',
                               description='Whether to start the driver of the camera'),
