@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import partial
 
-from linkwright.cli.learn import judge, lessons, steps
+from linkwright.cli.learn import grade, judge, lessons, steps
 from linkwright.cli.nested import SubVerb, configure_nested, run_nested
 
 VERBS = {
@@ -19,6 +19,7 @@ VERBS = {
     "world": SubVerb(judge.configure_world, judge.run_world, help="simulate the world of an exercise in real time"),
     "new": SubVerb(lessons.configure_new, lessons.run_new, help="create a course with a first lesson to edit"),
     "test": SubVerb(lessons.configure_test, lessons.run_test, help="test the checks of a course against its solutions"),
+    "grade": SubVerb(grade.configure_grade, grade.run_grade, help="check the folders of many students in a sandbox"),
 }
 
 configure = partial(configure_nested, verbs=VERBS)

@@ -29,6 +29,9 @@ TIME_LIMIT = 120.0
 _DOMAINS = 100
 """The number of ROS domains among which the process of a check selects its own, without domain 0, the default."""
 
+DOMAIN_VARIABLE = "LINKWRIGHT_CHECK_DOMAIN"
+"""The variable with the ROS domain of a check, for callers that run several at a time in one network."""
+
 MODULE = "linkwright.learning.checks.running"
 
 
@@ -153,7 +156,7 @@ def _read(output: Path) -> Any:
 def main(words: Sequence[str]) -> int:
     """Run the checks of a step, as `check_command` requests it."""
     os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
-    os.environ["ROS_DOMAIN_ID"] = str(1 + os.getpid() % _DOMAINS)
+    os.environ["ROS_DOMAIN_ID"] = os.environ.get(DOMAIN_VARIABLE) or str(1 + os.getpid() % _DOMAINS)
     lesson_folder, step_id, workspace, output, *answers = words
     lesson = load_lesson(Path(lesson_folder))
     step = next(step for step in lesson.steps if step.id == step_id)
