@@ -16,7 +16,7 @@ from linkwright.diagnostics.translation import language, localized
 from linkwright.process.processors import usable_processors
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from linkwright.learning.course import Course, Step
     from linkwright.learning.grading.marks import StudentMarks
@@ -166,7 +166,7 @@ def _write_outputs(
     from linkwright.learning.grading.journal import reporting_write_errors
     from linkwright.learning.grading.page import grades_page
 
-    writers = [
+    writers: list[tuple[Path | None, Callable[[], str]]] = [
         (arguments.csv, lambda: formats.gradebook_csv(students, language())),
         (arguments.nbgrader, lambda: formats.nbgrader_csv(students)),
         (arguments.json, lambda: formats.grades_json(course, students, formats.limits_data(limits))),

@@ -6,18 +6,14 @@ import hashlib
 import json
 import os
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from linkwright._version import __version__
 from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, foreign, phrase
 from linkwright.learning.grading.marks import Mark
 from linkwright.learning.grading.running import Job
-
-if TYPE_CHECKING:
-    from typing import TextIO
 
 SUFFIX = ".unfinished"
 
@@ -32,22 +28,16 @@ class Journal:
     def __init__(self, path: Path | None) -> None:
         self.path = path
         self._marks: dict[str, Mark] = {}
-        self._file: TextIO | None = None
-        if path is not None:
+        if path is not None and path.exists():
             self._read(path)
 
     def _read(self, path: Path) -> None:
         with reporting_write_errors(path):
-            lines = path.read_text(encoding="utf-8", errors="replace").splitlines() if path.exists() else []
-            self._file = path.open("a", encoding="utf-8")
-            if lines:
-                self._file.write("\n")  # the last line may be incomplete
+            lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
         for line in lines:
-            try:
+            with suppress(ValueError, KeyError, TypeError):  # a line that was not written completely
                 entry = json.loads(line)
                 self._marks[entry["key"]] = Mark.from_data(entry["mark"])
-            except (ValueError, KeyError, TypeError):
-                continue
 
     def find(self, key: str) -> Mark | None:
         """Return a mark of an interrupted run."""
@@ -59,15 +49,15 @@ class Journal:
         Raises:
             LinkwrightError: LEARN121, the file cannot be written.
         """
-        if self._file is not None and self.path is not None:
-            with reporting_write_errors(self.path):
-                self._file.write(json.dumps({"key": key, "mark": mark.to_data()}) + "\n")
-                self._file.flush()
+        if self.path is None:
+            return
+        line = json.dumps({"key": key, "mark": mark.to_data()})
+        with reporting_write_errors(self.path), self.path.open("a", encoding="utf-8") as file:
+            file.write(f"\n{line}")  # the last line of an interrupted run may be incomplete
 
     def remove(self) -> None:
         """Delete the file, because all marks are written elsewhere."""
-        if self._file is not None and self.path is not None:
-            self._file.close()
+        if self.path is not None:
             self.path.unlink(missing_ok=True)
 
 

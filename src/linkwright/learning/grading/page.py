@@ -46,14 +46,17 @@ def grades_page(course: Course, students: Sequence[StudentMarks], preferred: str
     parts = [
         _language_choice(preferred),
         f"<main><h1>{_texts(title)}</h1>",
-        f"<p class='soft'>{_say(phrase('{count} students, {steps} steps', count=len(students), steps=_count(students)))}</p>",
+        f"<p class='soft'>{_say(_lead(students))}</p>",
         _overview(students),
         f"<h2>{_say(phrase('Students'))}</h2>",
         *(_student(index, student) for index, student in enumerate(students)),
         _protections(students),
         "</main>",
     ]
-    head = f'<meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>{escape(title.get(preferred))}</title>'
+    head = (
+        '<meta charset="utf-8"><meta name="viewport" content="width=device-width">'
+        f"<title>{escape(title.get(preferred))}</title>"
+    )
     style = _STYLE + "".join(
         f'body:has(#show-{language}:checked) span[lang]:not([lang="{language}"]) {{ display: none; }}\n'
         for language in LANGUAGES
@@ -64,8 +67,9 @@ def grades_page(course: Course, students: Sequence[StudentMarks], preferred: str
     )
 
 
-def _count(students: Sequence[StudentMarks]) -> int:
-    return len(students[0].points) if students else 0
+def _lead(students: Sequence[StudentMarks]) -> Phrase:
+    steps = len(students[0].points) if students else 0
+    return phrase("{students} students, {steps} steps", students=len(students), steps=steps)
 
 
 def _language_choice(preferred: str) -> str:
