@@ -173,6 +173,6 @@ def test_the_answers_are_the_students(folder):
     place = folder / "students" / "anna"
     place.mkdir()
     (place / "robot.urdf").write_text((find_course("example") / "01-one-link/solution/one-link/robot.urdf").read_text())
-    (place / "learn.yaml").write_text("course: example\nsteps:\n  01-one-link/mass: {answer: 25}\n")
+    (place / "learn.yaml").write_text("course: example\nsteps:\n  01-one-link/mass: {answer: 12.5}\n")
     assert main(["learn", "grade", "--course", "example", "--json", "out.json", str(place)]) == 0
     assert json.loads(Path("out.json").read_text())["students"][0]["points"] == 2
