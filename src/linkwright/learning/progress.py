@@ -105,7 +105,7 @@ def _read_step(values: Mapping[str, Any]) -> StepProgress:
 
 
 def _read_answer(value: object) -> str:
-    """Return an answer as text. A learner may have edited the file, so that anything is there."""
+    """Return an answer as text. A learner may have edited the file."""
     if not isinstance(value, str | int | float) or len(text := str(value)) > _LONGEST_ANSWER or "\0" in text:
         raise ValueError("a number is expected")
     return text

@@ -152,5 +152,5 @@ def _say(text: Phrase) -> str:
 
 
 def _texts(text: LocalText) -> str:
-    """Return a text in all languages, of which the page shows one."""
+    """Return a text in all languages. The page shows one of them."""
     return "".join(f'<span lang="{language}">{escape(text.get(language))}</span>' for language in LANGUAGES)

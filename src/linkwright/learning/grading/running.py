@@ -20,7 +20,7 @@ from linkwright.learning.local_text import LocalText
 from linkwright.learning.sandbox import Exceeded, Limits, Outcome, describe_exceeded, run_in_sandbox
 
 _SLOW_SECONDS = 2.0
-"""The seconds from which on a failed run may have waited in vain for something, and is repeated without other runs."""
+"""A failed run of more seconds may have waited in vain, and is repeated without other runs."""
 
 _MOST_BYTES = 4 << 20
 """The size up to which a result is read. The student's program can have written it."""

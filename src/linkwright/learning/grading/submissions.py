@@ -21,7 +21,7 @@ _LONGEST_PROGRESS = 1 << 20
 _MOST_FILES = 20_000
 _MOST_BYTES = 256 << 20
 _NESTING = 64
-"""The limits of what is copied of a folder: the bytes of `learn.yaml`, files, bytes of all files, levels."""
+"""The limits of a copied folder: the bytes of `learn.yaml`, files, bytes of all files, levels."""
 
 
 @dataclass
@@ -48,7 +48,7 @@ class Submission:
 
 
 def find_submissions(folders: Sequence[Path], course: Course) -> list[Submission]:
-    """Return the submissions in the given folders, one for each; what is wrong with a folder is noted."""
+    """Return the submissions in the given folders, one for each, with notes."""
     places = list(dict.fromkeys(_absolute(folder) for folder in folders))
     counts = Counter(place.name for place in places)
     submissions = []
