@@ -37,7 +37,7 @@ class Mark:
 
     @property
     def messages(self) -> list[LocalText]:
-        """What is not yet right."""
+        """The messages about everything that is not yet right."""
         messages = [check.message or check.title for check in self.checks if not check.passed]
         return messages if self.reason is None else [self.reason, *messages]
 
