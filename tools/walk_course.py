@@ -3,7 +3,8 @@
 Usage: python tools/walk_course.py [--course COURSE] [--lang zh] [LESSON ...] (needs a Chromium)
 
 The solution of a step stands for the learner's work, and answers are typed into the page. Every lesson is read in
-another language than the one before, the first in English or, with ``--lang zh``, in Chinese. The exit status is 1 if a step is green before it is done, or not green after.
+another language than the one before, the first in English or, with ``--lang zh``, in Chinese. The exit status is 1 if a
+step is green before it is done, or not green after.
 """
 
 from __future__ import annotations
@@ -25,6 +26,7 @@ from playwright.sync_api import Page, sync_playwright
 
 from linkwright.learning.course import Course, Step, find_course, load_course
 
+LOCALES = {"en": "en-US", "zh": "zh-CN"}
 PATIENCE = 150_000
 """How long a check may take, milliseconds."""
 

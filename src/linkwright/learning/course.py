@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import math
 import sys
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 
@@ -48,6 +49,11 @@ class Step:
         return LocalText({language: text.title for language, text in self.texts.items()})
 
     @property
+    def points(self) -> float:
+        """The points that the step counts in a grade."""
+        return self.lesson.points.get(self.id, 1)
+
+    @property
     def unit(self) -> str | None:
         """The unit of the number that the step asks for, or None if it asks for none."""
         return next(iter(self.texts.values())).unit
@@ -76,12 +82,14 @@ class Lesson:
         title: the title in each language.
         needs: the extras of Linkwright that the lesson needs, such as ``sim``.
         texts: the text in each language.
+        points: the points of steps that do not count 1, by the step's name.
     """
 
     folder: Path
     title: LocalText
     needs: tuple[str, ...]
     texts: Mapping[str, LessonText]
+    points: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def id(self) -> str:
@@ -233,7 +241,23 @@ def load_lesson(folder: Path) -> Lesson:
         raise file_error("LEARN104", path, phrase("'needs' must be a list of extras of Linkwright"))
     texts = {language: read_lesson_text(folder / f"lesson.{language}.md") for language in title.texts}
     _compare_languages(list(texts.values()))
-    return Lesson(folder.resolve(), title, tuple(needs), texts)
+    lesson = Lesson(folder.resolve(), title, tuple(needs), texts, _read_points(path, data))
+    if unknown := sorted(set(lesson.points) - {step.id for step in lesson.steps}):
+        raise file_error(
+            "LEARN104", path, phrase("'points' names the step '{step}', which does not exist", step=unknown[0])
+        )
+    return lesson
+
+
+def _read_points(path: Path, data: Mapping[str, object]) -> dict[str, float]:
+    points = data.get("points", {})
+    if not isinstance(points, dict) or not all(_is_number_of_points(value) for value in points.values()):
+        raise file_error("LEARN104", path, phrase("'points' must have a number from 0 on for each step that it names"))
+    return points
+
+
+def _is_number_of_points(value: object) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and 0 <= value < math.inf
 
 
 def _form(step: StepText) -> tuple[object, ...]:

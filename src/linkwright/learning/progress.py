@@ -16,6 +16,8 @@ from linkwright.learning.errors import file_error, unreadable
 
 PROGRESS_FILE = "learn.yaml"
 
+_LONGEST_ANSWER = 1000
+
 _HEADER = "# Progress in a course of Linkwright, written by `linkwright learn`.\n"
 
 
@@ -94,10 +96,19 @@ _RENAME = phrase("fix the file, or rename it to start again")
 def _read_step(values: Mapping[str, Any]) -> StepProgress:
     step = StepProgress(**values)
     if step.answer is not None:
-        step = replace(step, answer=str(step.answer))
+        step = replace(step, answer=_read_answer(step.answer))
+    if type(step.hints) is not int or type(step.solution) is not bool:
+        raise ValueError("a number of hints, and whether the solution was taken, are expected")
     if not all(value is None or isinstance(value, datetime) for value in (step.started, step.passed)):
         raise ValueError("a date and time is expected")
     return step
+
+
+def _read_answer(value: object) -> str:
+    """Return an answer as text. A learner may have edited the file."""
+    if not isinstance(value, str | int | float) or len(text := str(value)) > _LONGEST_ANSWER or "\0" in text:
+        raise ValueError("a number is expected")
+    return text
 
 
 def write_progress(workspace: Path, progress: Progress) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import partial
 
-from linkwright.cli.learn import classroom, judge, lessons, pack, steps
+from linkwright.cli.learn import classroom, grade, judge, lessons, pack, steps
 from linkwright.cli.nested import SubVerb, configure_nested, run_nested
 
 DEFAULT_VERB = "open"
@@ -26,6 +26,7 @@ VERBS = {
     "new": SubVerb(lessons.configure_new, lessons.run_new, help="create a course with a first lesson to edit"),
     "test": SubVerb(lessons.configure_test, lessons.run_test, help="test the checks of a course against its solutions"),
     "pack": SubVerb(pack.configure, pack.run, help="make a folder from which a class installs without a network"),
+    "grade": SubVerb(grade.configure_grade, grade.run_grade, help="check the folders of many students in a sandbox"),
 }
 
 configure = partial(configure_nested, verbs=VERBS)

@@ -35,6 +35,9 @@ The domain of the learner's own programs is left out, too.
 PYTHON = [sys.executable]
 """The command that runs Python for checks. Tests measure the coverage of its processes."""
 
+DOMAIN_VARIABLE = "LINKWRIGHT_CHECK_DOMAIN"
+"""The variable with the ROS domain of a check, for callers that run several at a time in one network."""
+
 MODULE = "linkwright.learning.checks.running"
 
 
@@ -187,7 +190,7 @@ def main(words: Sequence[str]) -> int:
     """Run the checks of a step, as `check_command` requests it."""
     os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
     domains = [domain for domain in range(1, _DOMAINS + 1) if str(domain) != os.environ.get("ROS_DOMAIN_ID")]
-    os.environ["ROS_DOMAIN_ID"] = str(domains[os.getpid() % len(domains)])
+    os.environ["ROS_DOMAIN_ID"] = os.environ.get(DOMAIN_VARIABLE) or str(domains[os.getpid() % len(domains)])
     lesson_folder, step_id, workspace, output, *answers = words
     lesson = load_lesson(Path(lesson_folder))
     step = next(step for step in lesson.steps if step.id == step_id)

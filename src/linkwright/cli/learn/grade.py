@@ -1,0 +1,206 @@
+"""``linkwright learn grade``: the checks of a course in the folders of many students."""
+
+from __future__ import annotations
+
+import argparse
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from linkwright.cli.exit_status import FINDINGS, FINE, print_message
+from linkwright.cli.numbers import positive_float, positive_int
+from linkwright.cli.progress import ProgressLine
+from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, phrase
+from linkwright.diagnostics.render import shown_width
+from linkwright.diagnostics.translation import language, localized
+from linkwright.process.processors import usable_processors
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from linkwright.learning.course import Course, Step
+    from linkwright.learning.grading.marks import StudentMarks
+    from linkwright.learning.sandbox import Limits
+
+_MEBIBYTE = 1 << 20
+
+
+def configure_grade(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments of ``learn grade``."""
+    parser.add_argument("folders", metavar="FOLDER", nargs="+", type=Path, help="the folder of a student")
+    parser.add_argument(
+        "--course", metavar="COURSE", help="a shipped course by its name, or the folder of a course (default: robot)"
+    )
+    parser.add_argument(
+        "--lesson", metavar="LESSON", action="append", default=[], help="check the steps of this lesson only"
+    )
+    parser.add_argument("--step", metavar="STEP", action="append", default=[], help="check this step only")
+    parser.add_argument(
+        "--workers",
+        metavar="N",
+        type=positive_int,
+        help="the number of parallel processes (default: one for each processor)",
+    )
+    parser.add_argument("--csv", metavar="FILE", type=Path, help="write a line for each student, as gradebooks import")
+    parser.add_argument("--nbgrader", metavar="FILE", type=Path, help="write the columns of nbgrader's export as CSV")
+    parser.add_argument("--json", metavar="FILE", type=Path, help="write all results as JSON, in all languages")
+    parser.add_argument("--html", metavar="FILE", type=Path, help="write a page with all results, in all languages")
+    _add_limits(parser)
+
+
+def _add_limits(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--seconds",
+        metavar="S",
+        type=positive_float,
+        default=300.0,
+        help="the time that the checks of a step may take (default: 300)",
+    )
+    parser.add_argument(
+        "--cpu-seconds",
+        metavar="S",
+        type=positive_float,
+        default=60.0,
+        help="the processor time that the checks of a step may take (default: 60)",
+    )
+    parser.add_argument(
+        "--memory", metavar="MIB", type=positive_int, default=2048, help="the memory in MiB (default: 2048)"
+    )
+    parser.add_argument(
+        "--disk", metavar="MIB", type=positive_int, default=256, help="the disk space in MiB (default: 256)"
+    )
+    parser.add_argument(
+        "--processes", metavar="N", type=positive_int, default=256, help="the processes and threads (default: 256)"
+    )
+
+
+def run_grade(arguments: argparse.Namespace) -> int:
+    """Grade a class, and return 1 if a folder could not be read."""
+    from linkwright.learning.course import DEFAULT_COURSE, find_course, load_course
+    from linkwright.learning.grading.grading import grade_class
+    from linkwright.learning.grading.journal import Journal
+    from linkwright.learning.grading.submissions import find_submissions
+    from linkwright.learning.sandbox import protections_available
+
+    course = load_course(find_course(arguments.course or DEFAULT_COURSE))
+    steps = _select_steps(course, arguments)
+    outputs = [path for path in (arguments.csv, arguments.nbgrader, arguments.json, arguments.html) if path]
+    _check_outputs(outputs)
+    protections_available()  # raises where there is no sandbox
+    submissions = find_submissions(arguments.folders, course)
+    limits = _limits(arguments)
+    journal = Journal(_journal_path(outputs))
+    line = ProgressLine()
+    begin = time.monotonic()
+    students = grade_class(
+        course,
+        steps,
+        submissions,
+        limits=limits,
+        workers=arguments.workers or usable_processors(),
+        journal=journal,
+        progress=lambda done, count: line.show(phrase("{done} of {count} checks", done=done, count=count)),
+    )
+    line.end()
+    _write_outputs(arguments, course, students, limits)
+    journal.remove()
+    _print_table(students)
+    _print_protections(students)
+    seconds = f"{time.monotonic() - begin:.0f}"
+    print_message(
+        localized(
+            phrase(
+                "{students} students, {steps} steps in {seconds} s",
+                students=len(students),
+                steps=len(steps),
+                seconds=seconds,
+            )
+        )
+    )
+    return FINE if all(student.submission.is_readable for student in students) else FINDINGS
+
+
+def _select_steps(course: Course, arguments: argparse.Namespace) -> list[Step]:
+    """Return the steps of the given lessons and the given steps in the order of the course, or all steps."""
+    if not arguments.lesson and not arguments.step:
+        return list(course.steps)
+    lessons = {lesson.id for lesson in course.find_lessons(arguments.lesson)} if arguments.lesson else set()
+    named = {course.find_step(name).address for name in arguments.step}
+    return [step for step in course.steps if step.lesson.id in lessons or step.address in named]
+
+
+def _check_outputs(outputs: Sequence[Path]) -> None:
+    """Raise LEARN120 before the first check if two outputs are one file, or LEARN121 if there is no folder for one."""
+    if len({path.absolute() for path in outputs}) < len(outputs):
+        raise LinkwrightError(Diagnostic("LEARN120", phrase("two of the output files have the same name")))
+    for path in outputs:
+        if path.is_dir() or not path.absolute().parent.is_dir():
+            message = phrase("cannot write '{path}'", path=display_path(path))
+            hint = phrase("choose a file in a writable folder")
+            raise LinkwrightError(Diagnostic("LEARN121", message, hint=hint))
+
+
+def _journal_path(outputs: Sequence[Path]) -> Path | None:
+    from linkwright.learning.grading.journal import SUFFIX
+
+    return outputs[0].with_name(outputs[0].name + SUFFIX) if outputs else None
+
+
+def _limits(arguments: argparse.Namespace) -> Limits:
+    from linkwright.learning.sandbox import Limits
+
+    return Limits(
+        seconds=arguments.seconds,
+        cpu_seconds=arguments.cpu_seconds,
+        memory=arguments.memory * _MEBIBYTE,
+        disk_bytes=arguments.disk * _MEBIBYTE,
+        processes=arguments.processes,
+    )
+
+
+def _write_outputs(
+    arguments: argparse.Namespace, course: Course, students: Sequence[StudentMarks], limits: Limits
+) -> None:
+    from linkwright.files.whole_files import write_whole_file
+    from linkwright.learning.grading import formats
+    from linkwright.learning.grading.journal import reporting_write_errors
+    from linkwright.learning.grading.page import grades_page
+
+    writers: list[tuple[Path | None, Callable[[], str]]] = [
+        (arguments.csv, lambda: formats.gradebook_csv(students, language())),
+        (arguments.nbgrader, lambda: formats.nbgrader_csv(students)),
+        (arguments.json, lambda: formats.grades_json(course, students, formats.limits_data(limits))),
+        (arguments.html, lambda: grades_page(course, students, language())),
+    ]
+    for path, write in writers:
+        if path is not None:
+            with reporting_write_errors(path):
+                write_whole_file(path, write())
+
+
+def _print_table(students: Sequence[StudentMarks]) -> None:
+    lang = language()
+    width = max(shown_width(student.submission.student) for student in students)
+    for student in students:
+        name = student.submission.student
+        signs = "".join("✓" if mark.passed else "✗" for mark in student.marks.values())
+        padding = " " * (width - shown_width(name))
+        print(f"{name}{padding}  {f'{student.total:g}/{student.possible:g}':>9}  {signs}")
+        for note in student.submission.notes:
+            print(f"    {note.get(lang)}")
+        for step, mark in student.marks.items():
+            if mark.reason is not None:
+                print(f"    {step}: {mark.reason.get(lang)}")
+
+
+def _print_protections(students: Sequence[StudentMarks]) -> None:
+    """Print which protections were not in force."""
+    from linkwright.learning.grading.formats import protections_in_force
+    from linkwright.learning.sandbox import PROTECTIONS
+
+    in_force = protections_in_force(students)
+    if not any(student.marks for student in students):
+        return
+    for protection, meaning in PROTECTIONS.items():
+        if protection.value not in in_force:
+            print_message(localized(phrase("not in force on this system: {protection}", protection=meaning)))

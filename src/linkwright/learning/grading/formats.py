@@ -1,0 +1,150 @@
+"""The marks of a class in the formats of other programs."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+from linkwright.diagnostics.translation import LANGUAGES
+from linkwright.learning.course import Course
+from linkwright.learning.grading.marks import Mark, StudentMarks
+from linkwright.learning.progress import StepProgress
+from linkwright.learning.sandbox import Limits
+
+_FORMULA = ("=", "+", "-", "@", "\t", "\r")
+"""The beginnings of a cell that a spreadsheet would calculate."""
+
+
+def gradebook_csv(students: Sequence[StudentMarks], language: str) -> str:
+    """Return a line for each student, which Moodle and other gradebooks import by the columns that one selects there.
+
+    The columns are the student, the points, the possible points, a column of points for each step, and the feedback.
+    """
+    steps = list(students[0].points) if students else []
+    lines = [["username", "points", "max_points", *steps, "feedback"]]
+    for student in students:
+        points = [_number(_points_of(student, step)) for step in steps]
+        feedback = "\n".join(_feedback(student, language))
+        lines.append([student.submission.student, _number(student.total), _number(student.possible), *points, feedback])
+    return _to_csv(lines)
+
+
+def nbgrader_csv(students: Sequence[StudentMarks]) -> str:
+    """Return a line for each lesson of each student, with the columns of nbgrader's export."""
+    names = ["assignment", "duedate", "timestamp", "student_id", "last_name", "first_name", "email"]
+    lines = [[*names, "raw_score", "late_submission_penalty", "score", "max_score"]]
+    for lesson in dict.fromkeys(step.split("/")[0] for student in students for step in student.points):
+        for student in students:
+            steps = [step for step in student.points if step.split("/")[0] == lesson]
+            score = _number(sum(_points_of(student, step) for step in steps))
+            possible = _number(sum(student.points[step] for step in steps))
+            identity = [lesson, "", "", student.submission.student, "", "", ""]
+            lines.append([*identity, score, "0", score, possible])
+    return _to_csv(lines)
+
+
+def grades_json(course: Course, students: Sequence[StudentMarks], limits: Mapping[str, Any]) -> str:
+    """Return one document with everything that is known about the marks."""
+    data = {
+        "course": course.id,
+        "limits": dict(limits),
+        "protections": protections_in_force(students),
+        "students": [_student_data(student) for student in students],
+    }
+    return json.dumps(data, ensure_ascii=False, indent=1) + "\n"
+
+
+def protections_in_force(students: Iterable[StudentMarks]) -> list[str]:
+    """Return the protections that were in force in all runs."""
+    marks = [mark for student in students for mark in student.marks.values() if mark.protections]
+    if not marks:
+        return []
+    return sorted(set.intersection(*(set(mark.protections) for mark in marks)))
+
+
+def limits_data(limits: Limits) -> dict[str, Any]:
+    """Return the limits as JSON values."""
+    return dict(vars(limits))
+
+
+def _student_data(student: StudentMarks) -> dict[str, Any]:
+    submission = student.submission
+    return {
+        "student": submission.student,
+        "graded": submission.is_readable,
+        "points": student.total,
+        "max_points": student.possible,
+        "notes": [note.texts for note in submission.notes],
+        "steps": [
+            {
+                **mark.to_data(),
+                "points": _points_of(student, step),
+                "max_points": student.points[step],
+                "claims": _claims(submission.progress.step(step)),
+            }
+            for step, mark in student.marks.items()
+        ],
+        "autograding": _autograding(student),
+    }
+
+
+def _claims(progress: StepProgress) -> dict[str, Any]:
+    """Return what the student's own progress file says."""
+    return {"hints": progress.hints, "solution": progress.solution, "answer": progress.answer}
+
+
+def _autograding(student: StudentMarks) -> dict[str, Any]:
+    """Return the result that GitHub Classroom's reporter of grades reads, encoded as Base64, from a runner."""
+    return {
+        "version": 1,
+        "status": "pass" if student.marks and all(mark.passed for mark in student.marks.values()) else "fail",
+        "max_score": student.possible,
+        "tests": [
+            {
+                "name": step,
+                "status": _status(mark),
+                "score": _points_of(student, step),
+                "message": "\n".join(message.get(LANGUAGES[0]) for message in mark.messages),
+                "test_code": "",
+                "filename": "",
+                "line_no": 0,
+                "duration": round(mark.seconds * 1000),
+            }
+            for step, mark in student.marks.items()
+        ],
+    }
+
+
+def _status(mark: Mark) -> str:
+    if mark.passed:
+        return "pass"
+    return "fail" if mark.reason is None else "error"
+
+
+def _points_of(student: StudentMarks, step: str) -> float:
+    mark = student.marks.get(step)
+    return student.points[step] if mark is not None and mark.passed else 0
+
+
+def _feedback(student: StudentMarks, language: str) -> list[str]:
+    notes = [note.get(language) for note in student.submission.notes]
+    messages = [f"{step}: {message.get(language)}" for step, mark in student.marks.items() for message in mark.messages]
+    return notes + messages
+
+
+def _number(value: float) -> str:
+    return f"{value:g}"
+
+
+def _to_csv(lines: Sequence[Sequence[str]]) -> str:
+    text = io.StringIO()
+    csv.writer(text, lineterminator="\n").writerows([_to_cell(value) for value in line] for line in lines)
+    return text.getvalue()
+
+
+def _to_cell(value: str) -> str:
+    """Return a value that a spreadsheet takes as text."""
+    return f"'{value}" if value.startswith(_FORMULA) else value

@@ -1,0 +1,154 @@
+"""Grade a class: run all steps of all students in parallel processes."""
+
+from __future__ import annotations
+
+import multiprocessing
+import shutil
+import tempfile
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import BrokenExecutor, Future, ProcessPoolExecutor, as_completed
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+
+from linkwright.diagnostics import phrase
+from linkwright.learning.course import CASES_FILE, Course, Step
+from linkwright.learning.grading.journal import Journal, hash_folder, key_of
+from linkwright.learning.grading.marks import Mark, StudentMarks
+from linkwright.learning.grading.running import Job, run_job
+from linkwright.learning.grading.submissions import Submission, copy_workspace
+from linkwright.learning.local_text import LocalText
+from linkwright.learning.sandbox import Limits
+
+_DOMAINS = 100
+
+Progress = Callable[[int, int], None]
+"""Called with the number of finished checks, and of all."""
+
+
+def grade_class(
+    course: Course,
+    steps: Sequence[Step],
+    submissions: Sequence[Submission],
+    *,
+    limits: Limits,
+    workers: int,
+    journal: Journal,
+    progress: Progress,
+) -> list[StudentMarks]:
+    """Check steps of a course in the folders of students, each on a copy in the sandbox.
+
+    A run that may have failed because of other runs is repeated alone at the end.
+
+    Args:
+        course: the course.
+        steps: the steps to check.
+        submissions: the folders of the students.
+        limits: the limits of each run.
+        workers: the number of parallel processes.
+        journal: keeps the marks for the case of an interruption.
+        progress: called after each step.
+
+    Raises:
+        LinkwrightError: LEARN121, the journal cannot be written; LEARN901, LEARN902, the sandbox cannot be used.
+    """
+    marks: list[dict[str, Mark]] = [{} for _ in submissions]
+    with _scratch() as scratch:
+        lessons = _copy_lessons(course, scratch)
+        keyed_jobs = _make_jobs(steps, submissions, limits, lessons, scratch)
+        waiting: list[tuple[str, Job]] = []
+        for key, job in keyed_jobs:
+            known = journal.find(key)
+            if known is None:
+                waiting.append((key, job))
+            else:
+                marks[job.student][known.step] = known
+        done = len(keyed_jobs) - len(waiting)
+        for key, job, mark in _run_all(waiting, workers):
+            journal.add(key, mark)
+            marks[job.student][mark.step] = mark
+            done += 1
+            progress(done, len(keyed_jobs))
+    points = {step.address: step.points for step in steps}
+    return [
+        StudentMarks(submission, {step: given[step] for step in points if step in given}, points)
+        for submission, given in zip(submissions, marks, strict=True)
+    ]
+
+
+@contextmanager
+def _scratch() -> Iterator[Path]:
+    """Yield a folder through which the users of runs may pass, without seeing what is in it."""
+    with tempfile.TemporaryDirectory(prefix="linkwright-grade-", ignore_cleanup_errors=True) as name:
+        Path(name).chmod(0o711)
+        yield Path(name)
+
+
+def _copy_lessons(course: Course, scratch: Path) -> Path:
+    """Copy the course without its solutions, which no student's program shall read."""
+    copy = scratch / course.id
+    shutil.copytree(course.folder, copy, ignore=shutil.ignore_patterns("solution", CASES_FILE, "__pycache__", ".git"))
+    return copy
+
+
+def _make_jobs(
+    steps: Sequence[Step], submissions: Sequence[Submission], limits: Limits, lessons: Path, scratch: Path
+) -> list[tuple[str, Job]]:
+    """Copy the folders of the students, and return the jobs with the keys of their marks."""
+    course_hash = hash_folder(lessons)
+    jobs: list[tuple[str, Job]] = []
+    for index, submission in enumerate(submissions):
+        if not submission.is_readable:
+            continue
+        place = scratch / f"{index}"
+        place.mkdir(mode=0o711)
+        copy = place / "copy"
+        if not copy_workspace(submission, copy):
+            continue
+        copy_hash = hash_folder(copy)
+        copy.chmod(0o700)
+        for step in steps:
+            answer = submission.progress.step(step.address).answer
+            step_of_copy = replace(step, lesson=replace(step.lesson, folder=lessons / step.lesson.id))
+            domain = 1 + len(jobs) % _DOMAINS
+            job = Job(index, step_of_copy, copy, answer, limits, lessons, domain)
+            jobs.append((key_of(job, course_hash, copy_hash), job))
+    return jobs
+
+
+def _run_all(jobs: Sequence[tuple[str, Job]], workers: int) -> Iterator[tuple[str, Job, Mark]]:
+    """Run jobs in parallel, then those again alone that may have failed because of others."""
+    again: list[tuple[str, Job]] = []
+    with _pool(workers) as pool:
+        futures: dict[Future[Mark], tuple[str, Job]] = {pool.submit(run_job, job): (key, job) for key, job in jobs}
+        for future in as_completed(futures):
+            key, job = futures[future]
+            try:
+                mark = future.result()
+            except BrokenExecutor:  # a student's program has ended a process of the grader
+                again.append((key, job))
+                continue
+            if mark.may_differ:
+                again.append((key, job))
+            else:
+                yield key, job, mark
+    for key, job in sorted(again, key=lambda pair: (pair[1].student, pair[1].domain)):
+        yield key, job, _run_alone(replace(job, is_repeated=True))
+
+
+def _run_alone(job: Job) -> Mark:
+    with _pool(1) as pool:
+        try:
+            return pool.submit(run_job, job).result()
+        except BrokenExecutor:
+            reason = LocalText.from_phrase(phrase("the student's program has ended the process of the grader, twice"))
+            return Mark(job.step.address, passed=False, reason=reason, is_repeated=True)
+
+
+@contextmanager
+def _pool(workers: int) -> Iterator[ProcessPoolExecutor]:
+    pool = ProcessPoolExecutor(workers, mp_context=multiprocessing.get_context("spawn"))
+    try:
+        yield pool
+    finally:
+        pool.shutdown(cancel_futures=True)

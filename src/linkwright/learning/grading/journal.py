@@ -1,0 +1,92 @@
+"""A file with the marks of a class that is not graded completely, from which the next run continues."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from dataclasses import asdict
+from pathlib import Path
+
+from linkwright._version import __version__
+from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, foreign, phrase
+from linkwright.learning.grading.marks import Mark
+from linkwright.learning.grading.running import Job
+
+SUFFIX = ".unfinished"
+
+
+class Journal:
+    """The marks by the content from which they result: the course, the student's files and answer, and the limits.
+
+    Args:
+        path: the file; None to keep nothing.
+    """
+
+    def __init__(self, path: Path | None) -> None:
+        self.path = path
+        self._marks: dict[str, Mark] = {}
+        if path is not None and path.exists():
+            self._read(path)
+
+    def _read(self, path: Path) -> None:
+        with reporting_write_errors(path):
+            lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
+        for line in lines:
+            with suppress(ValueError, KeyError, TypeError):  # a line that was not written completely
+                entry = json.loads(line)
+                self._marks[entry["key"]] = Mark.from_data(entry["mark"])
+
+    def find(self, key: str) -> Mark | None:
+        """Return a mark of an interrupted run."""
+        return self._marks.get(key)
+
+    def add(self, key: str, mark: Mark) -> None:
+        """Write a mark.
+
+        Raises:
+            LinkwrightError: LEARN121, the file cannot be written.
+        """
+        if self.path is None:
+            return
+        line = json.dumps({"key": key, "mark": mark.to_data()})
+        with reporting_write_errors(self.path), self.path.open("a", encoding="utf-8") as file:
+            file.write(f"\n{line}")  # the last line of an interrupted run may be incomplete
+
+    def remove(self) -> None:
+        """Delete the file, because all marks are written elsewhere."""
+        if self.path is not None:
+            self.path.unlink(missing_ok=True)
+
+
+@contextmanager
+def reporting_write_errors(path: Path) -> Iterator[None]:
+    """Raise LEARN121 for an error of the operating system in the context."""
+    try:
+        yield
+    except OSError as error:
+        message = phrase(
+            "cannot write '{path}': {reason}", path=display_path(path), reason=foreign(error.strerror or error)
+        )
+        raise LinkwrightError(
+            Diagnostic("LEARN121", message, hint=phrase("choose a file in a writable folder"))
+        ) from None
+
+
+def hash_folder(folder: Path) -> str:
+    """Return a hash of the names and contents of all files in a folder."""
+    digest = hashlib.sha256()
+    for path in sorted(folder.rglob("*")):
+        if path.is_file() and "__pycache__" not in path.parts:
+            name, content = os.fsencode(path.relative_to(folder)), path.read_bytes()
+            digest.update(b"%d %d %s" % (len(name), len(content), name))
+            digest.update(content)
+    return digest.hexdigest()
+
+
+def key_of(job: Job, course: str, copy: str) -> str:
+    """Return the key of a job's mark: everything from which it results."""
+    parts = [__version__, course, copy, job.step.address, job.answer, asdict(job.limits)]
+    return hashlib.sha256(json.dumps(parts).encode()).hexdigest()

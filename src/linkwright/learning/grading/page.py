@@ -1,0 +1,156 @@
+"""The marks of a class as one HTML page that needs no other file, in all languages."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from html import escape
+
+from linkwright.diagnostics import Phrase, phrase
+from linkwright.diagnostics.translation import LANGUAGES
+from linkwright.learning.course import Course
+from linkwright.learning.grading.formats import protections_in_force
+from linkwright.learning.grading.marks import Mark, StudentMarks
+from linkwright.learning.local_text import LocalText
+from linkwright.learning.sandbox import PROTECTIONS
+
+_NAMES = {"en": "English", "zh": "中文"}
+
+_STYLE = """
+:root { color-scheme: light dark; --ink: #1d2733; --soft: #5c6a7d; --line: #d8dee6; --back: #f6f8fa; --card: #fff;
+  --bad: #b3261e; --good: #1b7a3d; }
+@media (prefers-color-scheme: dark) { :root { --ink: #e3e8ee; --soft: #93a1b3; --line: #323c49; --back: #14191f;
+  --card: #1c232b; --bad: #ff8a80; --good: #6fd394; } }
+body { margin: 0; background: var(--back); color: var(--ink); font: 14px/1.5 system-ui, sans-serif; }
+main { max-width: 1180px; margin: 0 auto; padding: 20px 24px 60px; }
+h1 { font-size: 22px; margin: 12px 0; } h2 { font-size: 16px; margin: 30px 0 10px; }
+.good { color: var(--good); } .bad { color: var(--bad); } .soft { color: var(--soft); }
+.scroll { overflow-x: auto; background: var(--card); border: 1px solid var(--line); border-radius: 8px; }
+table { border-collapse: collapse; width: 100%; font-variant-numeric: tabular-nums; }
+th, td { padding: 4px 10px; text-align: left; border-bottom: 1px solid var(--line); vertical-align: top; }
+th { color: var(--soft); font-weight: 600; } td.number { text-align: right; white-space: nowrap; }
+details { margin: 8px 0; background: var(--card); border: 1px solid var(--line); border-radius: 8px; }
+summary { cursor: pointer; padding: 8px 12px; font-weight: 600; } details p { margin: 4px 12px; }
+.message { white-space: pre-wrap; overflow-wrap: anywhere; }
+"""
+
+
+def grades_page(course: Course, students: Sequence[StudentMarks], preferred: str) -> str:
+    """Return the HTML of the page.
+
+    Args:
+        course: the course.
+        students: the marks.
+        preferred: the language that the page shows first.
+    """
+    title = course.title
+    parts = [
+        _language_choice(preferred),
+        f"<main><h1>{_texts(title)}</h1>",
+        f"<p class='soft'>{_say(_lead(students))}</p>",
+        _overview(students),
+        f"<h2>{_say(phrase('Students'))}</h2>",
+        *(_student(index, student) for index, student in enumerate(students)),
+        _protections(students),
+        "</main>",
+    ]
+    head = (
+        '<meta charset="utf-8"><meta name="viewport" content="width=device-width">'
+        f"<title>{escape(title.get(preferred))}</title>"
+    )
+    style = _STYLE + "".join(
+        f'body:has(#show-{language}:checked) span[lang]:not([lang="{language}"]) {{ display: none; }}\n'
+        for language in LANGUAGES
+    )
+    return (
+        f'<!doctype html>\n<html lang="{preferred}"><head>{head}<style>{style}</style></head>'
+        f"<body>{''.join(parts)}</body></html>\n"
+    )
+
+
+def _lead(students: Sequence[StudentMarks]) -> Phrase:
+    steps = len(students[0].points) if students else 0
+    return phrase("{students} students, {steps} steps", students=len(students), steps=steps)
+
+
+def _language_choice(preferred: str) -> str:
+    choices = [
+        f'<label><input type="radio" name="language" id="show-{language}"'
+        f"{' checked' if language == preferred else ''}> {_NAMES.get(language, language)}</label> "
+        for language in LANGUAGES
+    ]
+    return f'<form style="padding: 10px 24px 0">{"".join(choices)}</form>'
+
+
+def _overview(students: Sequence[StudentMarks]) -> str:
+    rows = []
+    for index, student in enumerate(students):
+        passed = sum(mark.passed for mark in student.marks.values())
+        name = f'<a href="#student-{index}">{escape(student.submission.student)}</a>'
+        rows.append([name, _points(student), f"{passed} / {len(student.points)}", _seconds(student.marks.values())])
+    return _table(
+        [phrase("Student"), phrase("Points"), phrase("Steps passed"), phrase("Time")], rows, numbers=(1, 2, 3)
+    )
+
+
+def _student(index: int, student: StudentMarks) -> str:
+    notes = "".join(f"<p class='soft'>{_texts(note)}</p>" for note in student.submission.notes)
+    rows = [_step(student, step, mark) for step, mark in student.marks.items()]
+    headings = [
+        phrase("Step"),
+        phrase("Passed"),
+        phrase("Points"),
+        phrase("Not yet"),
+        phrase("Hints and solution, as the student's file claims"),
+        phrase("Time"),
+    ]
+    table = _table(headings, rows, numbers=(2, 5)) if rows else ""
+    summary = f"<summary>{escape(student.submission.student)}: {_points(student)}</summary>"
+    return f'<details id="student-{index}">{summary}{notes}{table}</details>'
+
+
+def _step(student: StudentMarks, step: str, mark: Mark) -> list[str]:
+    claims = student.submission.progress.step(step)
+    taken = [_say(phrase("{count} hints", count=claims.hints))] if claims.hints else []
+    taken += [_say(phrase("solution taken"))] if claims.solution else []
+    messages = "".join(f"<div class='message'>{_texts(message)}</div>" for message in mark.messages)
+    sign = "<span class='good'>✓</span>" if mark.passed else "<span class='bad'>✗</span>"
+    points = f"{student.points[step] if mark.passed else 0:g} / {student.points[step]:g}"
+    return [escape(step), sign, points, messages, ", ".join(taken), _seconds([mark])]
+
+
+def _protections(students: Sequence[StudentMarks]) -> str:
+    in_force = protections_in_force(students)
+    items = "".join(
+        f"<li>{'✓' if protection.value in in_force else '✗'} {_say(text)}</li>"
+        for protection, text in PROTECTIONS.items()
+    )
+    return f"<h2>{_say(phrase('Protections that were in force'))}</h2><ul>{items}</ul>"
+
+
+def _points(student: StudentMarks) -> str:
+    return f"{student.total:g} / {student.possible:g}"
+
+
+def _seconds(marks: Iterable[Mark]) -> str:
+    return f"{sum(mark.seconds for mark in marks):.1f} s"
+
+
+def _table(headings: Sequence[Phrase], rows: Sequence[Sequence[str]], *, numbers: Sequence[int]) -> str:
+    """Return a table whose cells are HTML."""
+    head = "".join(f"<th>{_say(heading)}</th>" for heading in headings)
+    lines = "".join(
+        "<tr>"
+        + "".join(f"<td{' class=number' if column in numbers else ''}>{cell}</td>" for column, cell in enumerate(row))
+        + "</tr>"
+        for row in rows
+    )
+    return f'<div class="scroll"><table><thead><tr>{head}</tr></thead><tbody>{lines}</tbody></table></div>'
+
+
+def _say(text: Phrase) -> str:
+    return _texts(LocalText.from_phrase(text))
+
+
+def _texts(text: LocalText) -> str:
+    """Return a text in all languages. The page shows one of them."""
+    return "".join(f'<span lang="{language}">{escape(text.get(language))}</span>' for language in LANGUAGES)

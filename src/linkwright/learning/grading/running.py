@@ -1,0 +1,125 @@
+"""Run the checks of a step on a copy of a student's folder, in the sandbox."""
+
+from __future__ import annotations
+
+import json
+import os
+import secrets
+import shutil
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from linkwright.diagnostics import Phrase, phrase
+from linkwright.learning.checks.results import StepResult
+from linkwright.learning.checks.running import DOMAIN_VARIABLE, check_command
+from linkwright.learning.course import Step
+from linkwright.learning.grading.marks import Mark
+from linkwright.learning.local_text import LocalText
+from linkwright.learning.sandbox import Exceeded, Limits, Outcome, describe_exceeded, run_in_sandbox
+
+_SLOW_SECONDS = 2.0
+"""A failed run of more seconds may have waited in vain, and is repeated without other runs."""
+
+_MOST_BYTES = 4 << 20
+"""The size up to which a result is read. The student's program can have written it."""
+
+
+@dataclass(frozen=True)
+class Job:
+    """A step to check for a student.
+
+    Attributes:
+        student: the index of the student.
+        step: the step.
+        copy: a copy of the student's folder, which is copied once more for the run.
+        answer: the student's answer.
+        limits: the limits of the run.
+        course: the folder with the lessons, which the run may read.
+        domain: the ROS domain of the run.
+        is_repeated: whether it is the second run.
+    """
+
+    student: int
+    step: Step
+    copy: Path
+    answer: str | None
+    limits: Limits
+    course: Path
+    domain: int
+    is_repeated: bool = False
+
+
+def run_job(job: Job) -> Mark:
+    """Check a step in the sandbox, and return the mark.
+
+    Raises:
+        LinkwrightError: LEARN901, LEARN902: the sandbox cannot be used.
+    """
+    with tempfile.TemporaryDirectory(prefix="run-", dir=job.copy.parent, ignore_cleanup_errors=True) as name:
+        folder = Path(name)
+        workspace = folder / "workspace"
+        shutil.copytree(job.copy, workspace)
+        output = folder / f"result-{secrets.token_hex(16)}.json"
+        outcome = run_in_sandbox(
+            check_command(job.step, workspace, output, answer=job.answer),
+            folder=folder,
+            limits=job.limits,
+            readable=[job.course],
+            environment={DOMAIN_VARIABLE: str(job.domain)},
+        )
+        result = _read_result(output, job.step)
+    protections = sorted(protection.value for protection in outcome.protections)
+    if result is None or outcome.exceeded is not None or outcome.status != 0:
+        may_differ = outcome.exceeded in {None, Exceeded.SECONDS}
+        reason = LocalText.from_phrase(_describe_end(outcome, job.limits))
+        return Mark(
+            job.step.address,
+            passed=False,
+            reason=reason,
+            seconds=outcome.seconds,
+            protections=protections,
+            is_repeated=job.is_repeated,
+            may_differ=may_differ,
+        )
+    return Mark(
+        job.step.address,
+        passed=result.passed and bool(result.checks),
+        checks=result.checks,
+        seconds=outcome.seconds,
+        protections=protections,
+        is_repeated=job.is_repeated,
+        may_differ=not result.passed and outcome.seconds > _SLOW_SECONDS,
+    )
+
+
+def _describe_end(outcome: Outcome, limits: Limits) -> Phrase:
+    if outcome.exceeded is not None:
+        return describe_exceeded(outcome.exceeded, limits)
+    if outcome.status:
+        return phrase("the process of the checks ended with status {status}", status=outcome.status)
+    return phrase("the checks of this step ended without a result")
+
+
+def _read_result(output: Path, step: Step) -> StepResult | None:
+    """Return the result in a file to which the student's program can have written anything."""
+    try:
+        descriptor = os.open(output, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
+    except OSError:
+        return None
+    with os.fdopen(descriptor, "rb") as file:
+        content = file.read(_MOST_BYTES + 1)
+    if len(content) > _MOST_BYTES:
+        return None
+    try:
+        result = StepResult.from_data(json.loads(content))
+        is_valid = result.step == step.address and all(map(_has_texts, result.checks))
+    except (ValueError, TypeError, KeyError, AttributeError, RecursionError):
+        return None
+    return result if is_valid else None
+
+
+def _has_texts(check: Any) -> bool:
+    texts = [*check.title.texts.values(), *(check.message.texts.values() if check.message else ())]
+    return all(isinstance(text, str) for text in texts)

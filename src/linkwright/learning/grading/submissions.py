@@ -1,0 +1,188 @@
+"""The folders of students: found, read without trust, and copied."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import stat
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path, PurePosixPath
+
+from linkwright.diagnostics import LinkwrightError, Phrase, foreign, phrase
+from linkwright.diagnostics.render import printable
+from linkwright.learning.course import Course
+from linkwright.learning.local_text import LocalText
+from linkwright.learning.progress import PROGRESS_FILE, Progress, read_progress
+
+_SKIPPED = {".git", "__pycache__", "__MACOSX"}
+_LONGEST_PROGRESS = 1 << 20
+_MOST_FILES = 20_000
+_MOST_BYTES = 256 << 20
+_NESTING = 64
+"""The limits of a copied folder: the bytes of `learn.yaml`, files, bytes of all files, levels."""
+
+
+@dataclass
+class Submission:
+    """The folder of a student.
+
+    Attributes:
+        student: the student's name, which is the folder's.
+        folder: the workspace.
+        progress: what the student's progress file claims.
+        notes: what is unusual about the folder.
+        is_readable: whether the folder can be graded.
+    """
+
+    student: str
+    folder: Path
+    progress: Progress
+    notes: list[LocalText] = field(default_factory=list)
+    is_readable: bool = True
+
+    def note(self, text: Phrase) -> None:
+        """Add a note."""
+        self.notes.append(LocalText.from_phrase(text))
+
+
+def find_submissions(folders: Sequence[Path], course: Course) -> list[Submission]:
+    """Return the submissions in the given folders, one for each, with notes."""
+    places = list(dict.fromkeys(_absolute(folder) for folder in folders))
+    counts = Counter(place.name for place in places)
+    submissions = []
+    for place in places:
+        name = place.name if counts[place.name] == 1 else f"{place.parent.name}/{place.name}"
+        submissions.append(_open(printable(name), place, course))
+    return submissions
+
+
+def _absolute(folder: Path) -> Path:
+    """Return the absolute path without ``..``, so that it has a name; links stay."""
+    return Path(os.path.abspath(folder))  # noqa: PTH100 - `resolve` follows links
+
+
+def _open(student: str, place: Path, course: Course) -> Submission:
+    submission = Submission(student, place, Progress(course.id, {}))
+    try:
+        submission.folder = _find_workspace(place)
+    except OSError as error:
+        submission.is_readable = False
+        submission.note(phrase("the folder cannot be read: {error}", error=foreign(error.strerror or error)))
+        return submission
+    if submission.folder != place:
+        submission.note(phrase("the workspace is the folder '{name}' in it", name=_readable(submission.folder.name)))
+    _read_claims(submission, course)
+    return submission
+
+
+def _find_workspace(place: Path) -> Path:
+    """Return the folder, or its only subfolder if that is the workspace, as after unpacking an archive."""
+    entries = list(place.iterdir())
+    if _is_workspace(place):
+        return place
+    inside = [path for path in entries if path.is_dir() and not path.is_symlink() and path.name not in _SKIPPED]
+    visible = [path for path in inside if not path.name.startswith(".")]
+    return visible[0] if len(visible) == 1 and _is_workspace(visible[0]) else place
+
+
+def _is_workspace(folder: Path) -> bool:
+    return (folder / PROGRESS_FILE).exists() or (folder / "src").is_dir()
+
+
+def _read_claims(submission: Submission, course: Course) -> None:
+    """Read the student's progress file, in which there can be anything."""
+    path = submission.folder / PROGRESS_FILE
+    try:
+        status = path.lstat()
+        if not stat.S_ISREG(status.st_mode) or status.st_size > _LONGEST_PROGRESS:
+            submission.note(phrase("{file} is a link or too large, and was not read", file=PROGRESS_FILE))
+            return
+        progress = read_progress(submission.folder)
+    except FileNotFoundError:
+        progress = None
+    except (LinkwrightError, RecursionError, OSError) as error:
+        reason = error.diagnostics[0].message if isinstance(error, LinkwrightError) else foreign(type(error).__name__)
+        submission.note(phrase("{file} cannot be read: {reason}", file=PROGRESS_FILE, reason=reason))
+        return
+    if progress is None:
+        submission.note(phrase("there is no {file}, so there are no answers", file=PROGRESS_FILE))
+    elif PurePosixPath(progress.course.replace("\\", "/")).name != course.id:
+        name = printable(progress.course)
+        submission.note(phrase("{file} is of the course '{name}', and was not used", file=PROGRESS_FILE, name=name))
+    else:
+        submission.progress = progress
+
+
+def copy_workspace(submission: Submission, target: Path) -> bool:
+    """Copy the files of a submission, and return whether they could be copied.
+
+    Links, files that are not regular, and unreadable files are left out and noted.
+    """
+    left_out: Counter[str] = Counter()
+    count = size = 0
+    target.mkdir()
+    for path, status in _entries(submission.folder, left_out):
+        place = target / path.relative_to(submission.folder)
+        if stat.S_ISDIR(status.st_mode):
+            place.mkdir(exist_ok=True)
+            continue
+        count, size = count + 1, size + status.st_size
+        if count > _MOST_FILES or size > _MOST_BYTES:
+            size_limit = _MOST_BYTES >> 20
+            submission.note(
+                phrase("the folder has more than {count} files or {size} MiB", count=_MOST_FILES, size=size_limit)
+            )
+            submission.is_readable = False
+            return False
+        try:
+            shutil.copyfile(path, place, follow_symlinks=False)
+            place.chmod(0o755 if status.st_mode & stat.S_IXUSR else 0o644)
+        except OSError:
+            left_out["unreadable"] += 1
+    for kind, number in sorted(left_out.items()):
+        submission.note(_left_out(kind, number))
+    return True
+
+
+def _left_out(kind: str, count: int) -> Phrase:
+    if kind == "links":
+        return phrase("{count} links were left out", count=count)
+    if kind == "special":
+        return phrase("{count} pipes, sockets or devices were left out", count=count)
+    if kind == "deep":
+        return phrase("{count} folders are nested too deeply and were left out", count=count)
+    return phrase("{count} files or folders cannot be read and were left out", count=count)
+
+
+def _entries(folder: Path, left_out: Counter[str]) -> Iterator[tuple[Path, os.stat_result]]:
+    """Yield folders and regular files, each folder before its contents, in an order that is the same everywhere."""
+    waiting = [(folder, 0)]
+    while waiting:
+        current, depth = waiting.pop()
+        try:
+            paths = sorted(current.iterdir())
+        except OSError:
+            left_out["unreadable"] += 1
+            continue
+        for path in paths:
+            status = path.lstat()
+            if path.name in _SKIPPED:
+                continue
+            if stat.S_ISLNK(status.st_mode):
+                left_out["links"] += 1
+            elif stat.S_ISDIR(status.st_mode) and depth < _NESTING:
+                yield path, status
+                waiting.append((path, depth + 1))
+            elif stat.S_ISDIR(status.st_mode):
+                left_out["deep"] += 1
+            elif stat.S_ISREG(status.st_mode):
+                yield path, status
+            else:
+                left_out["special"] += 1
+
+
+def _readable(name: str) -> str:
+    """Return the name of a file as text that can be printed and written as UTF-8."""
+    return printable(os.fsencode(name).decode("utf-8", "replace"))

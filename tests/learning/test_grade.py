@@ -1,0 +1,178 @@
+"""Grading a class: marks, limits, malicious students, odd folders, and the formats."""
+
+import csv
+import json
+import os
+import sys
+from pathlib import Path
+
+import pytest
+
+from linkwright.cli import main
+from linkwright.learning.course import find_course
+from linkwright.learning.grading import grading
+from tests.learning.sandbox.conftest import class_folder, processes_with  # noqa: F401
+
+pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="the sandbox is for Linux")
+
+ENDLESS = "while True: pass"
+FORK_BOMB = "import os, time\nwhile True:\n    try:\n        os.fork()\n    except OSError:\n        time.sleep(0.01)"
+LARGE_FILE = "with open('big', 'wb') as file:\n    while True: file.write(bytes(1 << 20))"
+KILL = "import os, signal\nos.kill(-1, signal.SIGKILL)"
+SPY = """
+import pathlib, sys
+for path in pathlib.Path({folder!r}).glob('good*/program.py'):
+    pathlib.Path('program.py').write_text(path.read_text())
+    path.write_text('')
+pathlib.Path('result').write_text('42')
+"""
+LIMITS = ["--seconds", "60", "--cpu-seconds", "3", "--memory", "256", "--disk", "8", "--processes", "40"]
+
+
+@pytest.fixture
+def folder(class_folder, monkeypatch):  # noqa: F811
+    """A class with a course whose check runs the student's program."""
+    lesson = class_folder / "course" / "01-program"
+    lesson.mkdir(parents=True)
+    (class_folder / "course/course.toml").write_text('lessons = ["01-program"]\ntitle.en = "A program"\n')
+    (lesson / "lesson.toml").write_text('title.en = "A program"\n[points]\nrun = 3\n')
+    (lesson / "lesson.en.md").write_text("# A program\n\n## Run {#run}\n\nWrite it.\n\n## Read {#read}\n\nWrite it.\n")
+    (lesson / "checks.py").write_text(
+        "import subprocess, sys\n"
+        "from linkwright.learning.checks.declaring import check\n"
+        "from linkwright.learning.checks.not_yet import NotYet\n"
+        "@check('run', en='It writes 42.')\n"
+        "def run(work):\n"
+        "    source = (work.folder / 'program.py').read_text()\n"
+        "    result = subprocess.run([sys.executable, 'program.py'], cwd=work.folder, capture_output=True)\n"
+        "    if result.stdout != b'42\\n' or 'print' not in source:\n"
+        "        raise NotYet(en='the program does not print 42')\n"
+        "@check('read', en='There is a program.')\n"
+        "def read(work):\n"
+        "    (work.folder / 'program.py').read_text()\n"
+    )
+    students = class_folder / "students"
+    students.mkdir()
+    monkeypatch.chdir(class_folder)
+    return class_folder
+
+
+def write_student(folder, name, program):
+    place = folder / "students" / name
+    place.mkdir()
+    (place / "program.py").write_text(program)
+    (place / "learn.yaml").write_text("course: course\nsteps:\n  01-program/run: {hints: 2, solution: true}\n")
+    return place
+
+
+def grade(folder, *words):
+    folders = sorted(map(str, (folder / "students").iterdir()))
+    status = main(["learn", "grade", "--course", str(folder / "course"), "--json", "out.json", *words, *folders])
+    data = json.loads((folder / "out.json").read_text())
+    return status, {student["student"]: student for student in data["students"]}, data
+
+
+def test_malicious_students_hurt_only_themselves(folder):
+    for number in range(8):
+        write_student(folder, f"good{number}", "print(42)")
+    attacks = [ENDLESS, FORK_BOMB, LARGE_FILE, KILL, SPY.format(folder=str(folder / "students"))]
+    for number, attack in enumerate(attacks):
+        write_student(folder, f"malicious{number}", attack)
+    status, students, data = grade(folder, *LIMITS)
+    assert status == 0
+    assert [students[f"good{number}"]["points"] for number in range(8)] == [4] * 8
+    assert [students[f"malicious{number}"]["points"] for number in range(5)] == [1] * 5
+    reasons = [students[f"malicious{number}"]["steps"][0]["reason"] for number in range(3)]
+    assert reasons[0]["en"] == "the program used more than 3 s of processor time"
+    assert "limits" in data["protections"]
+    assert all((folder / f"students/good{number}/program.py").read_text() == "print(42)" for number in range(8))
+    assert not processes_with("linkwright-grade-")
+
+
+def test_points_claims_and_formats(folder):
+    write_student(folder, "=odd, name", "print(41)")
+    words = ["--csv", "out.csv", "--nbgrader", "nb.csv", "--html", "out.html"]
+    status, students, _ = grade(folder, *words)
+    assert status == 0
+    step = students["=odd, name"]["steps"][0]
+    assert (step["points"], step["max_points"], step["claims"]["hints"], step["claims"]["solution"]) == (0, 3, 2, True)
+    tests = students["=odd, name"]["autograding"]["tests"]
+    assert [(test["status"], test["score"]) for test in tests] == [("fail", 0), ("pass", 1)]
+    (line,) = csv.DictReader(Path("out.csv").read_text(encoding="utf-8").splitlines())
+    assert (line["username"], line["points"], line["max_points"]) == ("'=odd, name", "1", "4")
+    assert line["feedback"] == "01-program/run: the program does not print 42"
+    (line,) = csv.DictReader(Path("nb.csv").read_text(encoding="utf-8").splitlines())
+    assert (line["assignment"], line["score"], line["max_score"]) == ("01-program", "1", "4")
+    page = Path("out.html").read_text(encoding="utf-8")
+    assert "=odd, name" in page
+    assert 'lang="zh"' in page
+    assert not list(folder.glob("*.unfinished"))
+
+
+def test_odd_folders_have_a_line_each(folder, capsys):
+    students = folder / "students"
+    nested = write_student(folder, "nested", "print(42)")
+    (nested / "inner").mkdir()
+    for name in ("program.py", "learn.yaml"):
+        (nested / name).rename(nested / "inner" / name)
+    links = write_student(folder, "links", "print(42)")
+    (links / "program.py").unlink()
+    (links / "program.py").symlink_to(nested / "inner/program.py")
+    os.mkfifo(links / "pipe")
+    (write_student(folder, "other", "print(42)") / "learn.yaml").write_text("course: robot\n")
+    bomb = "a: &a [x, x]\nb: &b [*a, *a]\ncourse: course\nsteps: {01-program/run: {answer: *b}}\n"
+    (write_student(folder, "yaml", "print(42)") / "learn.yaml").write_text(bomb)
+    (write_student(folder, "without", "print(42)") / "learn.yaml").unlink()
+    (students / "file.txt").write_text("")
+    status, found, _ = grade(folder)
+    assert status == 1
+    notes = {name: " / ".join(note["en"] for note in student["notes"]) for name, student in found.items()}
+    assert notes["nested"] == "the workspace is the folder 'inner' in it"
+    assert notes["links"] == "1 links were left out / 1 pipes, sockets or devices were left out"
+    assert notes["other"] == "learn.yaml is of the course 'robot', and was not used"
+    assert "does not contain the progress" in notes["yaml"]
+    assert notes["without"] == "there is no learn.yaml, so there are no answers"
+    assert notes["file.txt"] == "the folder cannot be read: Not a directory"
+    points = {name: student["points"] for name, student in found.items()}
+    assert points == {"nested": 4, "links": 0, "other": 4, "yaml": 4, "without": 4, "file.txt": 0}
+    assert "the folder cannot be read" in capsys.readouterr().out
+
+
+def test_an_interrupted_run_continues(folder, monkeypatch):
+    for number in range(3):
+        write_student(folder, f"good{number}", f"print(42)  # {number}")
+    run_all = grading._run_all
+
+    def interrupt(jobs, workers):
+        for count, item in enumerate(run_all(jobs, workers)):
+            if count == 4:
+                raise KeyboardInterrupt
+            yield item
+
+    monkeypatch.setattr(grading, "_run_all", interrupt)
+    assert main(["learn", "grade", "--course", "course", "--json", "out.json", "students/good0", "students/good1",
+                 "students/good2"]) == 130  # fmt: skip
+    counted = []
+    monkeypatch.setattr(grading, "_run_all", lambda jobs, workers: run_all(counted.extend(jobs) or jobs, workers))
+    status, students, _ = grade(folder)
+    assert status == 0
+    assert len(counted) == 2
+    assert [student["points"] for student in students.values()] == [4] * 3
+    assert not (folder / "out.json.unfinished").exists()
+
+
+def test_outputs_are_checked_before_the_first_run(folder, capsys):
+    write_student(folder, "good", "print(42)")
+    assert main(["learn", "grade", "--course", "course", "--csv", "none/a.csv", "students/good"]) == 1
+    assert "LEARN121" in capsys.readouterr().err
+    assert main(["learn", "grade", "--course", "course", "--csv", "a", "--json", "a", "students/good"]) == 1
+    assert "LEARN120" in capsys.readouterr().err
+
+
+def test_the_answers_are_the_students(folder):
+    place = folder / "students" / "anna"
+    place.mkdir()
+    (place / "robot.urdf").write_text((find_course("example") / "01-one-link/solution/one-link/robot.urdf").read_text())
+    (place / "learn.yaml").write_text("course: example\nsteps:\n  01-one-link/mass: {answer: 12.5}\n")
+    assert main(["learn", "grade", "--course", "example", "--json", "out.json", str(place)]) == 0
+    assert json.loads(Path("out.json").read_text())["students"][0]["points"] == 2
