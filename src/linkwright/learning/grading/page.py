@@ -27,7 +27,7 @@ h1 { font-size: 22px; margin: 12px 0; } h2 { font-size: 16px; margin: 30px 0 10p
 .scroll { overflow-x: auto; background: var(--card); border: 1px solid var(--line); border-radius: 8px; }
 table { border-collapse: collapse; width: 100%; font-variant-numeric: tabular-nums; }
 th, td { padding: 4px 10px; text-align: left; border-bottom: 1px solid var(--line); vertical-align: top; }
-th { color: var(--soft); font-weight: 600; } td.number { text-align: right; white-space: nowrap; }
+th { color: var(--soft); font-weight: 600; } .number { text-align: right; white-space: nowrap; }
 details { margin: 8px 0; background: var(--card); border: 1px solid var(--line); border-radius: 8px; }
 summary { cursor: pointer; padding: 8px 12px; font-weight: 600; } details p { margin: 4px 12px; }
 .message { white-space: pre-wrap; overflow-wrap: anywhere; }
@@ -137,7 +137,10 @@ def _seconds(marks: Iterable[Mark]) -> str:
 
 def _table(headings: Sequence[Phrase], rows: Sequence[Sequence[str]], *, numbers: Sequence[int]) -> str:
     """Return a table whose cells are HTML."""
-    head = "".join(f"<th>{_say(heading)}</th>" for heading in headings)
+    head = "".join(
+        f"<th{' class=number' if column in numbers else ''}>{_say(heading)}</th>"
+        for column, heading in enumerate(headings)
+    )
     lines = "".join(
         "<tr>"
         + "".join(f"<td{' class=number' if column in numbers else ''}>{cell}</td>" for column, cell in enumerate(row))
