@@ -6,6 +6,7 @@ import json
 import shutil
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +15,7 @@ import pytest
 from linkwright.learning.judging.exercise import find_exercise
 from linkwright.learning.page.exercise_guide import ExerciseGuide
 from linkwright.learning.page.feature import CourseFeature
-from linkwright.messages import String
+from linkwright.messages import String, get_service
 from tests.viewer.scene import page, world
 
 STATE = {
@@ -75,12 +76,19 @@ async def test_the_program_is_judged_with_several_seeds(tmp_path):
     assert checks[1]["title"]["en"].startswith("0: ")
 
 
-async def test_a_judge_that_fails_is_explained(tmp_path, monkeypatch):
+async def test_a_judge_that_fails_is_explained_and_the_world_pauses_meanwhile(tmp_path, monkeypatch):
     program = tmp_path / "mine.py"
     program.touch()
     monkeypatch.setattr("linkwright.learning.page.exercise_guide.sys.executable", "/bin/false")
-    async with exercise_page(program) as (_, client):
+    calls = []
+    async with exercise_page(program) as (scene, client):
+        simulator = scene.graph.create_node("gazebo")
+        for name in ("/pause_physics", "/unpause_physics"):
+            note = partial(lambda name, _, response: (calls.append(name), response)[1], name)
+            simulator.create_service(get_service("std_srvs/srv/Empty"), name, note)
         await client.send("check_step")
         while not (message := (await client.until("course_problem"))["message"]):
             pass
         assert message.startswith("the program cannot be judged")
+        await scene.settle()
+    assert calls == ["/pause_physics", "/unpause_physics"]

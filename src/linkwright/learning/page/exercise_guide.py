@@ -12,17 +12,18 @@ from typing import Any
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, foreign, phrase
 from linkwright.diagnostics.translation import LANGUAGES
-from linkwright.graph import Node
+from linkwright.graph import Client, Node
 from linkwright.learning.judging.exercise import Exercise
 from linkwright.learning.judging.world import STATUS_TOPIC
 from linkwright.learning.local_text import LocalText
 from linkwright.learning.page.guide import Guide, Publish
 from linkwright.learning.page.step_html import step_html
-from linkwright.messages import String
+from linkwright.messages import String, get_service
 from linkwright.page.protocol import learning as messages
 from linkwright.page.protocol.message import PageMessage, ServerMessage
 
 _PASS_SCORE = 50.0
+_PAUSE_SERVICE, _RESUME_SERVICE = "/pause_physics", "/unpause_physics"
 _NO_STATE = phrase("the world has not sent the state of the judge yet")
 
 
@@ -30,7 +31,8 @@ class ExerciseGuide(Guide):
     """The guide of a learner through an exercise, on the running event loop.
 
     The first check shows the state of the judge in the world that runs in real time. A request to check judges the
-    program with several seeds, in a process of its own, and shows a check for each.
+    program with several seeds, in a process of its own, and shows a check for each. The world is paused meanwhile,
+    because a weak computer cannot simulate two worlds.
 
     Args:
         exercise: the exercise.
@@ -47,6 +49,8 @@ class ExerciseGuide(Guide):
         self._scores: list[messages.StepCheck] = []
         self._judged_at: float | None = None
         self._task: asyncio.Task[None] | None = None
+        empty = get_service("std_srvs/srv/Empty")
+        self._pause, self._resume = (node.create_client(empty, name) for name in (_PAUSE_SERVICE, _RESUME_SERVICE))
         node.create_subscription(String, STATUS_TOPIC, self._receive, 10)
 
     def opening_messages(self) -> list[ServerMessage]:
@@ -74,6 +78,7 @@ class ExerciseGuide(Guide):
         self._publish(self._checks())
 
     async def _judge(self) -> None:
+        self._call(self._pause)
         words = [sys.executable, "-m", "linkwright", "learn", "judge", str(self._exercise.folder), str(self._program)]
         process = await asyncio.create_subprocess_exec(
             *words, "--json", stdout=asyncio.subprocess.PIPE, stderr=asyncio.subprocess.PIPE
@@ -84,6 +89,7 @@ class ExerciseGuide(Guide):
             process.kill()
             raise
         self._task, self._judged_at = None, time.time()
+        self._call(self._resume)
         try:
             self._scores = [self._score(run) for run in json.loads(output)["runs"]]
         except (ValueError, KeyError):
@@ -91,6 +97,10 @@ class ExerciseGuide(Guide):
             message = phrase("the program cannot be judged: {reason}", reason=reason)
             self._publish(messages.CourseProblem(message, ""))
         self._publish(self._checks())
+
+    def _call(self, client: Client[Any, Any]) -> None:
+        if client.service_is_ready():
+            client.call_async(client.srv_type.Request())
 
     def _course(self) -> messages.Course:
         item = messages.CourseStepItem(self._exercise.id, self._exercise.title.texts, is_passed=False)
