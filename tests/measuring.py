@@ -5,12 +5,27 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
+from tests.places import REPOSITORY
+
+
+def _data_file() -> Path | None:
+    """Return the file of the coverage of the tests, or None if it is not measured."""
+    coverage = sys.modules.get("coverage")
+    measuring = None if coverage is None else coverage.Coverage.current()
+    return None if measuring is None else Path(measuring.get_option("run:data_file")).resolve()
+
 
 def coverage_options() -> list[str]:
     """Return the options that measure the coverage of a Python process, if that of the tests is measured."""
-    coverage = sys.modules.get("coverage")
-    measuring = None if coverage is None else coverage.Coverage.current()
-    if measuring is None:
-        return []
-    data_file = Path(measuring.get_option("run:data_file")).resolve()
-    return ["-m", "coverage", "run", "--parallel-mode", f"--data-file={data_file}"]
+    data_file = _data_file()
+    return [] if data_file is None else ["-m", "coverage", "run", "--parallel-mode", f"--data-file={data_file}"]
+
+
+def measured_program(program: str, part: str) -> str:
+    """Return a program for ``python -c`` in which the coverage of a part is measured, if that of the tests is."""
+    data_file = _data_file()
+    if data_file is None:
+        return program
+    options = f"data_file={str(data_file)!r}, data_suffix=True, config_file={str(REPOSITORY / 'pyproject.toml')!r}"
+    measured = f"import coverage; c = coverage.Coverage({options}); c.start(); {part}; c.stop(); c.save()"
+    return program.replace(part, measured)

@@ -163,8 +163,8 @@ def test_system_v_memory_which_would_outlive_the_run_is_refused(student: Path) -
 
 @pytest.mark.skipif(not Path("/bin/ps").exists(), reason="needs ps")
 def test_systems_without_the_abilities_of_linux_have_limits(student: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    elsewhere = "import sys; sys.platform = 'darwin'; "
-    monkeypatch.setattr(run, "_SUPERVISE", elsewhere + run._SUPERVISE)
+    start = "from {module} import main"
+    monkeypatch.setattr(run, "_SUPERVISE", run._SUPERVISE.replace(start, f"sys.platform = 'darwin'; {start}"))
     outcome = run_python(student, attacks.ENDLESS_LOOP, limits=Limits(seconds=60, cpu_seconds=0.5))
     assert outcome.exceeded is Exceeded.CPU_SECONDS
     assert outcome.protections == {Protection.LIMITS}
