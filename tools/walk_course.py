@@ -114,7 +114,7 @@ def main() -> int:
     with TemporaryDirectory() as folder, sync_playwright() as playwright:
         workspace = Path(folder) / "ws"
         command = [sys.executable, "-m", "linkwright", "learn", "open", str(workspace), "--no-open"]
-        environment = {**os.environ, "LINKWRIGHT_DDS": "0", "HOME": folder, "SHELL": "/bin/sh"}
+        environment = {**os.environ, "HOME": folder, "SHELL": "/bin/sh"}
         program = subprocess.Popen(
             [*command, "--course", str(course.folder)], stdout=subprocess.PIPE, text=True, env=environment
         )
