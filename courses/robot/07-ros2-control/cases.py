@@ -2,7 +2,7 @@ from linkwright.learning import Edit, right, wrong
 
 PACKAGE = "src/my_robot_description/"
 XACRO, CONTROLLERS = PACKAGE + "urdf/mbot_control.xacro", PACKAGE + "config/controllers.yaml"
-LAUNCH, WORLD = PACKAGE + "launch/control.launch.py", PACKAGE + "launch/control_world.launch.py"
+LAUNCH = PACKAGE + "launch/control.launch.py"
 
 JOINT = """    <joint name="{name}_wheel_joint">
       <command_interface name="velocity"/>
@@ -73,12 +73,6 @@ CASES = [
         ),
     ),
     wrong("start", "one controller", Edit(LAUNCH, ", 'base_controller'", ""), says="/base_controller/odom"),
-    wrong(
-        "simulate",
-        "the wrong hardware",
-        Edit(WORLD, "hardware:=gazebo_ros2_control/GazeboSystem", "hardware:=mock_components/GenericSystem"),
-        says="/joint_states",
-    ),
     wrong("speed", "the diameter", says="the diameter", answer="2.5"),
     right("speed", "measured", answer="4.97"),
 ]

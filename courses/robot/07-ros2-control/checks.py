@@ -26,9 +26,7 @@ def systems(work, **arguments):
 @check("interfaces", en="Both wheels take velocities.", zh="两个轮子都接受速度命令。")
 def wheels_take_velocities(work):
     commands = {
-        joint.name: [command.name for command in joint.commands]
-        for system in systems(work)
-        for joint in system.joints
+        joint.name: [command.name for command in joint.commands] for system in systems(work) for joint in system.joints
     }
     for name in WHEELS:
         if name not in commands:
@@ -141,23 +139,14 @@ def package_has_no_findings(work):
     package(work).expect_no_findings()
 
 
-@check("simulate", en="The controllers run in the simulated world.", zh="控制器在仿真世界中运行。")
-def controllers_run_in_world(work):
-    with package(work).launch("control_world.launch.py") as running:
-        running.wait_for_message("/clock")
-        running.wait_for_message("/joint_states")
-        running.wait_for_message("/base_controller/odom")
-
-
-@check("simulate", en="The package has no findings.", zh="功能包没有任何问题。")
-def package_still_has_no_findings(work):
-    package(work).expect_no_findings()
-
-
 @check("speed", en="The speed of the wheels is right.", zh="轮子的转速正确。")
 def knows_speed(work):
     slips = {
-        2.5: NotYet(en="2.5 rad/s is for a radius of 0.12 m; that is the diameter.", zh="2.5 rad/s 用的是 0.12 m；那是直径。"),
-        0.3: NotYet(en="0.3 m/s is the speed of the robot, not of a wheel.", zh="0.3 m/s 是机器人的速度，不是轮子的转速。"),
+        2.5: NotYet(
+            en="2.5 rad/s is for a radius of 0.12 m; that is the diameter.", zh="2.5 rad/s 用的是 0.12 m；那是直径。"
+        ),
+        0.3: NotYet(
+            en="0.3 m/s is the speed of the robot, not of a wheel.", zh="0.3 m/s 是机器人的速度，不是轮子的转速。"
+        ),
     }
     work.expect_number(5.0, tolerance=0.15, slips=slips)
