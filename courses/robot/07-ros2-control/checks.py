@@ -1,0 +1,153 @@
+import yaml
+
+from linkwright.control.hardware.description import hardware_from_robot
+from linkwright.learning import NotYet, check
+
+XACRO, CONTROLLERS = "urdf/mbot_control.xacro", "config/controllers.yaml"
+WHEELS = ("left_wheel_joint", "right_wheel_joint")
+MOCK, GAZEBO = "mock_components/GenericSystem", "gazebo_ros2_control/GazeboSystem"
+TYPES = {
+    "joint_state_broadcaster": "joint_state_broadcaster/JointStateBroadcaster",
+    "base_controller": "diff_drive_controller/DiffDriveController",
+}
+
+
+def package(work):
+    return work.package("my_robot_description")
+
+
+def systems(work, **arguments):
+    found, _ = hardware_from_robot(package(work).robot(XACRO, **arguments).robot)
+    if not found:
+        raise NotYet(en="The robot has no <ros2_control>.", zh="机器人没有 <ros2_control>。")
+    return found
+
+
+@check("interfaces", en="Both wheels take velocities.", zh="两个轮子都接受速度命令。")
+def wheels_take_velocities(work):
+    commands = {
+        joint.name: [command.name for command in joint.commands] for system in systems(work) for joint in system.joints
+    }
+    for name in WHEELS:
+        if name not in commands:
+            names = ", ".join(commands) or "-"
+            raise NotYet(
+                en=f"<ros2_control> has no joint '{name}'; its joints are: {names}.",
+                zh=f"<ros2_control> 中没有关节“{name}”；它的关节是：{names}。",
+            )
+        if commands[name] != ["velocity"]:
+            names = ", ".join(commands[name]) or "-"
+            raise NotYet(
+                en=f"The command interface of '{name}' must be velocity; it is: {names}.",
+                zh=f"“{name}”的命令接口应当是 velocity；现在是：{names}。",
+            )
+
+
+@check("interfaces", en="Both wheels report position and velocity.", zh="两个轮子都报告位置和速度。")
+def wheels_report_state(work):
+    for system in systems(work):
+        for joint in system.joints:
+            missing = {"position", "velocity"} - {state.name for state in joint.states}
+            if missing:
+                raise NotYet(
+                    en=f"The joint '{joint.name}' has no state interface '{min(missing)}'.",
+                    zh=f"关节“{joint.name}”没有状态接口“{min(missing)}”。",
+                )
+
+
+@check("interfaces", en="The argument hardware selects the hardware.", zh="参数 hardware 选择硬件。")
+def argument_selects_hardware(work):
+    for arguments, expected in (({}, MOCK), ({"hardware": GAZEBO}, GAZEBO)):
+        plugins = [system.plugin for system in systems(work, **arguments)]
+        if plugins != [expected]:
+            names = ", ".join(plugins)
+            raise NotYet(
+                en=f"With {arguments or 'no argument'}, the hardware is {names} and should be {expected}.",
+                zh=f"参数为 {arguments or '空'} 时，硬件是 {names}，应当是 {expected}。",
+            )
+
+
+def parameters(work, node):
+    """Return the parameters of a node in the learner's file, also those for all nodes (``/**``)."""
+    try:
+        data = yaml.safe_load(package(work).file(CONTROLLERS).read_text(encoding="utf-8"))
+    except yaml.YAMLError as error:
+        line = error.problem_mark.line + 1 if getattr(error, "problem_mark", None) else 1
+        raise NotYet(
+            en=f"controllers.yaml, line {line}: this is not YAML.",
+            zh=f"controllers.yaml 第 {line} 行：不是 YAML。",
+        ) from None
+    sections = [data.get(key) for key in ("/**", node, "/" + node)] if isinstance(data, dict) else []
+    blocks = [section.get("ros__parameters") for section in sections if isinstance(section, dict)]
+    found = {name: value for block in blocks if isinstance(block, dict) for name, value in block.items()}
+    if not found:
+        raise NotYet(
+            en=f"controllers.yaml has no {node}: with ros__parameters: below it.",
+            zh=f"controllers.yaml 中没有 {node}: 和它下面的 ros__parameters:。",
+        )
+    return found
+
+
+@check("controllers", en="The manager knows the types of both controllers.", zh="管理器知道两个控制器的类型。")
+def manager_knows_types(work):
+    manager = parameters(work, "controller_manager")
+    for name, expected in TYPES.items():
+        section = manager.get(name)
+        actual = section.get("type") if isinstance(section, dict) else manager.get(f"{name}.type")
+        if actual != expected:
+            raise NotYet(
+                en=f"The type of {name} is {actual}, but should be {expected}.",
+                zh=f"{name} 的类型是 {actual}，应当是 {expected}。",
+            )
+
+
+@check("controllers", en="base_controller knows the wheels.", zh="base_controller 知道两个轮子。")
+def controller_knows_wheels(work):
+    found = parameters(work, "base_controller")
+    wanted = {"left_wheel_names": [WHEELS[0]], "right_wheel_names": [WHEELS[1]]}
+    for name, expected in wanted.items():
+        if found.get(name) != expected:
+            raise NotYet(
+                en=f"{name} is {found.get(name)}, but should be {expected}.",
+                zh=f"{name} 是 {found.get(name)}，应当是 {expected}。",
+            )
+    for name, size in (("wheel_separation", 0.38), ("wheel_radius", 0.06)):
+        value = found.get(name)
+        if not isinstance(value, (int, float)) or abs(value - size) > 0.001:
+            raise NotYet(
+                en=f"{name} is {value}, but should be {size} (in m).",
+                zh=f"{name} 是 {value}，应当是 {size}（单位 m）。",
+            )
+
+
+@check("controllers", en="The package installs the file.", zh="功能包会安装这个文件。")
+def file_is_installed(work):
+    package(work).file(CONTROLLERS)
+    package(work).expect_installed(CONTROLLERS)
+
+
+@check("start", en="control.launch.py starts both controllers.", zh="control.launch.py 启动两个控制器。")
+def launch_starts_controllers(work):
+    with package(work).launch("control.launch.py") as running:
+        running.expect_node("/controller_manager")
+        running.wait_for_message("/joint_states")
+        running.wait_for_message("/base_controller/odom")
+
+
+@check("start", en="The package has no findings.", zh="功能包没有任何问题。")
+def package_has_no_findings(work):
+    package(work).expect_installed("launch/control.launch.py")
+    package(work).expect_no_findings()
+
+
+@check("speed", en="The speed of the wheels is right.", zh="轮子的转速正确。")
+def knows_speed(work):
+    slips = {
+        2.5: NotYet(
+            en="2.5 rad/s is for a radius of 0.12 m; that is the diameter.", zh="2.5 rad/s 用的是 0.12 m；那是直径。"
+        ),
+        0.3: NotYet(
+            en="0.3 m/s is the speed of the robot, not of a wheel.", zh="0.3 m/s 是机器人的速度，不是轮子的转速。"
+        ),
+    }
+    work.expect_number(5.0, tolerance=0.15, slips=slips)
