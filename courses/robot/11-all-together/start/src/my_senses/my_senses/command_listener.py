@@ -3,13 +3,16 @@ from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from std_msgs.msg import String
 
-COLORS = {'红': 'red', '绿': 'green', '蓝': 'blue', 'red': 'red', 'green': 'green', 'blue': 'blue'}
+COLORS = {
+    '红': 'red', '绿': 'green', '蓝': 'blue',
+    'red': 'red', 'green': 'green', 'blue': 'blue',
+}
 STOPS = ('停', 'stop')
 GOES = ('去', '到', 'go to')
 
 
 class CommandListener(Node):
-    """Publish the color that a spoken or typed command names as the target, and no color to stop."""
+    """Publish the color that a command names as the target, and no color to stop."""
 
     def __init__(self):
         super().__init__('command_listener')
