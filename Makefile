@@ -141,7 +141,7 @@ test-train: .build/train/.ready
 .build/train/.ready: pyproject.toml | $(UV)
 	$(UV) venv --quiet --clear --python $(or $(VERSION),3.12) .build/train
 	$(UV) pip install --quiet --python .build/train/bin/python --no-sources -e ./core -e '.[train]' \
-		babel hypothesis psutil pytest pytest-asyncio pytest-xdist
+		babel hypothesis psutil pytest pytest-asyncio pytest-timeout pytest-xdist
 	touch $@
 
 check: $(VENV)/.dev

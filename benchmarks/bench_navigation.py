@@ -18,12 +18,12 @@ from linkwright.navigation.costmaps.footprints import circle
 from linkwright.navigation.costmaps.inflation_layer import Inflation, InflationLayer
 from linkwright.navigation.costmaps.layered import LayeredCostmap
 from linkwright.navigation.costmaps.observations import ObservationBuffer, Source
-from linkwright.navigation.costmaps.obstacle_layer import Heights, ObstacleLayer
+from linkwright.navigation.costmaps.obstacle_layer import HeightRange, ObstacleLayer
 from linkwright.navigation.costmaps.static_layer import Interpretation, StaticLayer
 from linkwright.navigation.costmaps.voxel_layer import VoxelLayer, Voxels
 from linkwright.navigation.grids.grid import Grid
-from linkwright.navigation.planning.planner import Settings, plan, run
-from linkwright.navigation.planning.smoothing import Smoothing, smoothed
+from linkwright.navigation.planning.planner import Settings, plan, run_to_end
+from linkwright.navigation.planning.smoothing import Smoothing, smooth_path
 
 _RESOLUTION = 0.05
 _ROOMS = 5
@@ -80,7 +80,7 @@ def _in_rooms(size: int, promised: str) -> list[Row]:
     what = f"{size} x {size} cells"
     buffer = ObservationBuffer(Source(clearing=True, max_obstacle_height=2.0))
     static = StaticLayer(Interpretation())
-    layers = [static, ObstacleLayer([buffer], Heights()), InflationLayer(_INFLATION)]
+    layers = [static, ObstacleLayer([buffer], HeightRange()), InflationLayer(_INFLATION)]
     layered = LayeredCostmap(_blank(size), layers, circle(_RADIUS))
     static.set_map(Grid(cells=rooms(size), resolution=_RESOLUTION))
     found = [Row(f"costmap of {what}, all of it", milliseconds(_anew, layered), "ms")]
@@ -91,7 +91,7 @@ def _in_rooms(size: int, promised: str) -> list[Row]:
     found.append(Row(f"plan over {what}, corner to corner", taken, "ms", promised))
     found.append(Row(f"plan over {what}, to the middle", milliseconds(_path, costmap, middle, turns=3), "ms"))
     path = _path(costmap, end)
-    taken = milliseconds(smoothed, path[:, :2], Smoothing(), costmap)
+    taken = milliseconds(smooth_path, path[:, :2], Smoothing(), costmap)
     found.append(Row(f"smoothing {len(path)} poses", taken, "ms"))
     return found
 
@@ -99,8 +99,8 @@ def _in_rooms(size: int, promised: str) -> list[Row]:
 def _local() -> Row:
     """A costmap that moves with the robot."""
     buffer = ObservationBuffer(Source(clearing=True, max_obstacle_height=2.0))
-    layers = [VoxelLayer([buffer], Heights(), Voxels(z_voxels=16, z_resolution=0.05)), InflationLayer(_INFLATION)]
-    local = LayeredCostmap(_blank(60), layers, circle(_RADIUS), rolling=True)
+    layers = [VoxelLayer([buffer], HeightRange(), Voxels(z_voxels=16, z_resolution=0.05)), InflationLayer(_INFLATION)]
+    local = LayeredCostmap(_blank(60), layers, circle(_RADIUS), is_rolling=True)
     return Row("local costmap of 60 x 60 cells with voxels, a scan", milliseconds(_seen, local, buffer), "ms")
 
 
@@ -109,7 +109,7 @@ def _blank(size: int) -> Grid:
 
 
 def _path(costmap: Costmap, end: float) -> NDArray[np.float64]:
-    return run(plan(costmap, (1.0, 1.0, 0.0), (end, end, 0.0), Settings()))
+    return run_to_end(plan(costmap, (1.0, 1.0, 0.0), (end, end, 0.0), Settings()))
 
 
 def _anew(layered: LayeredCostmap) -> None:

@@ -43,11 +43,11 @@ def robots() -> list[str]:
     return sorted(path.stem for path in FOLDER.glob("*.xacro") if path.stem != PARTS)
 
 
-def make_image(browser: Browser, name: str) -> None:
-    """Show one robot, and write its image."""
-    command = [sys.executable, "-m", "linkwright", "view", f"{name}.xacro", "--no-open"]
+def make_image(browser: Browser, words: Sequence[str], image: Path, folder: Path) -> None:
+    """Run a command of Linkwright in a folder, such as ``view FILE``, and write an image of its scene."""
+    command = [sys.executable, "-m", "linkwright", *words, "--no-open"]
     environment = {**os.environ, "LINKWRIGHT_DDS": "0"}
-    program = subprocess.Popen(command, stdout=subprocess.PIPE, env=environment, cwd=FOLDER, text=True)
+    program = subprocess.Popen(command, stdout=subprocess.PIPE, env=environment, cwd=folder, text=True)
     assert program.stdout is not None
     try:
         page = browser.new_page(viewport=WINDOW, locale="en-US")  # type: ignore[arg-type]
@@ -65,7 +65,7 @@ def make_image(browser: Browser, name: str) -> None:
     width = height * SIZE[0] // SIZE[1]
     left, top = (shot.width - width) // 2, (shot.height - height) // 2
     small = shot.crop((left, top, left + width, top + height)).resize(SIZE, Image.Resampling.LANCZOS)
-    small.save(FOLDER / f"{name}.webp", quality=80, method=6)
+    small.save(image, quality=80, method=6)
 
 
 def main(names: Sequence[str]) -> int:
@@ -73,7 +73,7 @@ def main(names: Sequence[str]) -> int:
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=chromium.find() or chromium.fetch(), args=list(FLAGS))
         for name in names or robots():
-            make_image(browser, name)
+            make_image(browser, ["view", f"{name}.xacro"], FOLDER / f"{name}.webp", FOLDER)
         browser.close()
     return 0
 

@@ -15,6 +15,7 @@ import "./styles/voice.css";
 import "./styles/timeline.css";
 import "./styles/comparison.css";
 import "./styles/editing.css";
+import "./styles/learning.css";
 import { Connection, socketUrl } from "./connection/connection";
 import { Tokens, type AddressBar } from "./connection/tokens";
 import { coalesced, h } from "./dom";
@@ -34,6 +35,8 @@ import { JointsPanel } from "./panels/joints/joints-panel";
 import { WorldCommands } from "./panels/modelling/world-commands";
 import { WorldPanel } from "./panels/modelling/world-panel";
 import { preserveSearches } from "./panels/preserve-searches";
+import { ChecksPanel } from "./panels/learning/checks-panel";
+import { LessonPanel } from "./panels/learning/lesson-panel";
 import { livePanels } from "./panels/monitor/live-panels";
 import { showTopic } from "./panels/monitor/show-topic";
 import { ScenePanel } from "./panels/over-scene/scene-panel";
@@ -70,6 +73,7 @@ import { RecordingDrop } from "./shell/recording-drop";
 import { ShareMenu } from "./shell/share-menu";
 import { StatusBar } from "./shell/status-bar";
 import { TitleBar } from "./shell/title-bar";
+import type { CourseState } from "./state/course";
 import { Session } from "./state/session";
 import { ThemeState } from "./state/theme";
 import { browserStorage } from "./storage";
@@ -109,6 +113,7 @@ function start(app: HTMLElement): void {
   app.append(dockBox);
   const [source, diagram] = [new SourcePanel(session), new DiagramPanel(session)];
   const voice = new VoicePanel(session.voice, session.words);
+  const lesson = new LessonPanel(session.course);
   const terminal = new TerminalPanel(session.terminals, theme);
   const panels = [
     scene,
@@ -129,6 +134,8 @@ function start(app: HTMLElement): void {
     new EditingPanel(session),
     voice,
     terminal,
+    lesson,
+    new ChecksPanel(session.course),
     ...livePanels(session.monitor, (id) => dock.open(id), (topic) => showTopic(session, topic)),
   ];
   preserveSearches(panels, session.memory);
@@ -139,6 +146,14 @@ function start(app: HTMLElement): void {
   session.description.placeRequested.on(({ file, line, display, name }) => {
     dock.open("source");
     source.reveal(file, line, { display, name });
+  });
+
+  session.course.availabilityChanged.on(() => {
+    if (session.course.course) source.openWorkspace(session.course.course.folder);
+  });
+  session.course.fileRequested.on((path) => {
+    dock.open("source");
+    source.edit(path);
   });
 
   session.words.enrolRequested.on(() => {
@@ -162,6 +177,7 @@ function start(app: HTMLElement): void {
   const files = new FileCommands(session.configuration);
   app.prepend(new TitleBar(session, dock, files, new RecordingDrop(session, tokens), theme, new ShareMenu(session, stage, tokens)).element);
   bindFileKeys(session, files);
+  bindCourseKeys(session.course);
   const fold = new TimeFold(session.time, dock.strip);
   app.append(h("div", { class: "foot" }, new TimelineBar(session).element, fold.element, new StatusBar(session, stage).element));
   document.body.append(door.element);
@@ -178,6 +194,7 @@ function start(app: HTMLElement): void {
     voice: () => session.voice.inspect(),
     editing: () => handles?.inspect() ?? {},
     terminal: () => terminal.inspect(),
+    lesson: () => lesson.inspect(),
   });
 }
 
@@ -195,6 +212,7 @@ function followAvailability(dock: Dock, session: Session): void {
   const followJoints = openWhile(dock, "joints", () => session.joints.controls !== null);
   const followWorld = openWhile(dock, "world", () => session.modelling.active);
   const followComparison = openWhile(dock, "comparison", () => session.comparison.compared !== null);
+  const followCourse = (["lesson", "checks"] as const).map((id) => openWhile(dock, id, () => session.course.isAvailable));
   const followTerminals = openWhile(dock, "terminal", () => session.terminals.isAvailable);
   const { displays } = session;
   const pruneDisplayPanels = (): void => dock.displayPanels.prune(displays.displays.map(({ id }) => id));
@@ -204,6 +222,7 @@ function followAvailability(dock: Dock, session: Session): void {
   session.modelling.changed.on(followWorld);
   session.comparison.changed.on(followComparison);
   session.terminals.availabilityChanged.on(followTerminals);
+  session.course.availabilityChanged.on(() => followCourse.forEach((follow) => follow()));
   displays.treeChanged.on(pruneDisplayPanels);
   session.diagnosticsChanged.on(countFindings);
   displays.treeChanged.on(countBeforePaint);
@@ -214,6 +233,7 @@ function followAvailability(dock: Dock, session: Session): void {
     followWorld();
     followComparison();
     followTerminals();
+    followCourse.forEach((follow) => follow());
     pruneDisplayPanels();
     countFindings();
   });
@@ -289,6 +309,23 @@ function bindFileKeys(session: Session, files: FileCommands): void {
     found.run();
   };
   // Capture the event: a field that is edited stops keys from bubbling, and the browser would save the page.
+  document.addEventListener("keydown", onKeyDown, true);
+}
+
+/** Binds the keys of the course, which work everywhere except in dialogs. */
+function bindCourseKeys(course: CourseState): void {
+  const keys = [
+    { shortcut: SHORTCUTS.previousStep, run: () => course.move(-1) },
+    { shortcut: SHORTCUTS.nextStep, run: () => course.move(1) },
+    { shortcut: SHORTCUTS.checkStep, run: () => course.check() },
+  ];
+  const onKeyDown = (event: KeyboardEvent): void => {
+    const found = keys.find(({ shortcut }) => matches(event, shortcut));
+    if (!found || !course.isAvailable || (event.target instanceof Element && event.target.closest("dialog"))) return;
+    event.preventDefault();
+    event.stopPropagation();
+    found.run();
+  };
   document.addEventListener("keydown", onKeyDown, true);
 }
 

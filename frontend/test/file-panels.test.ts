@@ -12,6 +12,8 @@ class BareDock implements Arrangement {
   readonly kept = new Map<string, readonly PanelId[]>();
   file: string | null = null;
   panelsOfFile: readonly PanelName[] | null = null;
+  isClassroom = false;
+  resets = 0;
   shown: readonly PanelId[] = ["displays", "views", "time", "links"];
 
   open(id: PanelId): void {
@@ -31,6 +33,10 @@ class BareDock implements Arrangement {
   storeFor(file: string): void {
     this.file = file;
     this.kept.set(file, this.shown);
+  }
+
+  reset(): void {
+    this.resets += 1;
   }
 
   showOnly(panels: readonly PanelName[]): void {
@@ -111,6 +117,25 @@ describe("the panels of a file", () => {
     expect(dock.file).toBe("/a.rviz");
     receive({ type: "panels", opened: 2, origin: "", shown: ["time"] });
     expect([dock.file, dock.shown]).toEqual(["/b.rviz", ["time", "links"]]);
+  });
+});
+
+describe("a course", () => {
+  const course: ServerMessage = { type: "course", title: { en: "A course" }, folder: "/ws", lessons: [] };
+
+  it("arranges the panels when it is shown for the first time", () => {
+    receive(course);
+    tell(1, null, ["displays"], "/ws");
+    expect([dock.isClassroom, dock.resets]).toEqual([true, 1]);
+    receive(course);
+    expect(dock.resets).toBe(1);
+  });
+
+  it("leaves the panels as the user arranged them", () => {
+    dock.kept.set("/ws", ["lesson", "plot"]);
+    tell(1, null, ["displays"], "/ws");
+    receive(course);
+    expect([dock.isClassroom, dock.resets, dock.shown]).toEqual([true, 0, ["lesson", "plot"]]);
   });
 });
 

@@ -88,7 +88,7 @@ def test_displays_are_renamed_duplicated_and_removed_by_keys(grouped):
     for _ in range(4):
         page.keyboard.press("Control+z")
     until(page, "lw.displays.length === 4 && lw.displays[2].name === 'Axes'")
-    assert not viewer.viewer.manager.history.unsaved
+    assert not viewer.viewer.manager.history.has_unsaved_edits
 
 
 def test_keys_for_displays_do_nothing_on_rows_of_properties_and_the_keyboard_stays_in_the_tree(grouped):

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from playwright.sync_api import Browser, Locator, Page, Playwright
 
-from linkwright.speech.sound.wav import wav_bytes
+from linkwright.speech.sound.wav import encode_wav
 from tests.browser.conftest import Start, launched, state, until
 from tests.browser.live import LOOK_EVERY
 from tests.speech.voices import WORDS, say
@@ -52,7 +52,7 @@ class Microphone:
     def put(self, samples: np.ndarray) -> None:
         rest = np.zeros(5 * 16_000, np.int16)
         beside = self._path.with_suffix(".new")
-        beside.write_bytes(wav_bytes(np.concatenate((samples, rest))))
+        beside.write_bytes(encode_wav(np.concatenate((samples, rest))))
         beside.replace(self._path)
 
 

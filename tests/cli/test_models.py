@@ -43,7 +43,7 @@ def test_a_model_is_fetched_found_checked_and_removed(toy, home, capsys):
     assert main(["models", "get", "toy"]) == 0
     printed = capsys.readouterr()
     assert printed.out == f"{home / 'toy-1.0'}\n"
-    assert "licence Apache-2.0" in printed.err
+    assert "license Apache-2.0" in printed.err
     assert main(["models", "path", "toy"]) == 0
     assert capsys.readouterr().out == f"{home / 'toy-1.0'}\n"
     assert main(["models", "get", "toy"]) == 0

@@ -12,7 +12,7 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 from linkwright.loading import extensions
 from linkwright.speech.engine import Heard, SpeechEngine
 from linkwright.speech.sound.samples import BLOCK, RATE
-from linkwright.speech.sound.wav import wav_bytes
+from linkwright.speech.sound.wav import encode_wav
 from tests.full_disk import full_disk, needs_limits
 
 FORWARD, STOP, OTHER = 1_000, 2_000, 3_000
@@ -57,7 +57,7 @@ def home(tmp_path, monkeypatch):
 
 def recorded(name, level):
     quiet = np.zeros(RATE // 2, np.int16)
-    Path(name).write_bytes(wav_bytes(np.concatenate((quiet, np.full(RATE // 2, level, np.int16)))))
+    Path(name).write_bytes(encode_wav(np.concatenate((quiet, np.full(RATE // 2, level, np.int16)))))
     return name
 
 
@@ -67,13 +67,13 @@ def word(name):
     tone = 6_000 * np.sin(2 * np.pi * (300 + 400 * times) * times) + 4_000 * np.sin(2 * np.pi * 1_500 * times)
     sound = np.concatenate((np.zeros(RATE // 2), tone, np.zeros(RATE // 2)))
     noise = np.random.default_rng(3).normal(0, 10, len(sound))
-    Path(name).write_bytes(wav_bytes((sound + noise).astype(np.int16)))
+    Path(name).write_bytes(encode_wav((sound + noise).astype(np.int16)))
     return name
 
 
 def test_what_is_heard_with_command_times_and_how_late(capsys):
     files = [recorded("a.wav", FORWARD), recorded("b.wav", OTHER), recorded("c.wav", STOP)]
-    Path("d.wav").write_bytes(wav_bytes(np.zeros(RATE, np.int16)))
+    Path("d.wav").write_bytes(encode_wav(np.zeros(RATE, np.int16)))
     assert main(["voice", "try", *files, "d.wav", "--engine", "level"]) == 0
     lines = capsys.readouterr().out.splitlines()
     assert [line.partition(", recognized")[0] for line in lines] == [
@@ -111,7 +111,7 @@ def test_partials_and_other_commands(capsys, home):
 )
 def test_what_is_wrong_is_one_message(words, code, capsys):
     recorded("a.wav", STOP)
-    Path("silence.wav").write_bytes(wav_bytes(np.zeros(RATE, np.int16)))
+    Path("silence.wav").write_bytes(encode_wav(np.zeros(RATE, np.int16)))
     assert main(["voice", *words]) == 1
     assert f"error[{code}]" in capsys.readouterr().err
 
@@ -137,7 +137,7 @@ def test_words_are_enrolled_listed_and_forgotten(capsys, home):
 
 
 def test_of_recordings_with_one_that_is_not_fit_none_is_learned(capsys, home):
-    Path("silence.wav").write_bytes(wav_bytes(np.zeros(RATE, np.int16)))
+    Path("silence.wav").write_bytes(encode_wav(np.zeros(RATE, np.int16)))
     assert main(["voice", "enrol", "stop", word("a.wav"), "silence.wav", "--file", "mine.json"]) == 1
     printed = capsys.readouterr().err
     assert "'silence.wav'" in printed

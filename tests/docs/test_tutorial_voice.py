@@ -61,7 +61,7 @@ def test_what_the_page_says_is_understood(language: str) -> None:
         "前进",
     ]
     assert len(shown) > 22
-    assert [text for text in shown if ours.understand(text) is None] == []
+    assert [text for text in shown if ours.match_command(text) is None] == []
 
 
 def test_the_launch_file_has_the_arguments_that_the_page_uses(capsys: pytest.CaptureFixture[str]) -> None:
@@ -106,7 +106,7 @@ async def test_the_readers_own_commands_move_mbot(tmp_path: Path) -> None:
 def test_the_file_on_the_page_about_voice_is_right() -> None:
     (block,) = [block for block in blocks(DOCS / "voice.md") if block.title == "my_commands.yaml"]
     found = parse_commands(SourceText(block.title, block.text))
-    assert found.understand("please go forward seven metres") is None
+    assert found.match_command("please go forward seven metres") is None
     for text in (
         "go forward seven metres",
         "转圈",
@@ -115,7 +115,7 @@ def test_the_file_on_the_page_about_voice_is_right() -> None:
         "count to twelve",
         "follow the wall",
     ):
-        assert found.understand(text) is not None, text
+        assert found.match_command(text) is not None, text
     assert "前进七米" in found.phrases("zh")
 
 

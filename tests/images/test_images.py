@@ -114,8 +114,8 @@ def test_chroma_becomes_colour():
 
 @pytest.mark.parametrize(("encoding", "width"), [("yuyv", 1), ("yuyv", 3), ("nv21", 3), ("nv24", 3)])
 def test_odd_sizes_do_no_harm(encoding, width):
-    decoded = decode_image(image(encoding, width, 3, bytes([128] * 60)), RangeFinder())
-    assert (decoded.width, decoded.height) == (width, 3)
+    decode_rvl = decode_image(image(encoding, width, 3, bytes([128] * 60)), RangeFinder())
+    assert (decode_rvl.width, decode_rvl.height) == (width, 3)
 
 
 @pytest.mark.parametrize("encoding", ["rgb8", "16UC1", "32FC1", "bayer_rggb8", "yuyv", "nv21", "nv24"])
@@ -130,9 +130,9 @@ def test_unknown_encodings_are_refused():
 
 
 def test_a_large_image_is_thinned():
-    decoded = DecodedImage(np.arange(100, dtype=np.uint8).reshape(10, 10))
-    assert decoded.subsample(100) is decoded
-    thinned = decoded.subsample(30)
+    decode_rvl = DecodedImage(np.arange(100, dtype=np.uint8).reshape(10, 10))
+    assert decode_rvl.subsample(100) is decode_rvl
+    thinned = decode_rvl.subsample(30)
     assert (thinned.width, thinned.height) == (5, 5)
     assert thinned.pixels[1].tolist() == [20, 22, 24, 26, 28]
     odd = DecodedImage(np.zeros((5, 5), np.uint8)).subsample(4)
@@ -151,9 +151,9 @@ def test_a_reduced_image_has_the_mean_of_squares(step):
 
 
 def test_an_image_is_not_reduced_to_nothing():
-    decoded = DecodedImage(np.zeros((2, 9), np.uint8))
-    assert decoded.reduce_by(1) is decoded
-    assert decoded.reduce_by(3) is decoded
+    decode_rvl = DecodedImage(np.zeros((2, 9), np.uint8))
+    assert decode_rvl.reduce_by(1) is decode_rvl
+    assert decode_rvl.reduce_by(3) is decode_rvl
 
 
 def test_grey_and_translucent_images_have_rgb():

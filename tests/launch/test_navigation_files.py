@@ -211,7 +211,7 @@ async def test_composed_servers_get_their_parameters(launch: Launch, monkeypatch
 
 def test_a_server_is_known_by_its_executable() -> None:
     assert Server("nav2_amcl", "amcl", "nav2_amcl::AmclNode").node_name == "amcl"
-    assert not Server("nav2_docking", "docking_server", "").is_here
+    assert not Server("nav2_docking", "docking_server", "").is_available
 
 
 def test_the_view_is_read_whole() -> None:
@@ -243,7 +243,7 @@ async def test_no_manager_waits_for_what_a_launch_file_of_a_user_starts_and_is_n
 
 def test_no_composed_manager_waits_for_it_either() -> None:
     messages: list[str] = []
-    log = SimpleNamespace(warning_line=lambda _name, text: messages.append(text))
+    log = SimpleNamespace(write_warning=lambda _name, text: messages.append(text))
     context = SimpleNamespace(session=SimpleNamespace(left_out={"docking_server"}, log=log))
     request = get_service("composition_interfaces/srv/LoadNode").Request(package_name="nav2_lifecycle_manager")
     parameter = get_message("rcl_interfaces/msg/Parameter")(name="node_names")

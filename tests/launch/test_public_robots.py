@@ -18,7 +18,7 @@ from linkwright.launch.arguments import format_arguments
 from linkwright.launch.frontend.launch_file import load_launch_file
 from linkwright.messages.distribution import ASSUMED
 from linkwright.packages import PackageFinder, use_finder
-from linkwright.shell.programs import PROGRAMS, offer_programs, offer_ros_variables
+from linkwright.shell.programs import PROGRAMS, append_programs_to_path, set_ros_variables
 
 MANIFEST = "<package format='3'><name>{}</name><version>1.0.0</version></package>"
 HEAD = """\
@@ -328,8 +328,8 @@ class TestPrograms:
                 LogInfo(msg=FindExecutable(name='ros2'))])
         """
         environment = dict(os.environ)
-        offer_programs(environment)
-        offer_programs(environment)
+        append_programs_to_path(environment)
+        append_programs_to_path(environment)
         folder = Path(environment["PATH"].split(os.pathsep)[-1])
         assert environment["PATH"].split(os.pathsep).count(str(folder)) == 1
         assert all(shutil.which(name, path=str(folder)) for name in PROGRAMS)
@@ -342,13 +342,13 @@ class TestPrograms:
 
     def test_variables_of_a_sourced_ros(self) -> None:
         bare, sourced = {"A": "b"}, {"ROS_DISTRO": "jazzy"}
-        offer_ros_variables(bare)
-        offer_ros_variables(sourced)
+        set_ros_variables(bare)
+        set_ros_variables(sourced)
         of_ros = {"ROS_DISTRO": "humble", "ROS_VERSION": "2", "ROS_PYTHON_VERSION": "3"}
         assert bare == {"A": "b", **of_ros, ASSUMED: "1", "GZ_SIM_RESOURCE_PATH": "", "LD_LIBRARY_PATH": ""}
         assert sourced == {"ROS_DISTRO": "jazzy"}
         models = {"GZ_SIM_RESOURCE_PATH": "/models"}
-        offer_ros_variables(models)
+        set_ros_variables(models)
         assert models["GZ_SIM_RESOURCE_PATH"] == "/models"
 
     def test_a_folder_that_cannot_be_written_offers_nothing(self, tmp_path: Path) -> None:
@@ -356,7 +356,7 @@ class TestPrograms:
         blocked.write_text("")
         os.environ["XDG_CACHE_HOME"] = str(blocked)
         environment = {"PATH": "/bin"}
-        offer_programs(environment)
+        append_programs_to_path(environment)
         assert environment == {"PATH": "/bin"}
 
 

@@ -13,6 +13,7 @@ from linkwright.learning.checks.running import check_in_process
 from linkwright.learning.classroom import open_classroom
 from linkwright.learning.course import find_course, load_course
 from linkwright.learning.lesson_tests import test_lesson as run_lesson_tests
+from tests.waiting import SECONDS, wait_until
 
 SOLUTION = "01-one-link/solution/one-link/robot.urdf"
 
@@ -54,6 +55,7 @@ def test_hints_come_one_by_one_and_the_solution_keeps_what_it_replaces(workspace
     assert (status, out) == (0, "robot.urdf\n")
     (kept,) = (workspace / "replaced").rglob("robot.urdf")
     assert kept.read_text() == "mine"
+    assert (workspace / "replaced" / "COLCON_IGNORE").is_file()  # a copy of a package is not one more package
     text = (workspace / "learn.yaml").read_text()
     assert "hints: 2" in text
     assert "solution: true" in text
@@ -138,7 +140,7 @@ def test_a_check_that_hangs_or_dies_fails_and_leaves_no_process(tmp_path, capsys
     result = check_in_process(step, tmp_path, time_limit=3.0)
     assert "took longer than 3 s" in str(result.checks[0].message)
     if sys.platform != "win32":
-        assert not is_running(int(marker.read_text()))
+        wait_until(lambda: not is_running(int(marker.read_text())), SECONDS)
     checks.write_text("import os\nos._exit(7)\n")
     result = check_in_process(step, tmp_path)
     assert "ended early" in str(result.checks[0].message)

@@ -70,6 +70,34 @@ def test_a_launch_file_that_fails_is_said(package):
         package.launch("displai.launch.py")
 
 
+VOICE = """from launch import LaunchDescription
+from launch_ros.actions import Node
+
+def generate_launch_description():
+    commands = {{'commands_file': {commands!r}, 'engine': ''}}
+    return LaunchDescription([
+        Node(package='demo_nodes_cpp', executable='listener'),
+        Node(package='my_robot_voice', executable='voice_commander', parameters=[commands]),
+    ])
+"""
+
+
+def test_a_topic_without_a_publisher_is_missing_and_the_error_of_the_launch_is_said(package):
+    launch = package.folder / "launch" / "voice.launch.py"
+    launch.write_text(VOICE.format(commands=""))
+    with (
+        package.launch("voice.launch.py") as running,
+        pytest.raises(NotYet, match=r"^no node publishes '/voice/text_input'$"),
+    ):
+        running.wait_for_message("/voice/text_input")
+    launch.write_text(VOICE.format(commands="missing.yaml"))
+    with (
+        package.launch("voice.launch.py") as running,
+        pytest.raises(NotYet, match=r"no node publishes '/voice/text'; the launch says: .*missing\.yaml"),
+    ):
+        running.wait_for_message("/voice/text")
+
+
 @pytest.mark.slow
 def test_a_program_of_the_learner_is_seen_over_the_network(package, tmp_path):
     program = tmp_path / "talker.py"

@@ -39,7 +39,7 @@ PACKED = ModelEntry(
     kind="speech",
     address="unset",
     megabytes=1,
-    licence="Apache-2.0",
+    license="Apache-2.0",
     purpose="tests",
     folder="toy-1.0",
     sha256=sha256(ARCHIVE),
@@ -50,7 +50,7 @@ SINGLE = ModelEntry(
     kind="vision",
     address="unset",
     megabytes=1,
-    licence="Apache-2.0",
+    license="Apache-2.0",
     purpose="tests",
     sha256=sha256(b"network" * 1_000),
 )

@@ -181,7 +181,7 @@ def test_nothing_but_the_models_files_leaves_an_archive(tmp_path, home):
 
 
 def test_a_bomb_is_stopped(tmp_path, home, monkeypatch):
-    monkeypatch.setattr("linkwright.model_files.archives._MOST_BYTES", 10_000)
+    monkeypatch.setattr("linkwright.model_files.archives._MAX_BYTES", 10_000)
     packed = tmp_path / "toy.zip"
     packed.write_bytes(ARCHIVE)
     diagnostic = refused(PACKED, packed)

@@ -14,7 +14,7 @@ from linkwright.model_files import model_entry, model_table
 def test_every_model_can_be_fetched_and_checked(entry):
     assert entry.kind in ("speech", "vision")
     assert entry.address.startswith("https://")
-    assert entry.licence == "Apache-2.0"
+    assert entry.license == "Apache-2.0"
     assert entry.sha256 or entry.files
     assert bool(entry.folder) == bool(entry.files)
     for each in (entry.sha256, *entry.files.values()):

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import json
+import os
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from linkwright.descriptions import examine
+from linkwright.descriptions.editing import Workspace
 from linkwright.diagnostics import extras
 from linkwright.page.audience import Page
+from linkwright.panels.source_editor.feature import SourceEditorFeature
 from linkwright.panels.source_editor.files import SourceFiles, with_line_ends
 from tests.viewer.scene import ARM, page, world
 
@@ -25,6 +28,10 @@ def file(tmp_path: Path) -> Path:
     path = package / "urdf" / "arm.urdf"
     path.write_text(ROBOT)
     return path
+
+
+def real(path: Path) -> str:
+    return os.path.realpath(path)
 
 
 def content(path: Path) -> bytes:
@@ -120,7 +127,19 @@ def test_a_link_out_of_the_workspace_is_not_followed(file: Path, tmp_path: Path)
     (tmp_path / "secret.txt").write_text("secret")
     link = file.parent / "link.txt"
     link.symlink_to(tmp_path / "secret.txt")
-    assert SourceFiles(file).read(link).text is None
+    assert SourceFiles(Workspace(file)).read(link).text is None
+
+
+async def test_a_workspace_is_edited_without_a_description(tmp_path: Path) -> None:
+    async with world() as scene, page(scene.viewer) as client:
+        scene.viewer.add_feature(SourceEditorFeature).edit_workspace(tmp_path)
+        answer = await ask(client, "open_editor", "editor_opened", file=str(tmp_path))
+        assert (answer["folder"], answer["why_not"]) == (real(tmp_path), "")
+        new = tmp_path / "src" / "new.py"
+        created = await ask(client, "create_source_file", "source_file_written", number=1, path=str(new))
+        assert (created["refusal"], new.read_text()) == (None, "")
+        outside = await ask(client, "create_source_file", "source_file_written", number=2, path="/tmp/x.py")
+        assert outside["refusal"]["code"] == "EDIT106"
 
 
 async def test_a_page_elsewhere_edits_nothing(file: Path, monkeypatch: pytest.MonkeyPatch) -> None:

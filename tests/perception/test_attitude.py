@@ -13,22 +13,24 @@ from linkwright.geometry.single import (
     rotate,
     rpy_from_quaternion,
 )
-from linkwright.perception.attitude import GRAVITY, ComplementaryFilter, MadgwickFilter, World, attitude_at_rest
+from linkwright.perception.attitude import GRAVITY, ComplementaryFilter, MadgwickFilter, WorldFrame, attitude_at_rest
 
 angles = st.floats(-1.4, 1.4)
 DIP = 1.0
 """How far below the horizon the magnetic field points, rad."""
 
 
-def felt(orientation, world=World.ENU):
+def felt(orientation, world=WorldFrame.ENU):
     """What an accelerometer measures at rest."""
     return rotate(quaternion_inverse(orientation), (0.0, 0.0, GRAVITY * world.up))
 
 
-def field(orientation, world=World.ENU):
+def field(orientation, world=WorldFrame.ENU):
     """What a magnetometer measures."""
     level, down = cos(DIP), -sin(DIP) * world.up
-    return rotate(quaternion_inverse(orientation), (0.0, level, down) if world is World.ENU else (level, 0.0, down))
+    return rotate(
+        quaternion_inverse(orientation), (0.0, level, down) if world is WorldFrame.ENU else (level, 0.0, down)
+    )
 
 
 def apart(first, second):
@@ -38,7 +40,7 @@ def apart(first, second):
 
 
 @settings(max_examples=50)
-@given(angles, angles, angles, st.sampled_from(World))
+@given(angles, angles, angles, st.sampled_from(WorldFrame))
 def test_a_body_at_rest_knows_how_it_is_turned(roll, pitch, yaw, world):
     orientation = quaternion_from_rpy((roll, pitch, yaw))
     assert apart(attitude_at_rest(felt(orientation, world), field(orientation, world), world), orientation) < 1e-6
@@ -47,12 +49,12 @@ def test_a_body_at_rest_knows_how_it_is_turned(roll, pitch, yaw, world):
 
 
 def test_where_nothing_tells_a_direction():
-    assert attitude_at_rest((0.0, 0.0, 0.0), None, World.ENU) is None
-    assert attitude_at_rest((0.0, 0.0, 9.8), (0.0, 0.0, 1.0), World.ENU) is None
-    assert attitude_at_rest((0.0, 0.0, 9.8), (0.0, 0.0, 0.0), World.ENU) is None
+    assert attitude_at_rest((0.0, 0.0, 0.0), None, WorldFrame.ENU) is None
+    assert attitude_at_rest((0.0, 0.0, 9.8), (0.0, 0.0, 1.0), WorldFrame.ENU) is None
+    assert attitude_at_rest((0.0, 0.0, 9.8), (0.0, 0.0, 0.0), WorldFrame.ENU) is None
 
 
-@pytest.mark.parametrize("world", World)
+@pytest.mark.parametrize("world", WorldFrame)
 def test_madgwick_finds_the_attitude_from_afar(world):
     orientation = quaternion_from_rpy((0.4, -0.3, 1.0))
     each = MadgwickFilter(gain=0.5, world=world)
@@ -92,7 +94,7 @@ def test_the_complementary_filter_finds_the_attitude_and_north():
     orientation = quaternion_from_rpy((0.3, -0.2, 0.8))
     each = ComplementaryFilter(gain_acc=0.05, gain_mag=0.05)
     for _ in range(500):
-        each.update((0.0, 0.0, 0.0), felt(orientation, World.NWU), field(orientation, World.NWU), 0.01)
+        each.update((0.0, 0.0, 0.0), felt(orientation, WorldFrame.NWU), field(orientation, WorldFrame.NWU), 0.01)
     assert apart(each.orientation, orientation) < 0.01
 
 

@@ -29,7 +29,7 @@ def test_the_commands_are_the_built_in_ones_with_the_rooms_of_the_house():
     built_in, ours = read_command_file(DEFAULT_FILE), read_command_file(COMMANDS)
     assert ours.commands == built_in.commands
     assert set(ours.places) - set(built_in.places) == {"kitchen", "bedroom", "study"}
-    found = ours.understand("go to the kitchen")
+    found = ours.match_command("go to the kitchen")
     assert found is not None
     assert found.values == {"place": "kitchen"}
     assert "去厨房" in ours.phrases("zh")

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from linkwright.images import BadImageError, ImageSource, Unpacker
-from linkwright.images.compressed_depth import BadRvlError, decoded
+from linkwright.images.compressed_depth import BadRvlError, decode_rvl
 from linkwright.messages import get_message
 from linkwright.page.protocol.images import ImageFrame
 from linkwright.rviz.image_compression import ImageCompressor
@@ -35,7 +35,7 @@ CameraInfo = get_message("sensor_msgs/msg/CameraInfo")
 MILLIMETRES = np.array([[0, 1000, 1001], [65535, 0, 1]], np.uint16)
 
 
-def unpacked(message, transport: str = "compressedDepth"):
+def decode_compressed(message, transport: str = "compressedDepth"):
     return Unpacker().image(message, transport)
 
 
@@ -68,7 +68,7 @@ def test_a_transport_has_a_topic_below_the_images(topic, hint, expected):
 
 @pytest.mark.parametrize("packing", ["png", "rvl"])
 def test_whole_depths_are_what_they_were(packing):
-    image = unpacked(depth_message(MILLIMETRES, packing))
+    image = decode_compressed(depth_message(MILLIMETRES, packing))
     assert (image.encoding, image.width, image.height, image.step) == ("16UC1", 3, 2, 6)
     assert values(image, "<u2") == MILLIMETRES.tolist()
     assert image.header.frame_id == "base"
@@ -77,7 +77,7 @@ def test_whole_depths_are_what_they_were(packing):
 @pytest.mark.parametrize("packing", ["png", "rvl"])
 def test_depths_in_metres_are_nearly_what_they_were(packing):
     metres = np.array([[0.5, 1.0, 4.0, 9.0], [np.nan, np.inf, 11.0, 2.0]])
-    image = unpacked(depth_message(metres, packing))
+    image = decode_compressed(depth_message(metres, packing))
     assert image.encoding == "32FC1"
     expected = np.where(metres < 10.0, metres, np.nan)
     assert np.allclose(image.data.view("<f4").reshape(2, 4), expected, rtol=0.002, equal_nan=True)
@@ -87,35 +87,35 @@ def test_depths_in_metres_are_nearly_what_they_were(packing):
     "form", ["16UC1", "16UC1; compressedDepth", "mono16; compressedDepth png", "16UC1;compressedDepth"]
 )
 def test_formats_of_older_publishers_are_read(form):
-    assert values(unpacked(packed(form, header() + png(MILLIMETRES))), "<u2") == MILLIMETRES.tolist()
+    assert values(decode_compressed(packed(form, header() + png(MILLIMETRES))), "<u2") == MILLIMETRES.tolist()
 
 
 def test_colours_and_greys_come_out_of_files():
-    image = unpacked(packed("rgb8; jpeg compressed bgr8", jpeg((200, 100, 50), 16, 8)), "compressed")
+    image = decode_compressed(packed("rgb8; jpeg compressed bgr8", jpeg((200, 100, 50), 16, 8)), "compressed")
     assert (image.encoding, image.width, image.height) == ("rgb8", 16, 8)
     assert np.allclose(image.data.reshape(-1, 3), [200, 100, 50], atol=3)
-    image = unpacked(packed("mono8; jpeg compressed ", jpeg(90, 4, 4)), "compressed")
+    image = decode_compressed(packed("mono8; jpeg compressed ", jpeg(90, 4, 4)), "compressed")
     assert (image.encoding, image.data.tolist()) == ("mono8", [90] * 16)
-    image = unpacked(packed("png", png(MILLIMETRES)), "compressed")
+    image = decode_compressed(packed("png", png(MILLIMETRES)), "compressed")
     assert (image.encoding, values(image, "<u2")) == ("mono16", MILLIMETRES.tolist())
 
 
 def test_depths_may_come_as_files_too():
-    image = unpacked(packed("16UC1; png compressed ", png(MILLIMETRES)), "compressed")
+    image = decode_compressed(packed("16UC1; png compressed ", png(MILLIMETRES)), "compressed")
     assert (image.encoding, values(image, "<u2")) == ("16UC1", MILLIMETRES.tolist())
-    image = unpacked(packed("16UC1; jpeg compressed mono8", jpeg(4, 1, 1)), "compressed")
+    image = decode_compressed(packed("16UC1; jpeg compressed mono8", jpeg(4, 1, 1)), "compressed")
     assert (image.encoding, values(image, "<u2")) == ("16UC1", [[1024]])
 
 
 @given(arrays(np.uint16, st.integers(1, 60), elements=st.sampled_from([0, 0, 0, 1, 2, 900, 901, 40000, 65535])))
 def test_every_rvl_stream_comes_out_as_it_went_in(pixels):
-    assert decoded(np.frombuffer(rvl(pixels), np.uint8), len(pixels)).tolist() == pixels.tolist()
+    assert decode_rvl(np.frombuffer(rvl(pixels), np.uint8), len(pixels)).tolist() == pixels.tolist()
 
 
 @given(st.binary(max_size=200), st.integers(1, 5000))
 def test_no_bytes_upset_the_reader_of_rvl_streams(data, pixels):
     with suppress(BadRvlError):
-        assert len(decoded(np.frombuffer(data, np.uint8), pixels)) == pixels
+        assert len(decode_rvl(np.frombuffer(data, np.uint8), pixels)) == pixels
 
 
 @pytest.mark.parametrize(
@@ -167,7 +167,7 @@ def test_no_bytes_upset_the_reader_of_rvl_streams(data, pixels):
 )
 def test_what_is_wrong_with_a_depth_image_is_said(form, data, text):
     with pytest.raises(BadImageError, match=text):
-        unpacked(packed(form, data))
+        decode_compressed(packed(form, data))
 
 
 def test_what_is_wrong_with_a_colour_image_is_said():
@@ -177,7 +177,7 @@ def test_what_is_wrong_with_a_colour_image_is_said():
         (png(MILLIMETRES, says=(1 << 30, 1 << 30)), r"The PNG has 1073741824 x 1073741824 pixels"),
     ):
         with pytest.raises(BadImageError, match=text):
-            unpacked(packed("rgb8; jpeg compressed bgr8", data), "compressed")
+            decode_compressed(packed("rgb8; jpeg compressed bgr8", data), "compressed")
 
 
 def test_a_file_with_too_many_pixels_is_not_unpacked_to_be_made_smaller():

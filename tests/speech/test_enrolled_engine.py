@@ -106,7 +106,7 @@ def test_a_phrase_with_a_number_asks_for_more_confidence(words, tmp_path, monkey
         *((name, 0.6, name if name == "stop" else "") for name in phrases),
         *((name, 0.8, name) for name in phrases),
     ):
-        monkeypatch.setattr(engine._recogniser, "guess", Mock(return_value=Guess(name, confidence, 0, 9)))
+        monkeypatch.setattr(engine._recognizer, "guess", Mock(return_value=Guess(name, confidence, 0, 9)))
         assert finals(engine, say("mumi", silence=0.8)) == [expected]
 
 

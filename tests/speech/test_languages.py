@@ -9,10 +9,10 @@ from linkwright.diagnostics.translation import LANGUAGES
 from linkwright.model_files import model_entry
 from linkwright.speech.commands.quantities import GRAMMAR_VALUES
 from linkwright.speech.engines.vosk_engine import MODELS
-from linkwright.vision.places import words
+from linkwright.vision.places import object_requests
 
 
-@pytest.mark.parametrize("table", [voice._LANGUAGES, words._NUMBERS, *GRAMMAR_VALUES.values()])
+@pytest.mark.parametrize("table", [voice._LANGUAGES, object_requests._NUMBERS, *GRAMMAR_VALUES.values()])
 def test_a_table_has_each_language(table) -> None:
     assert tuple(table) == LANGUAGES
 

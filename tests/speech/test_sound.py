@@ -12,7 +12,7 @@ from linkwright.speech.sound.activity import VoiceActivity, speech_span, unstead
 from linkwright.speech.sound.resampling import Resampler, resample
 from linkwright.speech.sound.samples import RATE
 from linkwright.speech.sound.spectra import BANDS, HOP, MelFrames, mel_frames
-from linkwright.speech.sound.wav import parse_wav, read_wav, wav_bytes
+from linkwright.speech.sound.wav import encode_wav, parse_wav, read_wav
 from tests.speech.voices import WORDS, babble, beside, say
 
 
@@ -63,7 +63,7 @@ def test_a_file_that_was_cut_off_gives_what_is_there():
 
 def test_what_is_written_is_read(tmp_path):
     samples = say(WORDS["stop"])
-    (tmp_path / "stop.wav").write_bytes(wav_bytes(samples))
+    (tmp_path / "stop.wav").write_bytes(encode_wav(samples))
     assert np.array_equal(read_wav(tmp_path / "stop.wav"), samples)
 
 

@@ -7,7 +7,6 @@ import signal
 import subprocess
 import sys
 import textwrap
-from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -181,7 +180,10 @@ class TestManners:
                     pass
             print([name for name in sys.modules if "linkwright" in name or name in ("numpy", "importlib.util")])
             """
-        others = find_spec("sitecustomize") is not None  # the machine's own, as Ubuntu has it, which ours runs
+        plain = {"PATH": os.environ["PATH"]}
+        others = (
+            output_of("-c", "import sys; print('sitecustomize' in sys.modules)", env=plain) == "True"
+        )  # as Ubuntu has
         assert output_of("-c", textwrap.dedent(code)) == ("['importlib.util']" if others else "[]")
 
     def test_a_module_that_is_missing_is_missing(self):

@@ -33,7 +33,7 @@ class Balance(Judge):
         elif self.pushes and self.time > self.pushes[0]:
             self.pushes.pop(0)
             self.simulation.data.joint(HINGE).qvel[0] += self.random.choice([-1.0, 1.0]) * self.strength
-            self.simulation.set_moved()
+            self.simulation.mark_moved()
             self.strength += 0.1
 
     def at_time_limit(self):

@@ -1,3 +1,8 @@
+/** Returns the name of a file without its folders. */
+export function nameOf(path: string): string {
+  return path.slice(Math.max(path.lastIndexOf("/"), path.lastIndexOf("\\")) + 1);
+}
+
 /** Returns at most the last `parts` parts of a path, which tell files apart. */
 export function shortPath(path: string, parts = 3): string {
   const all = path.split(/[\\/]/).filter((part) => part !== "");

@@ -68,6 +68,17 @@ import type {
   Screw,
 } from "./geometry";
 import type { ImageFrame, ImageSize, OccupancyMap } from "./images";
+import type {
+  AnswerStep,
+  CheckStep,
+  Course,
+  CourseProblem,
+  CourseStep,
+  OpenStep,
+  StepChecks,
+  TakeHint,
+  TakeSolution,
+} from "./learning";
 import type { InteractiveMarkerMoved, InteractiveMarkerShape, MarkerFeedback, MarkersChanged } from "./markers";
 import type { DisplayForgotten, FrameTable, Hello, ProgramIsLate, Received } from "./message";
 import type {
@@ -223,6 +234,7 @@ export * from "./editing";
 export * from "./export";
 export * from "./geometry";
 export * from "./images";
+export * from "./learning";
 export * from "./markers";
 export * from "./message";
 export * from "./monitor";
@@ -248,6 +260,9 @@ export type ServerMessage =
   | ConfigurationSaved
   | ConfigurationText
   | ConversationText
+  | Course
+  | CourseProblem
+  | CourseStep
   | Description
   | DescriptionChanged
   | DescriptionText
@@ -300,6 +315,7 @@ export type ServerMessage =
   | SourceFile
   | SourceFileWritten
   | SourceFolder
+  | StepChecks
   | TakeJudged
   | TeleopState
   | TerminalInputLost
@@ -330,6 +346,7 @@ export type PageMessage =
   | AddEntity
   | AddTool
   | AimTeleop
+  | AnswerStep
   | ApplyEdit
   | AskConfigurationText
   | AskDescription
@@ -351,6 +368,7 @@ export type PageMessage =
   | CenterJoints
   | ChangeEntities
   | ChangeSavedView
+  | CheckStep
   | CloseTerminal
   | CommandNavigation
   | ControlSimulation
@@ -379,6 +397,7 @@ export type PageMessage =
   | NewConfiguration
   | OpenConfiguration
   | OpenEditor
+  | OpenStep
   | OpenTerminal
   | Play
   | PointChosen
@@ -422,6 +441,8 @@ export type PageMessage =
   | SpawnModel
   | StepTime
   | StopRecording
+  | TakeHint
+  | TakeSolution
   | Talk
   | Undo
   | UndoEdit

@@ -103,6 +103,8 @@ export class KeySheet {
           [keyText(SHORTCUTS.redo), shell.redo],
           ["R", words.resetTime],
           [TALK_KEY.toUpperCase(), strings.voice.talkKey],
+          [`${keyText(SHORTCUTS.previousStep)} ${keyText(SHORTCUTS.nextStep)}`, strings.learning.stepKeys],
+          [keyText(SHORTCUTS.checkStep), strings.learning.checkHint],
           ["F11", words.fullscreen],
           ["?", words.sheet],
         ],

@@ -5,6 +5,7 @@ import { browserStorage } from "../storage";
 import { AngleUnits } from "./angle-unit";
 import { ComparisonState } from "./comparison";
 import { ConfigurationState } from "./configuration";
+import { CourseState } from "./course";
 import { DescriptionState } from "./description";
 import { DisplayDataStore } from "./display-data";
 import { DisplaysState } from "./displays";
@@ -75,6 +76,7 @@ export class Session {
   readonly words: WordsState;
   readonly textEditor: TextEditorLink;
   readonly terminals: TerminalsState;
+  readonly course: CourseState;
   diagnostics: readonly DiagnosticItem[] = [];
   private program: Hello | null = null;
 
@@ -99,6 +101,7 @@ export class Session {
     this.words = new WordsState(connection, this.voice);
     this.textEditor = new TextEditorLink(connection, this.focus);
     this.terminals = new TerminalsState(connection);
+    this.course = new CourseState(connection);
     this.listen(connection);
     const followFixedFrame = (): void => {
       this.frames.fixedFrame = this.displays.fixedFrame;

@@ -42,4 +42,7 @@ export const SHORTCUTS = {
   remove: { key: "Delete" },
   moveUp: { key: "ArrowUp", alt: true },
   moveDown: { key: "ArrowDown", alt: true },
+  previousStep: { key: "PageUp", alt: true },
+  nextStep: { key: "PageDown", alt: true },
+  checkStep: { key: "Enter", alt: true },
 } as const satisfies Readonly<Record<string, Shortcut>>;

@@ -7,6 +7,7 @@ Exit statuses: 0 success, 1 findings or an error in the user's input, 2 wrong us
 from __future__ import annotations
 
 import gc
+import os
 import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from importlib import import_module
@@ -192,6 +193,9 @@ def _parse(name: str, module: Verb, words: list[str], program: str, *, in_order:
     """
     parser = parser_for(name, program=program)
     sub_verbs: Mapping[str, SubVerb] = getattr(module, "VERBS", {})
+    default_verb: str | None = getattr(module, "DEFAULT_VERB", None)
+    if default_verb is not None and _begins_without_verb(words[1:], sub_verbs):
+        words = [words[0], default_verb, *words[1:]]
     if sub_verbs:
         sub_verb_name = next(iter(words[1:]), "-")
         if not sub_verb_name.startswith("-") and sub_verb_name not in sub_verbs:
@@ -199,6 +203,15 @@ def _parse(name: str, module: Verb, words: list[str], program: str, *, in_order:
     is_intermixed = not sub_verbs and not in_order and any(word.startswith("-") for word in words)
     parse = parser.parse_intermixed_args if is_intermixed else parser.parse_args
     return parse(words[1:])
+
+
+def _begins_without_verb(words: Sequence[str], verbs: Mapping[str, SubVerb]) -> bool:
+    """Return whether words are arguments of a default subcommand, and not a subcommand, a misspelt one, or --help."""
+    first = next(iter(words), "")
+    if first in verbs or first in ("-h", "--help"):
+        return False
+    is_folder = first.startswith("-") or "/" in first or os.path.isdir(first)  # noqa: PTH112 - importing pathlib is slow
+    return is_folder or did_you_mean(first, verbs) is None
 
 
 def _report_unknown(name: str, names: Iterable[str], prog: str) -> int:

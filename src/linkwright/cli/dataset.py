@@ -16,7 +16,7 @@ from linkwright.process.interruption import INTERRUPTED
 from linkwright.vision.datasets.options import FORMATS
 
 if TYPE_CHECKING:
-    from linkwright.vision.datasets.making import Studio
+    from linkwright.vision.datasets.rendering import Studio
 
 _MIN_SIDE, _MAX_SIDE = 32, 4096
 _FIXABLE_PROPERTIES = ("lights", "colours", "lens")
@@ -159,7 +159,7 @@ def run(arguments: argparse.Namespace) -> int:
     print(as_table(result.folder.statistics()), end="")
     images = counted("{count} image", "{count} images", result.folder.count)
     print(localized(phrase("{images} in {folder}", images=images, folder=display_path(path))))
-    if result.interrupted:
+    if result.was_interrupted:
         message = phrase(
             "{done} of {count} images were rendered; the dataset can be used, and `--append` adds more images",
             done=result.added,

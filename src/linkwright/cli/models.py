@@ -36,7 +36,7 @@ def run_list(arguments: argparse.Namespace) -> int:
                 "name": entry.name,
                 "kind": entry.kind,
                 "megabytes": entry.megabytes,
-                "licence": entry.licence,
+                "licence": entry.license,
                 "address": entry.address,
                 "purpose": entry.purpose,
                 "path": str(models_folder() / entry.installed_name) if is_installed(entry) else None,
@@ -50,7 +50,7 @@ def run_list(arguments: argparse.Namespace) -> int:
         state = phrase("downloaded") if is_installed(entry) else phrase("not downloaded")
         size = f"{entry.megabytes} MB"
         print(
-            f"{entry.name:{width}}  {entry.kind:6}  {size:>6}  {entry.licence}  {localized(state)}: "
+            f"{entry.name:{width}}  {entry.kind:6}  {size:>6}  {entry.license}  {localized(state)}: "
             f"{localized(term(entry.purpose))}"
         )
     return FINE
@@ -85,11 +85,11 @@ def run_get(arguments: argparse.Namespace) -> int:
     print_message(
         localized(
             phrase(
-                "{name}: about {megabytes} MB from {source}, licence {licence}",
+                "{name}: about {megabytes} MB from {source}, license {license}",
                 name=entry.name,
                 megabytes=entry.megabytes,
                 source=arguments.source or entry.address,
-                licence=entry.licence,
+                license=entry.license,
             )
         )
     )

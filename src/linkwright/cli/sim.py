@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from linkwright.cli.model_arguments import add_values
 from linkwright.cli.simulation_options import (
@@ -16,6 +18,9 @@ from linkwright.cli.simulation_options import (
 )
 from linkwright.cli.view import add_viewer_options, terminal_folder
 from linkwright.process.assignments import parse_assignments
+
+if TYPE_CHECKING:
+    from linkwright.viewer import Viewer
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -36,8 +41,12 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add_viewer_options(parser)
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run(arguments: argparse.Namespace, viewer_started: Callable[[Viewer], object] | None = None) -> int:
     """Simulate until the user interrupts the command.
+
+    Args:
+        arguments: the arguments of the command.
+        viewer_started: called with the viewer after its start; None if no call is needed.
 
     Returns:
         The exit status, which is 1 if the world or the robot has errors.
@@ -78,6 +87,7 @@ def run(arguments: argparse.Namespace) -> int:
         not arguments.no_open,
         history=arguments.history,
         terminal=terminal_folder(arguments),
+        viewer_started=viewer_started,
     )
     with recording(arguments) as writer:
         return run_simulated(world, finder, options, foxglove=arguments.foxglove, writer=writer)

@@ -41,8 +41,13 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add_viewer_options(parser)
 
 
-def add_viewer_options(parser: argparse.ArgumentParser) -> None:
-    """Declare the options of the page, which `view`, `launch` and `run` share."""
+def add_viewer_options(parser: argparse.ArgumentParser, *, terminal: bool = True) -> None:
+    """Declare the options of the page, which several commands share.
+
+    Args:
+        parser: the command's parser.
+        terminal: whether the terminal is an option, because the command does not need it.
+    """
     group = parser.add_argument_group(title="page in the browser")
     group.add_argument("--no-open", action="store_true", help="do not open the page in the browser")
     group.add_argument("--host", default="127.0.0.1", help="address to serve the page at (default: %(default)s)")
@@ -58,11 +63,12 @@ def add_viewer_options(parser: argparse.ArgumentParser) -> None:
         help="memory for the messages of the last minutes, which the page can replay, such as 1GB; 0 "
         "disables replay (default: 256MB)",
     )
-    group.add_argument(
-        "--terminal",
-        action="store_true",
-        help="let pages of this machine run your shell, in the panel Terminal; shells start in the current folder",
-    )
+    if terminal:
+        group.add_argument(
+            "--terminal",
+            action="store_true",
+            help="let pages of this machine run your shell, in the panel Terminal; shells start in the current folder",
+        )
 
 
 def terminal_folder(arguments: argparse.Namespace) -> Path | None:

@@ -134,7 +134,7 @@ class _Trial:
         words = {"text": result.text, "confidence": f"{result.confidence:.2f}"}
         if not result.final:
             return phrase("partial: '{text}' ({confidence})", **words)
-        understood = self._commands.understand(result.text)
+        understood = self._commands.match_command(result.text)
         if understood is None:
             return phrase("'{text}' ({confidence}), no command", **words)
         return phrase("'{text}' ({confidence}), command {intent}", intent=understood.command.intent, **words)

@@ -142,6 +142,7 @@ class HostOptions:
         rviz: the path of the viewer's configuration file; None for the default configuration.
         follows_editor: whether a text editor is connected, see `linkwright.hosting.text_editor`.
         terminal: the folder in which pages of this machine can run shells; None to let no page run one.
+        viewer_started: called with each viewer after its start; None if no call is needed.
     """
 
     host: str = "127.0.0.1"
@@ -153,6 +154,7 @@ class HostOptions:
     rviz: Path | None = None
     follows_editor: bool = False
     terminal: Path | None = None
+    viewer_started: Callable[[Viewer], object] | None = None
 
 
 class Supervisor(Protocol):

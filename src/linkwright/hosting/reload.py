@@ -76,6 +76,13 @@ class LiveReload:
         """Unregister a function that `bind` registered."""
         self._callbacks[call].remove(apply)
 
+    def forget(self, call: XacroCall) -> None:
+        """Stop watching the files of a description, and show no findings about it any more."""
+        self._callbacks.pop(call, None)
+        self._findings.pop(call, None)
+        self._show(self.findings())
+        self._watch_files()
+
     def show(self, subject: object, diagnostics: Iterable[Diagnostic]) -> None:
         """Show findings in the viewer without printing them.
 
@@ -219,6 +226,8 @@ class LiveReload:
             await asyncio.sleep(_RETRY_SECONDS)
             if call in self._pending_reloads:
                 return  # A newer change has already started another reload.
+        if call not in self._callbacks:
+            return
         self._failed_calls.add(call)
         known_keys = [_finding_key(finding) for finding in self._findings.get(call, ())]
         if call in self._saved_calls or known_keys != [_finding_key(finding) for finding in findings]:
@@ -238,6 +247,8 @@ class LiveReload:
     def _apply(self, call: XacroCall, text: str, findings: tuple[Diagnostic, ...]) -> None:
         was_broken = self._is_broken(call)
         self._saved_calls.discard(call)
+        if call not in self._callbacks:
+            return
         try:
             for apply in tuple(self._callbacks[call]):
                 apply(text)

@@ -215,7 +215,7 @@ class ModelView:
         finally:
             self.is_blocking = False
         parameters = {"robot_description": self._text, "publish_frequency": _PUBLISH_FREQUENCY_HZ}
-        self._plan("robot_state_publisher", "robot_state_publisher", parameters)
+        self._plan("robot_state_publisher", "robot_state_publisher", parameters, owner=self._call)
         return True
 
     def _plan_others(self) -> None:
@@ -235,10 +235,10 @@ class ModelView:
         self._replace_description(self._call)
 
     def _replace_description(self, call: XacroCall) -> None:
-        """Publish a description whose file has been fixed, or a description with other arguments."""
-        previous_call, self._call, self._form = self._call, call, None
-        self.reload.unbind(previous_call, self._plan_fixed_description)
-        self.reload.show(previous_call, ())
+        """Publish a description whose file has been fixed, one with other arguments, or another file."""
+        previous_call, self._call, self._form, self._text = self._call, call, None, None
+        self.host.stop_matching(lambda owner: owner is previous_call)
+        self.reload.forget(previous_call)
         self.clear_failure(previous_call)
         self._show_form()
         self._plan_description()
@@ -281,12 +281,13 @@ class ModelView:
         viewer_started: Callable[[Viewer], object] | None = None,
         output: str = "log",
         waits_for_fix: bool = True,
+        owner: object = None,
     ) -> None:
         config_path = self.options.rviz
         if viewer_config is not None and config_path is not None:
             viewer_config = partial(_config_of, config_path)
         plan = HostedPlan(
-            self,
+            owner or self,
             f"{name or executable}-{next(self._process_numbers)}",
             package,
             executable,
@@ -299,6 +300,11 @@ class ModelView:
             waits_for_fix=waits_for_fix,
         )
         self.host.plan(plan)
+
+    @property
+    def _config_name(self) -> str:
+        """The name under which unsaved edits of the viewer's configuration are stored."""
+        return str(self._call.path)
 
     def _viewer_config(self) -> RvizConfig:
         """Return a configuration with the displays Grid, RobotModel and TF.
@@ -315,7 +321,7 @@ class ModelView:
         size = size_of(robot) if robot is not None else None
         finder = library.packages(self._text or "") or self.finder
         shows_frames = robot is not None and not has_visuals(robot, finder)
-        return RvizConfig.for_model(frame, size=size, frames=shows_frames, name=str(self._call.path))
+        return RvizConfig.for_model(frame, size=size, frames=shows_frames, name=self._config_name)
 
     # --- interface for nodes and signals ------------------------------------------------------------------------
 

@@ -146,6 +146,8 @@ class ViewerHost:
         self._viewers[plan.process_name] = plan, viewer
         if plan.viewer_started is not None:
             plan.viewer_started(viewer)
+        if session.options.viewer_started is not None:
+            session.options.viewer_started(viewer)
         if not is_announced:
             self._announce(server)
         if session.options.open_browser and server.pages_wait:

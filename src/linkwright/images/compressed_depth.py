@@ -83,7 +83,7 @@ def _decode_rvl(data: NDArray[np.uint8]) -> NDArray[np.uint16]:
             )
         )
     try:
-        return decoded(data[_RVL_SIZE.size :], columns * rows).reshape(rows, columns)
+        return decode_rvl(data[_RVL_SIZE.size :], columns * rows).reshape(rows, columns)
     except BadRvlError as error:
         raise BadImageError(
             phrase(
@@ -121,7 +121,7 @@ class BadRvlError(ValueError):
     """Raised when a stream is malformed, with a description of the error."""
 
 
-def decoded(stream: NDArray[np.uint8], pixels: int) -> NDArray[np.uint16]:
+def decode_rvl(stream: NDArray[np.uint8], pixels: int) -> NDArray[np.uint16]:
     """Return the pixels of an RVL stream, shape (pixels,).
 
     Args:

@@ -110,7 +110,7 @@ def file_format(start: bytes) -> str:
     return "PNG" if start.startswith(_PNG) else "JPEG"
 
 
-def unpacked(message: Any) -> RawImage:
+def decode_compressed(message: Any) -> RawImage:
     """Return the decoded image of a message of the transport ``compressed``.
 
     The encoding follows from the file. For 16-bit pixels (depths), the format of the message names the encoding. A JPEG

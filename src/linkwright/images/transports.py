@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from linkwright.images.compressed_depth import decode_depth
-from linkwright.images.image_files import unpacked
+from linkwright.images.image_files import decode_compressed
 
 RAW, COMPRESSED, COMPRESSED_DEPTH, _THEORA = "raw", "compressed", "compressedDepth", "theora"
 TRANSPORTS = (RAW, COMPRESSED, COMPRESSED_DEPTH, _THEORA)
@@ -95,6 +95,6 @@ class Unpacker:
             return message
         if message is not self._message:
             self._message = None
-            self._image = decode_depth(message) if transport == COMPRESSED_DEPTH else unpacked(message)
+            self._image = decode_depth(message) if transport == COMPRESSED_DEPTH else decode_compressed(message)
             self._message = message
         return self._image

@@ -23,7 +23,7 @@ _SUPPORT_RADIUS_SHARE = 0.8
 
 
 @dataclass(frozen=True, slots=True)
-class Verdict:
+class DriveVerdict:
     """The drive that the wheels suggest, and the reason.
 
     Attributes:
@@ -40,12 +40,12 @@ class Verdict:
 Pair = tuple[Wheel, Wheel]
 
 
-def judge_drive(
+def infer_drive(
     survey: Survey,
     undercarriage: Undercarriage,
     requested_kind: DriveKind | None = None,
     chosen_wheels: Sequence[Wheel] = (),
-) -> Verdict:
+) -> DriveVerdict:
     """Return the drive of a robot with wheels.
 
     Args:
@@ -57,7 +57,7 @@ def judge_drive(
     wheels = tuple(chosen_wheels) or undercarriage.wheels
     if not chosen_wheels and undercarriage.misaligned and requested_kind is None:
         names = quoted_names([wheel.joint for wheel in undercarriage.misaligned])
-        return Verdict(None, phrase("the wheels on {names} do not roll forward along x", names=names))
+        return DriveVerdict(None, phrase("the wheels on {names} do not roll forward along x", names=names))
     fixed_pairs, unpaired = _pair_wheels([wheel for wheel in wheels if wheel.steering is None or chosen_wheels])
     steered_pairs, unpaired_steered = _pair_wheels(
         [] if chosen_wheels else [wheel for wheel in wheels if wheel.steering is not None]
@@ -69,26 +69,26 @@ def judge_drive(
         fixed_pairs = [pair for pair in fixed_pairs if pair not in steered_pairs]
     if unpaired_steered:
         names = quoted_names([wheel.joint for wheel in unpaired_steered])
-        return Verdict(None, phrase("the wheels on {names} are steered, but are not a pair", names=names))
+        return DriveVerdict(None, phrase("the wheels on {names} are steered, but are not a pair", names=names))
     casters: list[str] = []
     if unpaired:
         casters = [wheel.link for wheel in unpaired if _supports_only(wheel, fixed_pairs)]
         unpaired_joints = [wheel.joint for wheel in unpaired if wheel.link not in casters]
         if unpaired_joints and (chosen_wheels or requested_kind is None):
-            return Verdict(None, phrase("no wheel is opposite {names}", names=quoted_names(unpaired_joints)))
+            return DriveVerdict(None, phrase("no wheel is opposite {names}", names=quoted_names(unpaired_joints)))
     verdict = _drive_from_pairs(survey, fixed_pairs, steered_pairs, requested_kind)
-    return Verdict(verdict.drive, verdict.reason, tuple(casters))
+    return DriveVerdict(verdict.drive, verdict.reason, tuple(casters))
 
 
 def _drive_from_pairs(
     survey: Survey, fixed_pairs: list[Pair], steered_pairs: list[Pair], requested_kind: DriveKind | None
-) -> Verdict:
+) -> DriveVerdict:
     kind = requested_kind or _suggested_kind(survey, fixed_pairs, steered_pairs)
     if kind is None:
-        return Verdict(None, _why_unknown(fixed_pairs, steered_pairs))
+        return DriveVerdict(None, _unknown_kind_reason(fixed_pairs, steered_pairs))
     problem = _missing_wheels(kind, fixed_pairs, steered_pairs)
     if problem is not None:
-        return Verdict(None, problem)
+        return DriveVerdict(None, problem)
     if kind == "differential":
         fixed_pairs = fixed_pairs[:1]
     if kind == "ackermann":
@@ -99,7 +99,7 @@ def _drive_from_pairs(
         abs(left_wheel.center[1] - right_wheel.center[1]) for left_wheel, right_wheel in fixed_pairs
     ) / len(fixed_pairs)
     drive = Drive(kind, left, right, steered_pairs[0] if kind == "ackermann" else (), separation)
-    return Verdict(drive, _drive_reason(drive))
+    return DriveVerdict(drive, _drive_reason(drive))
 
 
 def _suggested_kind(survey: Survey, fixed_pairs: list[Pair], steered_pairs: list[Pair]) -> DriveKind | None:
@@ -118,7 +118,7 @@ def _suggested_kind(survey: Survey, fixed_pairs: list[Pair], steered_pairs: list
     return "skid"
 
 
-def _why_unknown(fixed_pairs: list[Pair], steered_pairs: list[Pair]) -> Phrase:
+def _unknown_kind_reason(fixed_pairs: list[Pair], steered_pairs: list[Pair]) -> Phrase:
     if len(steered_pairs) > 1:
         return phrase("there are {count} pairs of steered wheels", count=len(steered_pairs))
     if steered_pairs:

@@ -45,12 +45,12 @@ With less torque the wheels stalled in our measurements.
 _UPDATE_RATE = "50"
 
 
-def own_drive(robot: Robot) -> Element | None:
+def find_working_drive(robot: Robot) -> Element | None:
     """Return the description's plugin that drives the robot, or None if none works here."""
     return next((plugin for plugin in _drive_plugins(robot) if _is_working(plugin)), None)
 
 
-def idle_drive(robot: Robot) -> Element | None:
+def find_idle_drive(robot: Robot) -> Element | None:
     """Return an element that should drive the robot but has no effect here, or None.
 
     The element is a plugin or a ``<ros2_control>``. Examples are controllers of ROS 1, controllers with a missing
@@ -139,14 +139,14 @@ def has_friction(robot: Robot, link: str) -> bool:
     )
 
 
-def slippery(link: str) -> Element:
+def frictionless_element(link: str) -> Element:
     """Return the ``<gazebo>`` element that lets a caster slide without friction."""
     element = Element("gazebo", {"reference": link})
     element.children += [_text_element("mu1", _CASTER_FRICTION), _text_element("mu2", _CASTER_FRICTION)]
     return element
 
 
-def drive_plugin(robot: Robot, drive: Drive, base_frame: str, mass: float) -> Element:
+def drive_element(robot: Robot, drive: Drive, base_frame: str, mass: float) -> Element:
     """Return the ``<gazebo>`` element with the plugin that drives the wheels.
 
     Args:
@@ -166,7 +166,7 @@ def drive_plugin(robot: Robot, drive: Drive, base_frame: str, mass: float) -> El
     return _gazebo_element(_plugin_element(name, filename, [*parameters, *odometry]))
 
 
-def joint_states(joints: Sequence[str]) -> Element:
+def joint_states_element(joints: Sequence[str]) -> Element:
     """Return the ``<gazebo>`` element with the plugin that publishes the positions of joints."""
     names = [("joint_name", name) for name in joints]
     plugin = _plugin_element(
@@ -175,7 +175,7 @@ def joint_states(joints: Sequence[str]) -> Element:
     return _gazebo_element(plugin)
 
 
-def joint_controllers(joints: Iterable[str]) -> Element:
+def joint_controllers_element(joints: Iterable[str]) -> Element:
     """Return the ``<gazebo>`` element with plugins that hold joints, and move them on command."""
     return _gazebo_element(
         *(
@@ -199,10 +199,10 @@ def _diff_drive(drive: Drive, torque: float) -> tuple[str, str, list[tuple[str, 
         *pairs,
         *(("left_joint", wheel.joint) for wheel in drive.left),
         *(("right_joint", wheel.joint) for wheel in drive.right),
-        *(("wheel_separation", number(separation)) for separation in separations),
-        *(("wheel_diameter", number(diameter)) for diameter in diameters),
+        *(("wheel_separation", format_number(separation)) for separation in separations),
+        *(("wheel_diameter", format_number(diameter)) for diameter in diameters),
         ("max_wheel_torque", f"{torque:.3g}"),
-        ("max_wheel_acceleration", number(_MAX_ACCELERATION)),
+        ("max_wheel_acceleration", format_number(_MAX_ACCELERATION)),
         ("odometry_source", "0"),
         ("publish_wheel_tf", "false"),
     ]
@@ -252,7 +252,7 @@ def _torque(robot: Robot, drive: Drive, mass: float) -> float:
     return (_SKID_TORQUE_FACTOR if drive.kind == "skid" else 1.0) * slip_torque + max(joint_torques, default=0.0)
 
 
-def number(value: float) -> str:
+def format_number(value: float) -> str:
     """Format a number with at most six digits."""
     return f"{value:.6g}"
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, Severity, did_you_mean, phrase, quoted_names
 from linkwright.inertia import MeshLibrary
 from linkwright.inference import gazebo
-from linkwright.inference.drives import Verdict, judge_drive
+from linkwright.inference.drives import DriveVerdict, infer_drive
 from linkwright.inference.missing import missing_collisions, missing_masses
 from linkwright.inference.results import Drive, DriveKind, Finding, Inference, Wheel
 from linkwright.inference.undercarriage import Survey, Undercarriage
@@ -42,14 +42,16 @@ def infer(robot: Robot, meshes: MeshLibrary, *, kind: DriveKind | None = None, w
     undercarriage = survey.undercarriage()
     chosen_wheels = [_find_wheel(survey, name) for name in wheels]
     is_requested = kind is not None or bool(chosen_wheels)
-    working_drive, idle_drive = (None, None) if is_requested else (gazebo.own_drive(robot), gazebo.idle_drive(robot))
+    working_drive, idle_drive = (
+        (None, None) if is_requested else (gazebo.find_working_drive(robot), gazebo.find_idle_drive(robot))
+    )
     verdict = (
-        Verdict(None, Phrase(""))
+        DriveVerdict(None, Phrase(""))
         if working_drive is not None
         else _choose_drive(survey, undercarriage, kind, chosen_wheels)
     )
     if working_drive is None and idle_drive is not None and verdict.drive is None:
-        verdict = Verdict(Drive("joints"), phrase("the controllers of the robot do not work here"))
+        verdict = DriveVerdict(Drive("joints"), phrase("the controllers of the robot do not work here"))
     if is_requested and verdict.drive is None:
         message = phrase("'{robot}' cannot be driven as requested: {why}", robot=robot.name, why=verdict.reason)
         raise LinkwrightError(Diagnostic("DRIVE211", message, hint=_DRIVE_HINT))
@@ -63,7 +65,7 @@ class _InferenceBuilder:
         self,
         survey: Survey,
         undercarriage: Undercarriage,
-        verdict: Verdict,
+        verdict: DriveVerdict,
         working_drive: Element | None,
         idle_drive: Element | None,
     ) -> None:
@@ -82,7 +84,9 @@ class _InferenceBuilder:
         ground_wheels = {
             wheel.link: wheel for wheel in (*undercarriage.wheels, *undercarriage.misaligned)
         } | self._driven_wheels
-        self._wheels = ground_wheels | {wheel.link: wheel for wheel in survey.rolling if wheel.link in self._casters}
+        self._wheels = ground_wheels | {
+            wheel.link: wheel for wheel in survey.rolling_wheels if wheel.link in self._casters
+        }
         drives_joints = drive is not None and drive.kind == "joints"
         self._fixed_base = self._robot.root == _WORLD_LINK or (drives_joints and _is_single_chain(survey))
 
@@ -166,7 +170,7 @@ class _InferenceBuilder:
             yield Finding(
                 self._diagnostic_at_root("DRIVE111", message),
                 root,
-                (gazebo.drive_plugin(self._robot, drive, self._base_frame, mass),),
+                (gazebo.drive_element(self._robot, drive, self._base_frame, mass),),
             )
             yield from self._caster_findings()
             yield from self._tipping_findings(drive)
@@ -177,7 +181,7 @@ class _InferenceBuilder:
         moving = [joint.name for joint in self._robot.joints.values() if joint.type in _MOVING_TYPES]
         if moving and not gazebo.publishes_joint_states(self._robot):
             message = phrase("the positions of the joints are published as joint_states")
-            yield Finding(self._diagnostic_at_root("DRIVE115", message), root, (gazebo.joint_states(moving),))
+            yield Finding(self._diagnostic_at_root("DRIVE115", message), root, (gazebo.joint_states_element(moving),))
 
     def _holding_findings(self, held_joints: tuple[str, ...]) -> Iterator[Finding]:
         if held_joints:
@@ -188,7 +192,7 @@ class _InferenceBuilder:
             yield Finding(
                 self._diagnostic_at_root("DRIVE114", message),
                 self._robot.element,
-                (gazebo.joint_controllers(held_joints),),
+                (gazebo.joint_controllers_element(held_joints),),
             )
 
     def _message_values(self, element: Element) -> dict[str, str]:
@@ -213,7 +217,9 @@ class _InferenceBuilder:
             joint = self._robot.joints[wheel.joint]
             if wheel.axis[1] > 0.0 or joint.element is None:
                 continue
-            axis = Element("axis", {"xyz": " ".join(gazebo.number(-component + 0.0) for component in joint.axis)})
+            axis = Element(
+                "axis", {"xyz": " ".join(gazebo.format_number(-component + 0.0) for component in joint.axis)}
+            )
             message = phrase(
                 "the axis of joint '{joint}' points to the right: it is reversed, because a positive "
                 "velocity must drive forward",
@@ -229,7 +235,9 @@ class _InferenceBuilder:
             message = phrase(
                 "link '{link}' touches the ground and is not driven, so its friction is set to zero", link=name
             )
-            yield Finding(_diagnostic_at(element, "DRIVE112", message), self._robot.element, (gazebo.slippery(name),))
+            yield Finding(
+                _diagnostic_at(element, "DRIVE112", message), self._robot.element, (gazebo.frictionless_element(name),)
+            )
 
     def _rolls_freely(self, link: str) -> bool:
         """Return whether a caster rolls about its own axis and swivels about a vertical axis."""
@@ -267,36 +275,36 @@ def _diagnostic_at(
 
 def _choose_drive(
     survey: Survey, undercarriage: Undercarriage, kind: DriveKind | None, chosen_wheels: Sequence[Wheel]
-) -> Verdict:
+) -> DriveVerdict:
     """Return the drive of a robot: by its wheels, or by joints if its base is fixed."""
     if kind == "joints":
-        return Verdict(Drive("joints"), phrase("its joints are driven, as requested"))
+        return DriveVerdict(Drive("joints"), phrase("its joints are driven, as requested"))
     if kind is None and not chosen_wheels and survey.robot.root == _WORLD_LINK:
-        return Verdict(Drive("joints"), phrase("its root is 'world', which does not move"))
+        return DriveVerdict(Drive("joints"), phrase("its root is 'world', which does not move"))
     if kind is not None or chosen_wheels or undercarriage.wheels or undercarriage.misaligned:
-        return judge_drive(survey, undercarriage, kind, chosen_wheels)
+        return infer_drive(survey, undercarriage, kind, chosen_wheels)
     return _drive_without_wheels(survey, undercarriage)
 
 
-def _drive_without_wheels(survey: Survey, undercarriage: Undercarriage) -> Verdict:
+def _drive_without_wheels(survey: Survey, undercarriage: Undercarriage) -> DriveVerdict:
     """Return the drive of a robot without wheels: by joints if it is an arm, else none."""
-    if undercarriage.hanging:
-        wheel, height = undercarriage.hanging[0]
+    if undercarriage.raised_wheels:
+        wheel, height = undercarriage.raised_wheels[0]
         reason = phrase(
             "the wheel on '{joint}' ends {height:.3g} m above the lowest point, which is on link '{link}'",
             joint=wheel.joint,
             height=height,
             link=undercarriage.lowest_link,
         )
-        return Verdict(None, reason)
-    for link, mesh in undercarriage.unread.items():
-        return Verdict(
+        return DriveVerdict(None, reason)
+    for link, mesh in undercarriage.unreadable_meshes.items():
+        return DriveVerdict(
             None,
             phrase("the mesh '{mesh}' of link '{link}', which may be a wheel, cannot be read", mesh=mesh, link=link),
         )
     if _is_single_chain(survey):
-        return Verdict(Drive("joints"), phrase("it has no wheels, and all its joints form one chain from a base"))
-    return Verdict(None, phrase("it has no wheels, and its base has more than one chain of joints"))
+        return DriveVerdict(Drive("joints"), phrase("it has no wheels, and all its joints form one chain from a base"))
+    return DriveVerdict(None, phrase("it has no wheels, and its base has more than one chain of joints"))
 
 
 def _is_single_chain(survey: Survey) -> bool:

@@ -18,7 +18,7 @@ from linkwright.inertia import DEFAULT_DENSITY, MeshLibrary, estimate
 from linkwright.inertia.blocks import inertial_parts
 from linkwright.inertia.inertial import has_mass
 from linkwright.inertia.verdict import grouped_digits
-from linkwright.inference.gazebo import number
+from linkwright.inference.gazebo import format_number
 from linkwright.inference.results import Finding, Wheel
 from linkwright.inference.shapes import Shape, vertices
 from linkwright.inference.undercarriage import Survey
@@ -218,9 +218,9 @@ def _shape_element(geometry: Box | Cylinder | Capsule | Sphere) -> Element:
     tag = type(geometry).__name__.lower()
     if isinstance(geometry, Box):
         return Element(tag, {"size": _format_numbers(geometry.size)})
-    attributes = {"radius": number(geometry.radius)}
+    attributes = {"radius": format_number(geometry.radius)}
     if not isinstance(geometry, Sphere):
-        attributes["length"] = number(geometry.length)
+        attributes["length"] = format_number(geometry.length)
     return Element(tag, attributes)
 
 
@@ -235,7 +235,7 @@ def _collision_element(xyz: Vector3, rpy: Vector3, shape: Element) -> Element:
 
 
 def _format_numbers(values: Iterable[float]) -> str:
-    return " ".join(number(round(value, 9) + 0.0) for value in values)
+    return " ".join(format_number(round(value, 9) + 0.0) for value in values)
 
 
 def _diagnostic_at(code: str, message: Phrase, element: Element, severity: Severity = Severity.INFO) -> Diagnostic:

@@ -47,8 +47,8 @@ class Undercarriage:
         caster_joints: the joints that let casters swivel, and the joints of the casters' wheels.
         ground: the z of the ground in the base frame, in m; None for a robot without shapes.
         lowest_link: the link that reaches lowest; empty for a robot without shapes.
-        hanging: wheels that do not touch the ground, with their height above it, in m.
-        unread: for each link that may be a wheel, one of its meshes that cannot be read.
+        raised_wheels: wheels that do not touch the ground, with their height above it, in m.
+        unreadable_meshes: for each link that may be a wheel, one of its meshes that cannot be read.
     """
 
     wheels: tuple[Wheel, ...]
@@ -57,8 +57,8 @@ class Undercarriage:
     caster_joints: frozenset[str]
     ground: float | None
     lowest_link: str
-    hanging: tuple[tuple[Wheel, float], ...]
-    unread: Mapping[str, str]
+    raised_wheels: tuple[tuple[Wheel, float], ...]
+    unreadable_meshes: Mapping[str, str]
 
 
 class Survey:
@@ -92,7 +92,7 @@ class Survey:
         return heights
 
     @cached_property
-    def rolling(self) -> tuple[Wheel, ...]:
+    def rolling_wheels(self) -> tuple[Wheel, ...]:
         """The links that are round about an unlimited joint's horizontal axis, in file order."""
         return tuple(filter(None, map(self.wheel_on, self.robot.joints.values())))
 
@@ -126,7 +126,7 @@ class Survey:
 
     def undercarriage(self) -> Undercarriage:
         """Return the wheels, the casters and the ground of the robot."""
-        rolling = self.rolling
+        rolling = self.rolling_wheels
         if not self.heights:
             return Undercarriage((), (), (), frozenset(), None, "", (), dict(self._unreadable))
         lowest_link = min(self.heights, key=lambda name: self.heights[name])

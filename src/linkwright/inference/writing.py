@@ -24,7 +24,7 @@ from linkwright.xmltree.patches import Replacement, insertion
 
 
 @dataclass(frozen=True, slots=True)
-class Written:
+class WriteResult:
     """The result of writing an inference.
 
     Attributes:
@@ -38,7 +38,7 @@ class Written:
     refused: tuple[Diagnostic, ...]
 
 
-def write_inference(robot: Robot, inference: Inference) -> Written:
+def write_inference(robot: Robot, inference: Inference) -> WriteResult:
     """Write an inference to the source files of a robot.
 
     In xacro files only literal elements are changed; an element that a macro or an expression creates is refused.
@@ -58,7 +58,7 @@ def write_inference(robot: Robot, inference: Inference) -> Written:
     writer = _Writer(robot)
     written = write_edits({key: partial(writer.edits, findings) for key, findings in by_key.items()})
     refused = tuple(_refusal(finding, why) for key, why in written.refusals.items() for finding in by_key[key])
-    return Written(written.files, sum(len(by_key[key]) for key in written.links), refused)
+    return WriteResult(written.files, sum(len(by_key[key]) for key in written.links), refused)
 
 
 class _Writer:

@@ -74,11 +74,39 @@ class Classroom:
         Raises:
             LinkwrightError: LEARN111, the progress cannot be written.
         """
-        noted = self.progress.step(step.address)
-        result = run(step, self.workspace, answer=noted.answer)
-        if result.passed and noted.passed is None:
-            self._note(step, passed=_now())
+        result = run(step, self.workspace, answer=self.progress.step(step.address).answer)
+        self.note_result(step, result)
         return result
+
+    def note_result(self, step: Step, result: StepResult) -> None:
+        """Note a step as passed if all its checks are satisfied.
+
+        Raises:
+            LinkwrightError: LEARN111, the progress cannot be written.
+        """
+        if result.passed and self.progress.step(step.address).passed is None:
+            self._note(step, passed=_now())
+
+    def reload(self) -> None:
+        """Read the progress again, which another program may have written.
+
+        Raises:
+            LinkwrightError: LEARN102, LEARN110: the progress cannot be read.
+        """
+        self.progress = read_progress(self.workspace) or self.progress
+
+    def shown_file(self, step: Step) -> Path | None:
+        """Return the robot's file that is shown beside a step; it need not exist.
+
+        It is the one that the step names, or the last one that a step before it names. It is None if there is none.
+        """
+        steps = self.course.steps
+        names = [each.shown_file for each in steps[: steps.index(step) + 1] if each.shown_file is not None]
+        return self.workspace / names[-1] if names else None
+
+    def solution_files(self, step: Step) -> list[Path]:
+        """Return the files of the workspace that the solution of a step writes."""
+        return [target for _, target in _pairs(step.solution, self.workspace)]
 
     def answer(self, step: Step, text: str) -> None:
         """Note the learner's answer to a step.
@@ -102,7 +130,7 @@ class Classroom:
     def take_solution(self, step: Step) -> list[Path]:
         """Copy the solution of a step into the workspace.
 
-        Files with another content are moved to the folder `REPLACED_FOLDER` first.
+        Files with another content are copied to the folder `REPLACED_FOLDER` first, in which colcon finds no packages.
 
         Returns:
             The files that were written.
@@ -123,12 +151,14 @@ class Classroom:
                     continue
                 if target.exists():
                     _copy(target, replaced / target.relative_to(self.workspace))
+                    (replaced.parent / "COLCON_IGNORE").touch()
                 _copy(source, target)
                 written.append(target)
         self._note(step, solution=True)
         return written
 
     def _note(self, step: Step, **changes: object) -> None:
+        self.reload()
         self.progress = self.progress.with_step(step.address, **changes)
         with _writing(self.workspace):
             self.workspace.mkdir(parents=True, exist_ok=True)
@@ -138,6 +168,22 @@ class Classroom:
 def enclosing_workspace(folder: Path) -> Path:
     """Return the nearest folder with a progress file at or above a folder, or the folder itself."""
     return next((path for path in (folder, *folder.parents) if (path / PROGRESS_FILE).is_file()), folder)
+
+
+def workspace_at(folder: Path, course: str | None = None) -> Path:
+    """Return the workspace for a learner who works in a folder.
+
+    It is the nearest folder with a progress file at or above the folder; the folder itself if it is empty; otherwise
+    the folder ``COURSE_ws`` in it, such as ``robot_ws``.
+
+    Args:
+        folder: the folder.
+        course: the course: the name of a shipped one, or a folder; None for the shipped course about a robot.
+    """
+    enclosing = enclosing_workspace(folder)
+    if (enclosing / PROGRESS_FILE).is_file() or not any(folder.iterdir()):
+        return enclosing
+    return folder / f"{Path(course or DEFAULT_COURSE).name}_ws"
 
 
 def open_classroom(workspace: Path, course: str | None = None) -> Classroom:

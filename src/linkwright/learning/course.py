@@ -52,6 +52,11 @@ class Step:
         """The unit of the number that the step asks for, or None if it asks for none."""
         return next(iter(self.texts.values())).unit
 
+    @property
+    def shown_file(self) -> str | None:
+        """The robot's file that the page shows from this step on, relative to the workspace; None for no change."""
+        return next(iter(self.texts.values())).shown_file
+
     def text(self, language: str) -> StepText:
         """Return the text in a language, or in the first language that the lesson has."""
         return self.texts.get(language) or next(iter(self.texts.values()))
@@ -231,10 +236,15 @@ def load_lesson(folder: Path) -> Lesson:
     return Lesson(folder.resolve(), title, tuple(needs), texts)
 
 
+def _form(step: StepText) -> tuple[object, ...]:
+    """Return what must be equal in all languages of a step."""
+    return step.id, step.unit, step.shown_file, len(step.hints)
+
+
 def _compare_languages(texts: Sequence[LessonText]) -> None:
     first = texts[0]
     for other in texts[1:]:
-        ours, theirs = ([(step.id, step.unit, len(step.hints)) for step in text.steps] for text in (first, other))
+        ours, theirs = ([_form(step) for step in text.steps] for text in (first, other))
         if ours == theirs:
             continue
         index = next(
@@ -243,7 +253,7 @@ def _compare_languages(texts: Sequence[LessonText]) -> None:
         )
         line = other.steps[min(index, len(other.steps) - 1)].line
         message = phrase(
-            "step {number} differs from the one in '{other}': names, answers and numbers of hints must be equal",
+            "step {number} differs from the one in '{other}': names, attributes and numbers of hints must be equal",
             number=index + 1,
             other=display_path(first.path),
         )

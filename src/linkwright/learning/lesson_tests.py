@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import re
 import shutil
-import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from linkwright.diagnostics import Phrase, phrase
+from linkwright.files.scratch_folders import ScratchFolder
 from linkwright.learning.checks.declaring import load_checks, load_module
 from linkwright.learning.checks.running import check_in_process
 from linkwright.learning.course import CASES_FILE, CHECKS_FILE, Course, Lesson, Step
@@ -100,7 +100,7 @@ def test_lesson(course: Course, lesson: Lesson) -> Iterator[TestResult]:
     if unknown:
         yield TestResult(lesson.id, CHECKS_FILE, phrase("there is no step '{step}'", step=unknown[0]))
     cases = load_cases(lesson)
-    with tempfile.TemporaryDirectory(prefix="linkwright-lesson-") as scratch:
+    with ScratchFolder("lesson") as scratch:
         workspace = Path(scratch) / "before"
         workspace.mkdir()
         for step in _steps_before(course, lesson):

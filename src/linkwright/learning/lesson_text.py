@@ -31,6 +31,8 @@ class StepText:
         hints: the Markdown of each section marked with ``{.hint}``, with its title, in the order of the text.
         unit: the unit of the number that the learner answers, from ``{#id answer=m}``; None if the step asks for none.
             A number without a unit has the unit ``1``.
+        shown_file: the robot's file that the page shows from this step on, relative to the workspace, from
+            ``{#id show=src/PACKAGE/urdf/ROBOT.xacro}``; None for no change.
         line: the line of the title, from 1.
     """
 
@@ -39,6 +41,7 @@ class StepText:
     body: str
     hints: tuple[str, ...]
     unit: str | None
+    shown_file: str | None
     line: int
 
 
@@ -132,7 +135,7 @@ def _read_step(path: Path, lines: Sequence[str], headings: Sequence[_Heading], e
         message = phrase("the step '{title}' has no name", title=opening.title)
         hint = phrase("write '## {title} {{#name}}', with a name such as first-link", title=opening.title)
         raise file_error("LEARN103", path, message, line=line, hint=hint)
-    units = [attribute.partition("=")[2] for attribute in opening.attributes if attribute.startswith("answer=")]
+    values = dict(attribute.split("=", 1) for attribute in opening.attributes if "=" in attribute)
     body: list[str] = []
     hints: list[str] = []
     sections = [heading for heading in headings[1:] if heading.level == _SECTION_LEVEL]
@@ -141,9 +144,8 @@ def _read_step(path: Path, lines: Sequence[str], headings: Sequence[_Heading], e
     for section, end in zip(sections, starts[1:], strict=True):
         content = f"### {section.title}\n\n{_cut(lines, section.end_line, end)}"
         (hints if f".{HINT}" in section.attributes else body).append(content)
-    return StepText(
-        names[0], opening.title, "\n\n".join(filter(None, body)), tuple(hints), units[0] if units else None, line
-    )
+    text = "\n\n".join(filter(None, body))
+    return StepText(names[0], opening.title, text, tuple(hints), values.get("answer"), values.get("show"), line)
 
 
 def _cut(lines: Sequence[str], first: int, end: int) -> str:

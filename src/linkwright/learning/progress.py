@@ -73,7 +73,7 @@ def read_progress(workspace: Path) -> Progress | None:
     path = workspace / PROGRESS_FILE
     try:
         data = yaml.safe_load(path.read_text(encoding="utf-8"))
-    except FileNotFoundError:
+    except (FileNotFoundError, NotADirectoryError):
         return None
     except (OSError, UnicodeDecodeError) as error:
         raise unreadable(path, error) from None

@@ -9,11 +9,11 @@ from contextlib import closing
 from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, foreign, phrase
-from linkwright.model_files.fetching import cannot_write
+from linkwright.model_files.fetching import write_error
 from linkwright.model_files.installed import manual_download_hint
 from linkwright.model_files.table import ModelEntry
 
-_MOST_BYTES = 1 << 29
+_MAX_BYTES = 1 << 29
 """The maximum size of an unpacked model in bytes. The models in the table need a tenth of it."""
 
 _BLOCK_BYTES = 1 << 20
@@ -37,16 +37,16 @@ def unpack(entry: ModelEntry, archive: Path, target: Path, origin: str | None = 
     shown_path = origin or str(archive)
     try:
         with zipfile.ZipFile(archive) as zip_file:
-            remaining_bytes = _MOST_BYTES
+            remaining_bytes = _MAX_BYTES
             for name in entry.files:
                 with closing(_file_blocks(zip_file, f"{entry.folder}/{name}")) as blocks:
                     remaining_bytes -= _write_file(target / name, blocks, remaining_bytes, entry, shown_path)
     except KeyError as error:
-        raise _unusable_archive(
+        raise _unusable_archive_error(
             entry, shown_path, phrase("it does not contain '{file}'", file=str(error.args[0]))
         ) from None
     except (zipfile.BadZipFile, zlib.error, EOFError, RuntimeError, NotImplementedError, OSError) as error:
-        raise _unusable_archive(entry, shown_path, foreign(error)) from None
+        raise _unusable_archive_error(entry, shown_path, foreign(error)) from None
 
 
 def _file_blocks(zip_file: zipfile.ZipFile, name: str) -> Generator[bytes, None, None]:
@@ -66,7 +66,7 @@ def _write_file(path: Path, blocks: Iterator[bytes], max_bytes: int, entry: Mode
     for block in blocks:
         size += len(block)
         if size > max_bytes:
-            raise _unusable_archive(entry, shown_path, phrase("its contents are too large"))
+            raise _unusable_archive_error(entry, shown_path, phrase("its contents are too large"))
         _append(path, block)
     return size
 
@@ -77,10 +77,10 @@ def _append(path: Path, block: bytes) -> None:
         with path.open("ab") as file:
             file.write(block)
     except OSError as error:
-        raise cannot_write(path, error) from None
+        raise write_error(path, error) from None
 
 
-def _unusable_archive(entry: ModelEntry, shown_path: str, problem: Phrase) -> LinkwrightError:
+def _unusable_archive_error(entry: ModelEntry, shown_path: str, problem: Phrase) -> LinkwrightError:
     message = phrase(
         "'{path}' is not an archive of the model '{name}': {problem}", path=shown_path, name=entry.name, problem=problem
     )

@@ -53,18 +53,18 @@ def fetch(entry: ModelEntry, address: str, part_file: Path, progress: Progress) 
                     response_text = phrase(
                         "the server responds with {status} {reason}", status=error.code, reason=error.reason
                     )
-                    raise _failed(entry, address, response_text) from None
+                    raise _download_error(entry, address, response_text) from None
                 if error.headers.get("Content-Range") == f"bytes */{size_before}":
                     return  # The file was complete, but not yet installed.
             part_file.unlink()
             problem = phrase("the partial download belongs to another file")
         except (urllib.error.URLError, OSError, http.client.HTTPException, ValueError) as error:
             if not isinstance(error, _ConnectionLostError) and _file_size(part_file) == size_before:
-                raise _failed(entry, address, foreign(_reason(error))) from None
+                raise _download_error(entry, address, foreign(_reason(error))) from None
             problem = foreign(_reason(error))
         failed_tries = 0 if _file_size(part_file) > size_before else failed_tries + 1
         if failed_tries == _MAX_FAILED_TRIES:
-            raise _failed(entry, address, problem)
+            raise _download_error(entry, address, problem)
 
 
 class _ConnectionLostError(OSError):
@@ -86,7 +86,7 @@ def _fetch_rest(entry: ModelEntry, address: str, part_file: Path, progress: Prog
         try:
             file = part_file.open("ab" if received else "wb")
         except OSError as error:
-            raise cannot_write(part_file, error) from None
+            raise write_error(part_file, error) from None
         with file:
             while block := _read(response):
                 _check_size(entry, address, received + len(block))
@@ -96,7 +96,7 @@ def _fetch_rest(entry: ModelEntry, address: str, part_file: Path, progress: Prog
                 except OSError as error:
                     with suppress(OSError):  # from Python 3.14 on, closing retries the failed write
                         file.close()
-                    raise cannot_write(part_file, error) from None
+                    raise write_error(part_file, error) from None
                 received += len(block)
                 progress(received, total)
     return total is None or received >= total
@@ -110,9 +110,9 @@ def _read(response: http.client.HTTPResponse) -> bytes:
 
 
 def _check_size(entry: ModelEntry, address: str, size: int) -> None:
-    if size > entry.most_bytes:
+    if size > entry.max_bytes:
         message = phrase("the download is larger than the expected {megabytes} MB", megabytes=entry.megabytes)
-        raise _failed(entry, address, message)
+        raise _download_error(entry, address, message)
 
 
 def _file_size(part_file: Path) -> int:
@@ -130,7 +130,7 @@ def _reason(error: BaseException) -> str:
     return cast("str | None", getattr(error, "strerror", None)) or str(error) or type(error).__name__
 
 
-def _failed(entry: ModelEntry, address: str, problem: Phrase) -> LinkwrightError:
+def _download_error(entry: ModelEntry, address: str, problem: Phrase) -> LinkwrightError:
     message = phrase(
         "the model '{name}' cannot be downloaded from {address}: {problem}",
         name=entry.name,
@@ -140,7 +140,7 @@ def _failed(entry: ModelEntry, address: str, problem: Phrase) -> LinkwrightError
     return LinkwrightError(Diagnostic("MODEL103", message, hint=manual_download_hint(entry)))
 
 
-def cannot_write(path: Path, error: OSError) -> LinkwrightError:
+def write_error(path: Path, error: OSError) -> LinkwrightError:
     """Return the error for a path that is not writable (MODEL106)."""
     message = phrase("cannot write '{path}': {reason}", path=path, reason=foreign(error.strerror or error))
     hint = phrase("free disk space, or choose another folder with --to")

@@ -75,24 +75,24 @@ def manual_download_hint(entry: ModelEntry) -> Phrase:
     )
 
 
-def verify(entry: ModelEntry, place: Path) -> None:
+def verify(entry: ModelEntry, path: Path) -> None:
     """Verify the checksums of a model.
 
     Args:
         entry: the model.
-        place: the folder or file of the model.
+        path: the folder or file of the model.
 
     Raises:
         LinkwrightError: MODEL104 if a file differs, or MODEL105 if a file is missing.
     """
     if not entry.folder:
-        check_sum(entry, place, entry.sha256)
+        verify_checksum(entry, path, entry.sha256)
         return
     for name, expected in entry.files.items():
-        check_sum(entry, place / name, expected)
+        verify_checksum(entry, path / name, expected)
 
 
-def check_sum(entry: ModelEntry, path: Path, expected: str | None, origin: str | None = None) -> None:
+def verify_checksum(entry: ModelEntry, path: Path, expected: str | None, origin: str | None = None) -> None:
     """Verify the checksum of a file of a model.
 
     Args:

@@ -11,8 +11,8 @@ from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 from linkwright.model_files.archives import unpack
-from linkwright.model_files.fetching import Progress, cannot_write, fetch
-from linkwright.model_files.installed import check_sum, models_folder, verify
+from linkwright.model_files.fetching import Progress, fetch, write_error
+from linkwright.model_files.installed import models_folder, verify, verify_checksum
 from linkwright.model_files.table import ModelEntry
 
 
@@ -39,7 +39,7 @@ def install(entry: ModelEntry, source: str | None, folder: Path | None, progress
     try:
         target.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise cannot_write(target, error) from None
+        raise write_error(target, error) from None
     if source is not None and not _is_address(source):
         return _install_local(entry, Path(source).expanduser(), target)
     part_file = target / f".{entry.file_name}.part"
@@ -93,7 +93,7 @@ def _install_local(entry: ModelEntry, source: Path, target: Path) -> Path:
 
 def _install_file(entry: ModelEntry, file: Path, target: Path, origin: str | None = None) -> Path:
     """Verify and install a downloaded file."""
-    check_sum(entry, file, entry.sha256, origin)
+    verify_checksum(entry, file, entry.sha256, origin)
     with _draft(entry, target) as draft:
         if entry.folder:
             unpack(entry, file, draft, origin)
@@ -131,7 +131,7 @@ def _draft(entry: ModelEntry, target: Path) -> Iterator[Path]:
                 previous.replace(installed_path)
             raise
     except OSError as error:
-        raise cannot_write(installed_path, error) from None
+        raise write_error(installed_path, error) from None
     finally:
         for leftover in (draft, previous):
             _discard(leftover)
@@ -148,4 +148,4 @@ def _copy(source: Path, target: Path) -> None:
     try:
         shutil.copyfile(source, target)
     except OSError as error:
-        raise cannot_write(target, error) from None
+        raise write_error(target, error) from None

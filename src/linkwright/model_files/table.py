@@ -26,7 +26,7 @@ class ModelEntry:
         kind: ``speech`` or ``vision``.
         address: the publisher's URL.
         megabytes: the approximate download size.
-        licence: the SPDX identifier.
+        license: the SPDX identifier.
         purpose: the purpose, in English.
         folder: the folder of the model in an archive; empty for a single file.
         sha256: the checksum of the download; None if only the checksums of `files` are known.
@@ -37,7 +37,7 @@ class ModelEntry:
     kind: str
     address: str
     megabytes: int
-    licence: str
+    license: str
     purpose: str
     folder: str = ""
     sha256: str | None = None
@@ -54,7 +54,7 @@ class ModelEntry:
         return self.folder or self.file_name
 
     @property
-    def most_bytes(self) -> int:
+    def max_bytes(self) -> int:
         """The maximum size of the download in bytes."""
         return 2 * self.megabytes * 1_000_000
 

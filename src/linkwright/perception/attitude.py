@@ -33,7 +33,7 @@ _MIN_LENGTH = 1e-3
 _IDENTITY: Quaternion = (0.0, 0.0, 0.0, 1.0)
 
 
-class World(Enum):
+class WorldFrame(Enum):
     """The directions of the world's x, y and z axes: east, north, west, south, up, down."""
 
     ENU = "enu"
@@ -43,10 +43,10 @@ class World(Enum):
     @property
     def up(self) -> float:
         """The z component of the up direction: 1, or -1 for NED."""
-        return -1.0 if self is World.NED else 1.0
+        return -1.0 if self is WorldFrame.NED else 1.0
 
 
-def attitude_at_rest(acceleration: Vector3, magnetic: Vector3 | None, world: World) -> Quaternion | None:
+def attitude_at_rest(acceleration: Vector3, magnetic: Vector3 | None, world: WorldFrame) -> Quaternion | None:
     """Return the orientation of a body at rest.
 
     Args:
@@ -69,9 +69,9 @@ def attitude_at_rest(acceleration: Vector3, magnetic: Vector3 | None, world: Wor
     east = _normalize(east)
     north = cross(up, east)
     axes = {
-        World.ENU: (east, north, up),
-        World.NWU: (north, scaled(east, -1.0), up),
-        World.NED: (north, east, scaled(up, -1.0)),
+        WorldFrame.ENU: (east, north, up),
+        WorldFrame.NWU: (north, scaled(east, -1.0), up),
+        WorldFrame.NED: (north, east, scaled(up, -1.0)),
     }[world]
     qx, qy, qz, qw = quaternion_from_matrix(np.array(axes)).tolist()
     return qx, qy, qz, qw
@@ -91,7 +91,7 @@ class MadgwickFilter:
 
     gain: float = 0.1
     zeta: float = 0.0
-    world: World = World.ENU
+    world: WorldFrame = WorldFrame.ENU
     orientation: Quaternion = _IDENTITY
     drift: Vector3 = (0.0, 0.0, 0.0)
 
@@ -126,7 +126,7 @@ class MadgwickFilter:
             reading = _normalize(magnetic)
             x, y, z = rotate(self.orientation, reading)
             horizontal = hypot(x, y)
-            north = (0.0, horizontal, z) if self.world is World.ENU else (horizontal, 0.0, z)
+            north = (0.0, horizontal, z) if self.world is WorldFrame.ENU else (horizontal, 0.0, z)
             gradient = _add_scaled_quaternion(gradient, self._gradient_of(north, reading), 1.0)
         norm = sqrt(sum(value * value for value in gradient))
         return _scale_quaternion(gradient, 1.0 / norm) if norm > 1e-12 else None

@@ -12,7 +12,7 @@ from linkwright.vision.detections import Detections
 
 OVERLAPS = tuple(round(0.5 + 0.05 * step, 2) for step in range(10))
 """The minimum intersection over union of a correct box: 0.50, 0.55, ... 0.95."""
-MOST = 100
+MAX_DETECTIONS = 100
 """The maximum number of detections per class and image that count, the most certain first."""
 _RECALL_LEVELS: NDArray[np.floating] = np.linspace(0.0, 1.0, 101)
 _CONFUSION_SCORE, _CONFUSION_OVERLAP = 0.5, 0.5
@@ -122,26 +122,26 @@ def evaluate(names: Sequence[str], truth: Sequence[GroundTruth], predictions: Se
     """
     class_numbers = {name: number for number, name in enumerate(names)}
     detections = [_renumber_classes(class_numbers, detections) for detections in predictions]
-    figures, confusion, sizes = [], _confusion_matrix(len(names), truth, detections), _recall_by_size(truth, detections)
-    for place, name in enumerate(names):
-        precisions = _average_precisions(place, truth, detections)
-        correct = int(confusion[place, place])
-        detected, objects = int(confusion[:, place].sum()), int(confusion[place].sum())
-        figures.append(
+    results, confusion, sizes = [], _confusion_matrix(len(names), truth, detections), _recall_by_size(truth, detections)
+    for class_number, name in enumerate(names):
+        precisions = _average_precisions(class_number, truth, detections)
+        correct_count = int(confusion[class_number, class_number])
+        detected, objects = int(confusion[:, class_number].sum()), int(confusion[class_number].sum())
+        results.append(
             ClassResults(
                 name,
                 objects,
                 None if precisions is None else float(precisions[0]),
                 None if precisions is None else float(precisions.mean()),
-                correct / detected if detected else None,
-                correct / objects if objects else None,
+                correct_count / detected if detected else None,
+                correct_count / objects if objects else None,
             )
         )
     return Evaluation(
         len(truth),
-        _mean([figure.ap50 for figure in figures]),
-        _mean([figure.ap for figure in figures]),
-        tuple(figures),
+        _mean([result.ap50 for result in results]),
+        _mean([result.ap for result in results]),
+        tuple(results),
         confusion,
         sizes,
     )
@@ -157,7 +157,7 @@ def best_f1_threshold(names: Sequence[str], truth: Sequence[GroundTruth], predic
     """
     class_numbers = {name: number for number, name in enumerate(names)}
     scores: list[NDArray[np.float32]] = [np.zeros(0, np.float32)]
-    correct: list[NDArray[np.bool_]] = [np.zeros(0, bool)]
+    is_correct: list[NDArray[np.bool_]] = [np.zeros(0, bool)]
     object_count = 0
     for objects, image_predictions in zip(truth, predictions, strict=True):
         detections, counted_objects = (
@@ -171,11 +171,11 @@ def best_f1_threshold(names: Sequence[str], truth: Sequence[GroundTruth], predic
         is_ignored = _ignored_shares(detections.boxes, objects.boxes[objects.ignored]) >= _CONFUSION_OVERLAP
         is_counted = is_hit | ~is_ignored
         scores.append(detections.scores[is_counted])
-        correct.append(is_hit[is_counted])
+        is_correct.append(is_hit[is_counted])
         object_count += len(counted_objects.classes)
     all_scores: NDArray[np.float32] = np.concatenate(scores)
     order = np.argsort(-all_scores, kind="stable")
-    hits_until: NDArray[np.int64] = np.concatenate(correct)[order].cumsum()
+    hits_until: NDArray[np.int64] = np.concatenate(is_correct)[order].cumsum()
     if not len(order) or not hits_until[-1]:
         return 0.5
     f1 = 2 * hits_until / (np.arange(1, len(order) + 1) + object_count)
@@ -203,28 +203,28 @@ def _renumber_classes(class_numbers: dict[str, int], detections: Detections) -> 
 
 
 def _average_precisions(
-    place: int, truth: Sequence[GroundTruth], predictions: Sequence[_SortedDetections]
+    class_number: int, truth: Sequence[GroundTruth], predictions: Sequence[_SortedDetections]
 ) -> NDArray[np.float64] | None:
     """Return the average precisions of a class, shape (overlaps,), or None if it has no object."""
-    object_count = sum(int(((objects.classes == place) & ~objects.ignored).sum()) for objects in truth)
+    object_count = sum(int(((objects.classes == class_number) & ~objects.ignored).sum()) for objects in truth)
     if object_count == 0:
         return None
     scores: list[NDArray[np.float32]] = []
-    correct: list[NDArray[np.bool_]] = []
-    wrong: list[NDArray[np.bool_]] = []
+    is_correct: list[NDArray[np.bool_]] = []
+    is_wrong: list[NDArray[np.bool_]] = []
     for objects, detections in zip(truth, predictions, strict=True):
-        of_class = detections.selected(detections.classes == place)
-        boxes = of_class.boxes[:MOST]
-        scores.append(of_class.scores[:MOST])
-        objects_of_class = objects.selected(objects.classes == place)
+        of_class = detections.selected(detections.classes == class_number)
+        boxes = of_class.boxes[:MAX_DETECTIONS]
+        scores.append(of_class.scores[:MAX_DETECTIONS])
+        objects_of_class = objects.selected(objects.classes == class_number)
         overlaps = intersection_over_union(boxes, objects_of_class.boxes[~objects_of_class.ignored])
         ignored_shares = _ignored_shares(boxes, objects_of_class.boxes[objects_of_class.ignored])
-        correct.append(np.stack([_match_objects(overlaps, min_overlap) >= 0 for min_overlap in OVERLAPS]))
-        wrong.append(~correct[-1] & np.stack([ignored_shares < least for least in OVERLAPS]))
+        is_correct.append(np.stack([_match_objects(overlaps, min_overlap) >= 0 for min_overlap in OVERLAPS]))
+        is_wrong.append(~is_correct[-1] & np.stack([ignored_shares < min_overlap for min_overlap in OVERLAPS]))
     all_scores: NDArray[np.float32] = np.concatenate(scores)
     order = np.argsort(-all_scores, kind="stable")
-    hits: NDArray[np.int64] = np.concatenate(correct, axis=1)[:, order].cumsum(axis=1)
-    misses: NDArray[np.int64] = np.concatenate(wrong, axis=1)[:, order].cumsum(axis=1)
+    hits: NDArray[np.int64] = np.concatenate(is_correct, axis=1)[:, order].cumsum(axis=1)
+    misses: NDArray[np.int64] = np.concatenate(is_wrong, axis=1)[:, order].cumsum(axis=1)
     precisions = hits / np.maximum(hits + misses, 1)
     return np.array(
         [

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 
 from linkwright.diagnostics import Phrase, phrase
 
@@ -19,6 +20,20 @@ def is_switched_off(environment: Mapping[str, str] | None = None) -> bool:
     """
     variables = os.environ if environment is None else environment
     return variables.get(SWITCH, "1") == "0"
+
+
+@contextmanager
+def switched_off() -> Iterator[None]:
+    """Switch communication with other processes off, in a ``with`` block."""
+    before = os.environ.get(SWITCH)
+    os.environ[SWITCH] = "0"
+    try:
+        yield
+    finally:
+        if before is None:
+            del os.environ[SWITCH]
+        else:
+            os.environ[SWITCH] = before
 
 
 def switched_off_reason() -> Phrase:

@@ -7,10 +7,18 @@ from math import pi
 import numpy as np
 import pytest
 
-from linkwright.navigation.behaviors.zones import Action, Circle, Outline, Rule, SpeedRange, Verdict, limit_by_zones
+from linkwright.navigation.behaviors.zones import (
+    Circle,
+    Polygon,
+    SpeedRange,
+    Verdict,
+    ZoneAction,
+    ZoneRule,
+    limit_by_zones,
+)
 from linkwright.navigation.following.follower import Velocity
 
-AHEAD = Outline(np.array([[0.0, -0.3], [0.6, -0.3], [0.6, 0.3], [0.0, 0.3]]))
+AHEAD = Polygon(np.array([[0.0, -0.3], [0.6, -0.3], [0.6, 0.3], [0.0, 0.3]]))
 BODY = Circle(0.2)
 FORWARD = Velocity(0.4, 0.0, 0.2)
 
@@ -20,14 +28,14 @@ def points(count, x, y=0.0):
 
 
 def test_a_zone_with_too_few_points_has_no_say():
-    rule = Rule(Action.STOP, min_points=4)
-    assert rule.allowed(AHEAD, points(3, 0.5), FORWARD) is None
-    assert rule.allowed(AHEAD, points(9, 0.7), FORWARD) is None
-    assert rule.allowed(AHEAD, points(4, 0.5), FORWARD) == Velocity(0.0, 0.0, 0.0)
+    rule = ZoneRule(ZoneAction.STOP, min_points=4)
+    assert rule.limit_velocity(AHEAD, points(3, 0.5), FORWARD) is None
+    assert rule.limit_velocity(AHEAD, points(9, 0.7), FORWARD) is None
+    assert rule.limit_velocity(AHEAD, points(4, 0.5), FORWARD) == Velocity(0.0, 0.0, 0.0)
 
 
 def test_a_zone_slows_down_by_its_ratio():
-    allowed = Rule(Action.SLOWDOWN, 1, slowdown_ratio=0.25).allowed(AHEAD, points(1, 0.5), FORWARD)
+    allowed = ZoneRule(ZoneAction.SLOWDOWN, 1, slowdown_ratio=0.25).limit_velocity(AHEAD, points(1, 0.5), FORWARD)
     assert allowed == pytest.approx((0.1, 0.0, 0.05))
 
 
@@ -41,44 +49,47 @@ def test_a_zone_slows_down_by_its_ratio():
     ],
 )
 def test_a_limit_keeps_the_curve(velocity, left):
-    rule = Rule(Action.LIMIT, 1, linear_limit=0.2, angular_limit=0.5)
-    assert rule.allowed(AHEAD, points(1, 0.5), velocity) == pytest.approx(left)
+    rule = ZoneRule(ZoneAction.LIMIT, 1, linear_limit=0.2, angular_limit=0.5)
+    assert rule.limit_velocity(AHEAD, points(1, 0.5), velocity) == pytest.approx(left)
 
 
 def test_a_robot_that_approaches_keeps_its_time_to_what_is_ahead():
-    rule = Rule(Action.APPROACH, 1, time_before_collision=2.0, simulation_time_step=0.1)
+    rule = ZoneRule(ZoneAction.APPROACH, 1, time_before_collision=2.0, simulation_time_step=0.1)
     ahead = Velocity(0.5, 0.0, 0.0)
     # 0.7 m ahead: the rim of the body, 0.2 m, meets it after 0.5 m, which takes 1 s of the 2 s.
-    allowed = rule.allowed(BODY, points(1, 0.699), ahead)
+    allowed = rule.limit_velocity(BODY, points(1, 0.699), ahead)
     assert allowed is not None
     assert allowed.x == pytest.approx(0.25, abs=0.03)
-    assert rule.allowed(BODY, points(1, 1.5), ahead) is None
-    assert rule.allowed(BODY, points(1, -0.7), ahead) is None
-    assert rule.allowed(BODY, points(1, 0.1), ahead) == pytest.approx((0.0, 0.0, 0.0))
-    assert rule.allowed(BODY, np.zeros((0, 2)), ahead) is None
+    assert rule.limit_velocity(BODY, points(1, 1.5), ahead) is None
+    assert rule.limit_velocity(BODY, points(1, -0.7), ahead) is None
+    assert rule.limit_velocity(BODY, points(1, 0.1), ahead) == pytest.approx((0.0, 0.0, 0.0))
+    assert rule.limit_velocity(BODY, np.zeros((0, 2)), ahead) is None
 
 
 def test_a_robot_that_turns_on_the_spot_meets_what_its_corner_sweeps():
-    long = Outline(np.array([[-0.1, -0.1], [0.5, -0.1], [0.5, 0.1], [-0.1, 0.1]]))
-    rule = Rule(Action.APPROACH, 1, time_before_collision=2.0, simulation_time_step=0.05)
-    assert rule.allowed(long, points(1, 0.0, 0.4), Velocity(0.0, 0.0, 1.0)) is not None
-    assert rule.allowed(long, points(1, 0.0, 0.4), Velocity(0.0, 0.0, -1.0)) is None
+    long = Polygon(np.array([[-0.1, -0.1], [0.5, -0.1], [0.5, 0.1], [-0.1, 0.1]]))
+    rule = ZoneRule(ZoneAction.APPROACH, 1, time_before_collision=2.0, simulation_time_step=0.05)
+    assert rule.limit_velocity(long, points(1, 0.0, 0.4), Velocity(0.0, 0.0, 1.0)) is not None
+    assert rule.limit_velocity(long, points(1, 0.0, 0.4), Velocity(0.0, 0.0, -1.0)) is None
 
 
 def test_of_several_zones_the_one_counts_that_leaves_least():
-    slow, slower = Rule(Action.SLOWDOWN, 1, slowdown_ratio=0.5), Rule(Action.SLOWDOWN, 1, slowdown_ratio=0.1)
+    slow, slower = (
+        ZoneRule(ZoneAction.SLOWDOWN, 1, slowdown_ratio=0.5),
+        ZoneRule(ZoneAction.SLOWDOWN, 1, slowdown_ratio=0.1),
+    )
     seen = points(1, 0.5)
     zones = [("slow", slow, AHEAD, seen), ("slower", slower, AHEAD, seen), ("again", slow, AHEAD, seen)]
     assert limit_by_zones(FORWARD, zones).zone == "slower"
-    stop = ("stop", Rule(Action.STOP, 1), AHEAD, seen)
-    assert limit_by_zones(FORWARD, [stop, *zones]) == Verdict(Velocity(0.0, 0.0, 0.0), Action.STOP, "stop")
-    assert limit_by_zones(FORWARD, [("off", Rule(Action.NOTHING, 1), AHEAD, seen)]) == Verdict(FORWARD)
+    stop = ("stop", ZoneRule(ZoneAction.STOP, 1), AHEAD, seen)
+    assert limit_by_zones(FORWARD, [stop, *zones]) == Verdict(Velocity(0.0, 0.0, 0.0), ZoneAction.STOP, "stop")
+    assert limit_by_zones(FORWARD, [("off", ZoneRule(ZoneAction.NOTHING, 1), AHEAD, seen)]) == Verdict(FORWARD)
 
 
 def test_a_robot_that_stands_is_stopped_all_the_same():
     still = Velocity(0.0, 0.0, 0.0)
-    verdict = limit_by_zones(still, [("stop", Rule(Action.STOP, 1), AHEAD, points(1, 0.5))])
-    assert verdict == Verdict(still, Action.STOP, "stop")
+    verdict = limit_by_zones(still, [("stop", ZoneRule(ZoneAction.STOP, 1), AHEAD, points(1, 0.5))])
+    assert verdict == Verdict(still, ZoneAction.STOP, "stop")
 
 
 @pytest.mark.parametrize(

@@ -40,7 +40,7 @@ def test_costs_of_points_in_the_grid_and_outside():
     costmap = empty()
     costmap.grid.cells[20, 30] = 77
     assert costmap.cost_at(np.array([[0.05, 0.05], [0.15, 0.05], [9.0, 0.0]])).tolist() == [77, 0, UNKNOWN]
-    assert costmap.cost_at(np.array([-3.01, 0.0]), outside=LETHAL) == LETHAL
+    assert costmap.cost_at(np.array([-3.01, 0.0]), outside_cost=LETHAL) == LETHAL
 
 
 def test_the_rim_of_a_footprint_counts_and_what_is_below_it_does_not():

@@ -15,8 +15,8 @@ from linkwright.navigation.costmaps.footprints import circle
 from linkwright.navigation.costmaps.inflation_layer import Inflation, InflationLayer
 from linkwright.navigation.costmaps.layered import LayeredCostmap
 from linkwright.navigation.costmaps.observations import ObservationBuffer, Source
-from linkwright.navigation.costmaps.obstacle_layer import Heights, ObstacleLayer
-from linkwright.navigation.costmaps.range_layer import RangeLayer, RangeSettings, Reading
+from linkwright.navigation.costmaps.obstacle_layer import HeightRange, ObstacleLayer
+from linkwright.navigation.costmaps.range_layer import RangeLayer, RangeReading, RangeSettings
 from linkwright.navigation.costmaps.static_layer import Interpretation, StaticLayer
 from linkwright.navigation.costmaps.voxel_layer import VoxelLayer, Voxels
 from linkwright.navigation.grids.grid import Grid
@@ -45,7 +45,7 @@ class Eye:
     def __init__(self, kind=ObstacleLayer, *more, layers=(), **source) -> None:
         given = {"clearing": True, "max_obstacle_height": 2.0, **source}
         self.buffer = ObservationBuffer(Source(**given))
-        self.layer = kind([self.buffer], Heights(), *more, footprint_clearing=False)
+        self.layer = kind([self.buffer], HeightRange(), *more, footprint_clearing=False)
         self.costmap = costmap(self.layer, *layers)
         self.time_ns = 0
 
@@ -198,7 +198,7 @@ def test_a_sensor_that_is_silent_for_too_long_is_told():
 
 def test_there_is_nothing_where_the_robot_stands():
     buffer = ObservationBuffer(Source(max_obstacle_height=2.0))
-    scene = costmap(ObstacleLayer([buffer], Heights()))
+    scene = costmap(ObstacleLayer([buffer], HeightRange()))
     buffer.add(np.array([2.05, 2.05, 0.3]), np.array([[2.15, 2.05, 0.3], [2.45, 2.05, 0.3]]), 0)
     scene.update(HERE, 0)
     assert np.argwhere(scene.costmap.grid.cells).tolist() == [[20, 24]]
@@ -262,7 +262,7 @@ def test_a_map_lies_somewhere_else_than_the_costmap(x, y):
     scene.update(HERE, 0)
     rows, columns = np.mgrid[:40, :40]
     there = np.stack((rows - y, columns - x), axis=-1)
-    inside = grid.has(there)
+    inside = grid.contains(there)
     expected = np.zeros((40, 40), np.uint8)
     expected[inside] = np.where(grid.cells[there[inside][:, 0], there[inside][:, 1]] == 100, LETHAL, 0)
     assert np.array_equal(scene.costmap.grid.cells, expected)
@@ -303,7 +303,7 @@ class Sonar:
 
     def measure(self, distance: float, *, free: bool = False, times: int = 5) -> np.ndarray:
         for _ in range(times):
-            self.layer.add(Reading(1.05, 2.05, 0.0, distance, 0.5, free, SECOND))
+            self.layer.add(RangeReading(1.05, 2.05, 0.0, distance, 0.5, free, SECOND))
         self.costmap.update(HERE, SECOND)
         return self.costmap.costmap.grid.cells
 
@@ -370,8 +370,8 @@ def test_small_groups_go(connectivity, left):
 
 def test_a_window_that_moves_keeps_what_was_seen():
     buffer = ObservationBuffer(Source(max_obstacle_height=2.0))
-    layer = ObstacleLayer([buffer], Heights(), footprint_clearing=False)
-    scene = costmap(layer, rolling=True, size=2.0)
+    layer = ObstacleLayer([buffer], HeightRange(), footprint_clearing=False)
+    scene = costmap(layer, is_rolling=True, size=2.0)
     scene.update((0.0, 0.0, 0.0), 0)
     buffer.add(np.array([0.0, 0.0, 0.3]), np.array([[0.55, 0.25, 0.3]]), 0)
     scene.update((0.0, 0.0, 0.0), 0)
@@ -391,7 +391,7 @@ def test_clearing_around_the_robot_and_everywhere_else():
         eye = Eye(kind, *more)
         eye.see((2.55, 2.05), (3.55, 2.05))
         eye.buffer.add(np.array([2.05, 2.05, 0.3]), np.zeros((0, 3)), 0)
-        eye.costmap.clear_around(HERE, 1.4, outside=True)
+        eye.costmap.clear_around(HERE, 1.4, clear_outside=True)
         assert np.argwhere(eye.update() == LETHAL).tolist() == [[20, 25]]
         eye.costmap.clear_around(HERE, 1.4)
         assert not (eye.update() == LETHAL).any()

@@ -49,7 +49,7 @@ def test_the_state_is_predicted_only_where_sensors_are_silent_for_long():
 
 
 def test_nothing_is_predicted_before_the_first_measurement():
-    assert not advance(estimator(predict_to_now=True), 10.0).initialized
+    assert not advance(estimator(predict_to_now=True), 10.0).is_initialized
 
 
 def test_a_late_measurement_is_put_where_it_belongs():
@@ -82,4 +82,4 @@ def test_what_waits_is_forgotten():
     running = estimator()
     running.add(measured(0.0, x=1.0))
     running.clear()
-    assert not advance(running, 1.0).initialized
+    assert not advance(running, 1.0).is_initialized

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from linkwright.navigation.estimation.geodesy import (
     TangentPlane,
-    Zone,
+    UtmZone,
     convergence,
     degrees_from_utm,
     utm_from_degrees,
@@ -35,14 +35,14 @@ def meridian_arc(latitude):
 
 @pytest.mark.parametrize("latitude", [10.0, 45.0, 79.0])
 def test_along_the_middle_of_a_zone_northing_is_the_meridian_shrunk(latitude):
-    easting, northing = utm_from_degrees(latitude, 9.0, Zone(32, True))
+    easting, northing = utm_from_degrees(latitude, 9.0, UtmZone(32, True))
     assert easting == pytest.approx(500000.0, abs=1e-6)
     assert northing == pytest.approx(0.9996 * meridian_arc(latitude), abs=1e-5)
 
 
 def test_the_southern_half_counts_from_ten_thousand_kilometres():
-    _, north = utm_from_degrees(30.0, 10.0, Zone(32, True))
-    _, south = utm_from_degrees(-30.0, 10.0, Zone(32, False))
+    _, north = utm_from_degrees(30.0, 10.0, UtmZone(32, True))
+    _, south = utm_from_degrees(-30.0, 10.0, UtmZone(32, False))
     assert south == pytest.approx(10000000.0 - north)
 
 
@@ -58,7 +58,7 @@ def test_there_and_back(latitude, longitude):
 @settings(max_examples=50)
 @given(st.floats(-75.0, 75.0), st.floats(-2.9, 2.9))
 def test_the_projection_keeps_angles_and_turns_by_the_convergence(latitude, offset):
-    zone, step = Zone(31, True), 1e-5
+    zone, step = UtmZone(31, True), 1e-5
     longitude = 3.0 + offset
     (x, y), (xn, yn) = utm_from_degrees(latitude, longitude, zone), utm_from_degrees(latitude + step, longitude, zone)
     xe, ye = utm_from_degrees(latitude, longitude + step, zone)
@@ -73,7 +73,7 @@ def test_the_projection_keeps_angles_and_turns_by_the_convergence(latitude, offs
     [(0.0, -180.0, 1), (0.0, 179.9, 60), (48.0, 9.0, 32), (60.0, 5.0, 32), (78.0, 10.0, 33), (78.0, 8.0, 31)],
 )
 def test_zones(latitude, longitude, number):
-    assert zone_from_degrees(latitude, longitude) == Zone(number, True)
+    assert zone_from_degrees(latitude, longitude) == UtmZone(number, True)
 
 
 @settings(max_examples=50)

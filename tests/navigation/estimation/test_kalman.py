@@ -12,7 +12,7 @@ from linkwright.navigation.estimation.kalman import (
     Settings,
     UnscentedKalmanFilter,
 )
-from linkwright.navigation.estimation.motion_model import SIZE, State, state_jacobian, wrapped
+from linkwright.navigation.estimation.motion_model import SIZE, State, state_jacobian, wrap_angle
 
 SECOND = 1_000_000_000
 FILTERS = pytest.mark.parametrize("kind", [ExtendedKalmanFilter, UnscentedKalmanFilter])
@@ -37,7 +37,7 @@ def diagonal(**values):
 def test_the_first_measurement_is_taken_as_it_is(kind):
     kalman = kind()
     assert kalman.process(measured(5.0, 0.3, x=2.0, yaw=1.0))
-    assert kalman.initialized
+    assert kalman.is_initialized
     assert kalman.time_ns == 5 * SECOND
     assert (kalman.state[State.X], kalman.state[State.YAW], kalman.state[State.Y]) == (2.0, 1.0, 0.0)
     assert kalman.covariance[State.X, State.X] == 0.3
@@ -47,7 +47,7 @@ def test_the_first_measurement_is_taken_as_it_is(kind):
 @FILTERS
 def test_one_correction_is_the_weighted_mean(kind):
     kalman = kind(Settings(initial_covariance=diagonal(x=0.3)))
-    kalman.initialized = True
+    kalman.is_initialized = True
     kalman.state[State.X] = 1.0
     kalman.correct(measured(0.0, 0.1, x=2.0))
     weight = 0.3 / (0.3 + 0.1)
@@ -97,7 +97,7 @@ def test_a_filter_agrees_with_least_squares_over_all_measurements(kind):
     # Sigma points near the state lose digits to rounding; far ones do not, and the motion is linear here.
     settings = Settings(noise=noise, initial_covariance=start)
     kalman = kind(settings) if kind is ExtendedKalmanFilter else kind(settings, alpha=1.0)
-    kalman.initialized = True
+    kalman.is_initialized = True
     random = np.random.default_rng(7)
     steps = list(random.uniform(0.05, 0.5, 29))
     times = np.concatenate([[0.0], np.cumsum(steps)])
@@ -133,7 +133,7 @@ def test_a_constant_turn_is_followed(kind):
     for step in range(1, 301):
         kalman.process(measured(0.01 * step, 1e-6, vx=1.0, vy=0.0, vz=0.0, vroll=0.0, vpitch=0.0, vyaw=0.5))
     turned = 0.5 * 2.99
-    assert wrapped(kalman.state[State.YAW] - turned) == pytest.approx(0.0, abs=1e-3)
+    assert wrap_angle(kalman.state[State.YAW] - turned) == pytest.approx(0.0, abs=1e-3)
     assert kalman.state[State.X] == pytest.approx(2.0 * np.sin(turned), abs=2e-2)
     assert kalman.state[State.Y] == pytest.approx(2.0 * (1.0 - np.cos(turned)), abs=2e-2)
 
@@ -155,7 +155,7 @@ def test_a_biased_gyroscope_is_held_by_a_compass(kind):
 @FILTERS
 def test_angles_are_compared_around_the_circle(kind):
     kalman = kind(Settings(initial_covariance=diagonal(yaw=0.1)))
-    kalman.initialized = True
+    kalman.is_initialized = True
     kalman.state[State.YAW] = pi - 0.1
     kalman.correct(measured(0.0, 0.1, yaw=-pi + 0.1))
     assert abs(kalman.state[State.YAW]) == pytest.approx(pi)
@@ -163,7 +163,7 @@ def test_angles_are_compared_around_the_circle(kind):
 
 def test_outliers_are_left_out():
     kalman = ExtendedKalmanFilter(Settings(initial_covariance=diagonal(x=0.03)))
-    kalman.initialized = True
+    kalman.is_initialized = True
     deviation = sqrt(0.03 + 0.01)
     assert not kalman.correct(measured(0.0, 0.01, threshold=3.0, x=3.01 * deviation))
     assert kalman.state[State.X] == 0.0
@@ -173,7 +173,7 @@ def test_outliers_are_left_out():
 
 def test_what_is_no_number_is_left_out_and_the_rest_counts():
     kalman = ExtendedKalmanFilter(Settings(initial_covariance=diagonal(x=1.0, y=1.0)))
-    kalman.initialized = True
+    kalman.is_initialized = True
     assert kalman.correct(measured(0.0, 1.0, x=nan, y=1.0))
     assert kalman.state[:2] == pytest.approx([0.0, 0.5])
     assert not kalman.correct(measured(0.0, 1.0, x=inf))
@@ -183,7 +183,7 @@ def test_what_is_no_number_is_left_out_and_the_rest_counts():
 
 def test_exact_and_negative_variances_are_taken_for_small_ones():
     kalman = ExtendedKalmanFilter(Settings(initial_covariance=diagonal(x=1.0, y=1.0)))
-    kalman.initialized = True
+    kalman.is_initialized = True
     assert kalman.correct(measured(0.0, 0.0, x=1.0))
     assert kalman.state[State.X] == pytest.approx(1.0)
     assert kalman.correct(measured(0.0, -1.0, y=1.0))
@@ -199,8 +199,8 @@ def test_a_measurement_of_the_past_corrects_without_going_back():
 
 
 def test_noise_of_the_pose_that_grows_with_the_velocity():
-    kalman = ExtendedKalmanFilter(Settings(dynamic_noise=True, initial_covariance=np.zeros((SIZE, SIZE))))
-    kalman.initialized = True
+    kalman = ExtendedKalmanFilter(Settings(uses_dynamic_noise=True, initial_covariance=np.zeros((SIZE, SIZE))))
+    kalman.is_initialized = True
     kalman.predict(SECOND)
     assert kalman.covariance[State.X, State.X] == 0.0
     assert kalman.covariance[State.VX, State.VX] == pytest.approx(0.025)
@@ -231,5 +231,5 @@ def test_a_filter_begins_anew_where_it_was_told_to(kind):
     kalman = kind(Settings(initial_state=start))
     kalman.process(measured(0.0, x=3.0))
     kalman.reset()
-    assert not kalman.initialized
+    assert not kalman.is_initialized
     np.testing.assert_array_equal(kalman.state, start)

@@ -7,7 +7,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from linkwright.navigation.estimation.motion_model import SIZE, State, predict_state, rotation, state_jacobian, wrapped
+from linkwright.navigation.estimation.motion_model import (
+    SIZE,
+    State,
+    predict_state,
+    rotation,
+    state_jacobian,
+    wrap_angle,
+)
 
 numbers = st.floats(-2.0, 2.0)
 # Near a pitch of 90 degrees the rates of roll and yaw have no bound.
@@ -48,7 +55,7 @@ def test_a_constant_turn_comes_near_the_circle_as_steps_get_small():
 
 def test_angles_stay_between_minus_pi_and_pi():
     assert predict_state(moving(yaw=3.0, vyaw=1.0), 1.0)[State.YAW] == pytest.approx(4.0 - 2.0 * pi)
-    assert wrapped(-pi - 0.1) == pytest.approx(pi - 0.1)
+    assert wrap_angle(-pi - 0.1) == pytest.approx(pi - 0.1)
 
 
 def test_rates_of_a_rolled_body_turn_its_pitch():
@@ -77,6 +84,6 @@ def test_derivatives_are_those_of_small_differences(state, seconds):
         up[index] += step
         down[index] -= step
         difference = predict_state(up, seconds) - predict_state(down, seconds)
-        difference[3:6] = [wrapped(float(angle)) for angle in difference[3:6]]
+        difference[3:6] = [wrap_angle(float(angle)) for angle in difference[3:6]]
         columns.append(difference / (2.0 * step))
     np.testing.assert_allclose(state_jacobian(state, seconds), np.array(columns).T, atol=1e-7)

@@ -47,7 +47,7 @@ def test_relative_poses_count_from_the_first_one():
     assert first.values == pytest.approx(np.zeros(SIZE))
     second = reader.read(pose(5.0, 3.0, rpy=(0, 0, pi / 2)), SIX, IDENTITY, SECOND)
     assert second.values[POSITION] == pytest.approx([2.0, 0.0, 0.0])
-    reader.forget()
+    reader.reset()
     assert reader.read(pose(9.0), SIX, IDENTITY, 0).values == pytest.approx(np.zeros(SIZE))
 
 

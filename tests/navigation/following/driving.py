@@ -8,7 +8,7 @@ import numpy as np
 
 from linkwright.navigation.costmaps.costmap import LETHAL, Costmap
 from linkwright.navigation.costmaps.footprints import circle
-from linkwright.navigation.following.follower import STILL, Situation, predict_poses
+from linkwright.navigation.following.follower import ZERO_VELOCITY, Situation, predict_poses
 from linkwright.navigation.following.path import FollowedPath
 from linkwright.navigation.grids.grid import Grid
 
@@ -42,7 +42,7 @@ def line(*points, spacing=0.05):
     return np.concatenate(parts)
 
 
-def situation(path, pose=(0.0, 0.0, 0.0), velocity=STILL, costmap=None, footprint=None, xy_tolerance=0.25):
+def situation(path, pose=(0.0, 0.0, 0.0), velocity=ZERO_VELOCITY, costmap=None, footprint=None, xy_tolerance=0.25):
     return Situation(
         pose=pose,
         velocity=velocity,
@@ -58,14 +58,14 @@ def drive(follower, path, checker, *, pose=(0.0, 0.0, 0.0), costmap=None, cycles
     """Drive until the goal is reached; poses and velocities of all cycles."""
     costmap = costmap or floor()
     followed = FollowedPath(path, 2.0)
-    velocity = STILL
+    velocity = ZERO_VELOCITY
     poses, velocities = [pose], [velocity]
-    follower.begin()
-    checker.begin()
+    follower.reset()
+    checker.reset()
     for _ in range(cycles):
         if checker.is_reached(pose, tuple(path[-1]), velocity):
             break
-        followed.progress(pose[0], pose[1])
+        followed.update_progress(pose[0], pose[1])
         now = situation(followed.poses_ahead(3.0), pose, velocity, costmap, footprint, checker.xy_tolerance)
         velocity = follower.velocity(now)
         pose = tuple(predict_poses(pose, np.array([velocity]), np.array([PERIOD]))[0, 0])

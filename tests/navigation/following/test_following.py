@@ -16,18 +16,18 @@ from linkwright.navigation.following.checkers import (
     SimpleGoalParameters,
     StoppedGoalChecker,
 )
-from linkwright.navigation.following.follower import STILL, FollowingError, Velocity, predict_poses, wrapped
+from linkwright.navigation.following.follower import ZERO_VELOCITY, FollowingError, Velocity, predict_poses, wrap_angle
 from linkwright.navigation.following.path import FollowedPath
 from linkwright.navigation.following.pure_pursuit import (
     PurePursuitParameters,
     RegulatedPurePursuit,
-    carrot_on,
     curvature_to,
+    find_carrot,
     rotation_speed,
     speed_in_curve,
 )
 from linkwright.navigation.following.rotation_shim import RotationShim
-from linkwright.navigation.following.sampling import Limits, SamplingFollower, SamplingParameters
+from linkwright.navigation.following.sampling import SamplingFollower, SamplingParameters, VelocityLimits
 from tests.navigation.following.driving import PERIOD, drive, floor, line, put_box, situation
 
 CORNER = line((0.0, 0.0), (2.0, 0.0), (2.0, 2.0))
@@ -36,7 +36,9 @@ FOLLOWERS = [
     SamplingFollower,
     lambda: RotationShim(RegulatedPurePursuit()),
     lambda: SamplingFollower(
-        SamplingParameters(limits=Limits(min_velocity=Velocity(0.0, -0.3, -1.0), max_velocity=Velocity(0.4, 0.3, 1.0)))
+        SamplingParameters(
+            limits=VelocityLimits(min_velocity=Velocity(0.0, -0.3, -1.0), max_velocity=Velocity(0.4, 0.3, 1.0))
+        )
     ),
 ]
 
@@ -45,7 +47,7 @@ class TestMotions:
     def test_a_circle_is_closed_after_a_whole_turn(self):
         end = predict_poses((1.0, 2.0, 0.3), np.array([[0.5, 0.0, 0.5]]), np.array([4.0 * pi]))[0, 0]
         assert end[:2] == pytest.approx([1.0, 2.0])
-        assert wrapped(end[2]) == pytest.approx(0.3)
+        assert wrap_angle(end[2]) == pytest.approx(0.3)
 
     def test_sideways_and_straight(self):
         assert predict_poses((0, 0, pi / 2), np.array([[0.0, 1.0, 0.0]]), np.array([2.0]))[0, 0] == pytest.approx(
@@ -64,10 +66,10 @@ class TestPurePursuit:
 
     def test_the_carrot_is_where_the_circle_cuts_the_path(self):
         seen = np.array([[0.0, 0.3], [0.4, 0.3], [1.0, 0.3]])
-        carrot = carrot_on(seen, 0.5)
+        carrot = find_carrot(seen, 0.5)
         assert carrot == pytest.approx([0.4, 0.3])
-        assert hypot(*carrot_on(seen, 0.8)) == pytest.approx(0.8)
-        assert carrot_on(seen, 5.0) == pytest.approx([1.0, 0.3])
+        assert hypot(*find_carrot(seen, 0.8)) == pytest.approx(0.8)
+        assert find_carrot(seen, 5.0) == pytest.approx([1.0, 0.3])
 
     def test_curves_slow_down_in_proportion(self):
         assert speed_in_curve(0.5, 1.0 / 0.45, 0.9) == pytest.approx(0.25)
@@ -159,7 +161,7 @@ class TestWholePaths:
     def test_a_corner_is_driven(self, make):
         poses, velocities = drive(make(), CORNER, StoppedGoalChecker())
         assert hypot(*(poses[-1, :2] - CORNER[-1, :2])) <= 0.25
-        assert abs(wrapped(poses[-1, 2] - pi / 2)) <= 0.25
+        assert abs(wrap_angle(poses[-1, 2] - pi / 2)) <= 0.25
         beside = np.hypot(*(poses[:, None, :2] - CORNER[None, :, :2]).T).min(axis=0)
         assert beside.max() < 0.3
         assert hypot(*velocities[-1, :2]) <= 0.25
@@ -173,40 +175,40 @@ class TestWholePaths:
         path = line((0.0, 0.0), (1.5, 0.0))
         path[-1, 2] = -2.5
         poses, _ = drive(make(), path, SimpleGoalChecker(SimpleGoalParameters(yaw_goal_tolerance=0.05)))
-        assert abs(wrapped(poses[-1, 2] + 2.5)) <= 0.05
+        assert abs(wrap_angle(poses[-1, 2] + 2.5)) <= 0.05
 
 
 class TestPath:
     def test_a_path_that_crosses_itself_is_driven_in_its_order(self):
         eight = line((0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (1.0, 2.0), (1.0, -2.0))
         path = FollowedPath(eight, 1.0)
-        path.progress(1.0, 0.0)
+        path.update_progress(1.0, 0.0)
         assert path.remaining_distance(1.0, 0.0) == pytest.approx(8.0, abs=0.06)
         assert path.poses_ahead(0.5)[-1, :2] == pytest.approx([1.5, 0.0], abs=0.06)
 
     def test_its_end_is_two_poses(self):
         path = FollowedPath(line((0.0, 0.0), (1.0, 0.0)), 5.0)
-        path.progress(1.0, 0.0)
+        path.update_progress(1.0, 0.0)
         assert len(path.poses_ahead(1.0)) == 2
 
 
 class TestCheckers:
     def test_the_place_counts_once_it_was_reached(self):
         checker = SimpleGoalChecker()
-        assert not checker.is_reached((0.1, 0.0, 1.0), (0.0, 0.0, 0.0), STILL)
-        assert checker.is_reached((0.4, 0.0, 0.1), (0.0, 0.0, 0.0), STILL)
-        checker.begin()
-        assert not checker.is_reached((0.4, 0.0, 0.1), (0.0, 0.0, 0.0), STILL)
+        assert not checker.is_reached((0.1, 0.0, 1.0), (0.0, 0.0, 0.0), ZERO_VELOCITY)
+        assert checker.is_reached((0.4, 0.0, 0.1), (0.0, 0.0, 0.0), ZERO_VELOCITY)
+        checker.reset()
+        assert not checker.is_reached((0.4, 0.0, 0.1), (0.0, 0.0, 0.0), ZERO_VELOCITY)
 
     def test_without_a_state_it_does_not(self):
         checker = SimpleGoalChecker(SimpleGoalParameters(stateful=False))
-        assert not checker.is_reached((0.1, 0.0, 1.0), (0.0, 0.0, 0.0), STILL)
-        assert not checker.is_reached((0.4, 0.0, 0.1), (0.0, 0.0, 0.0), STILL)
+        assert not checker.is_reached((0.1, 0.0, 1.0), (0.0, 0.0, 0.0), ZERO_VELOCITY)
+        assert not checker.is_reached((0.4, 0.0, 0.1), (0.0, 0.0, 0.0), ZERO_VELOCITY)
 
     def test_a_robot_that_moves_has_not_stopped(self):
         checker = StoppedGoalChecker()
         assert not checker.is_reached((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), Velocity(0.3))
-        assert checker.is_reached((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), STILL)
+        assert checker.is_reached((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), ZERO_VELOCITY)
 
     def test_no_progress_is_noticed_after_the_time_allowed(self):
         checker = ProgressChecker()

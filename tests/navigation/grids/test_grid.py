@@ -23,7 +23,7 @@ def test_rows_go_along_y_and_columns_along_x(grid):
 def test_points_outside_have_cells_that_the_grid_does_not_have(grid):
     indices = grid.cells_of(np.array([[-1.1, 2.1], [1.1, 2.1], [-0.9, 3.6], [-0.9, 2.1]]))
     assert indices.tolist() == [[0, -1], [0, 4], [3, 0], [0, 0]]
-    assert grid.has(indices).tolist() == [False, False, False, True]
+    assert grid.contains(indices).tolist() == [False, False, False, True]
 
 
 @pytest.mark.parametrize("yaw", [0.0, 0.3, pi / 2, -2.0])

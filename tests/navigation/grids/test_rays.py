@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from linkwright.navigation.grids.distances import distance_field
 from linkwright.navigation.grids.grid import Grid
 from linkwright.navigation.grids.ray_counts import ray_counts
-from linkwright.navigation.grids.rays import cells_on_lines, ranges
+from linkwright.navigation.grids.rays import cast_rays, cells_on_lines
 
 _CELL = st.tuples(st.integers(-40, 40), st.integers(-40, 40))
 
@@ -46,18 +46,18 @@ def test_rays_end_at_walls_and_at_the_limit() -> None:
     walls = np.zeros((100, 100), bool)
     walls[:, 80] = True
     field = Grid(cells=distance_field(walls, 0.05), resolution=0.05)
-    measured = ranges(field, np.array([1.0, 2.5]), np.array([0.0, pi / 4, pi, pi / 2]), 10.0)
+    measured = cast_rays(field, np.array([1.0, 2.5]), np.array([0.0, pi / 4, pi, pi / 2]), 10.0)
     assert abs(measured[0] - 3.0) <= 0.05
     assert measured[2] == measured[3] == 10.0
     assert measured[1] == 10.0  # it leaves the grid before it meets the wall
-    assert ranges(field, np.array([1.0, 2.5]), np.array([0.0]), 2.0)[0] == 2.0
+    assert cast_rays(field, np.array([1.0, 2.5]), np.array([0.0]), 2.0)[0] == 2.0
 
 
 def test_rays_of_a_turned_grid_are_turned() -> None:
     walls = np.zeros((100, 100), bool)
     walls[:, 80] = True
     field = Grid(cells=distance_field(walls, 0.05), resolution=0.05, x=1.0, y=-2.0, yaw=pi / 2)
-    measured = ranges(field, np.array([[0.0, 0.0], [-1.0, 0.0]]), np.array([pi / 2]), 10.0)
+    measured = cast_rays(field, np.array([[0.0, 0.0], [-1.0, 0.0]]), np.array([pi / 2]), 10.0)
     assert np.abs(measured - 2.0).max() <= 0.05
 
 
@@ -69,7 +69,7 @@ def test_no_ray_goes_through_a_wall(seed: int) -> None:
     field = Grid(cells=distance_field(walls, 0.1), resolution=0.1)
     points = random.uniform(0.3, 5.7, (20, 2))
     angles = random.uniform(-pi, pi, 20)
-    measured = ranges(field, points, angles, 20.0)
+    measured = cast_rays(field, points, angles, 20.0)
     along = np.stack((np.cos(angles), np.sin(angles)), axis=-1)
     with np.errstate(divide="ignore"):
         exact = np.where(along > 0, (5.95 - points) / along, (0.05 - points) / along).min(axis=1)

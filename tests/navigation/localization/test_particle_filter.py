@@ -7,7 +7,7 @@ from math import ceil, pi, sqrt
 import numpy as np
 import pytest
 
-from linkwright.navigation.localization.motion_models import Noise, Poses, differential
+from linkwright.navigation.localization.motion_models import Noise, Poses, move_differentially
 from linkwright.navigation.localization.particle_filter import FilterSettings, ParticleFilter
 from tests.navigation.localization.test_sensor_models import beams_in_room, room
 
@@ -33,18 +33,18 @@ def test_as_many_particles_are_kept_as_their_bins_ask_for() -> None:
     particles = ParticleFilter(settings)
     bins = 40
     places = np.column_stack((np.arange(bins) * 0.5 + 0.25, np.full(bins, 0.25), np.full(bins, 0.01)))
-    particles.begin(np.repeat(places, 100, axis=0))
+    particles.set_particles(np.repeat(places, 100, axis=0))
     particles.resample(_nowhere)
     b = 2.0 / (9.0 * (bins - 1))
     assert len(particles.particles) == ceil((bins - 1) / 0.1 * (1.0 - b + sqrt(b) * 0.99) ** 3) + 1
-    particles.begin(np.repeat(places[:2], 100, axis=0))
+    particles.set_particles(np.repeat(places[:2], 100, axis=0))
     particles.resample(_nowhere)
     assert len(particles.particles) == 101
 
 
 def test_particles_are_drawn_by_their_weights() -> None:
     particles = ParticleFilter(FilterSettings())
-    particles.begin(np.array([(0.25, 0.25, 0.01), (3.25, 0.25, 0.01), (6.25, 0.25, 0.01)]))
+    particles.set_particles(np.array([(0.25, 0.25, 0.01), (3.25, 0.25, 0.01), (6.25, 0.25, 0.01)]))
     particles.update_weights(np.array([1.0, 0.0, 3.0]))
     particles.resample(_nowhere)
     found, counts = np.unique(particles.particles[:, 0], return_counts=True)
@@ -57,19 +57,19 @@ def test_the_estimate_is_the_mean_of_the_likeliest_cluster() -> None:
     here = np.random.default_rng(0).normal((2.0, 1.0, pi), (0.2, 0.2, 0.2), (600, 3))  # across the turn's end
     here[:, 2] = (here[:, 2] + pi) % (2 * pi) - pi
     there = np.random.default_rng(1).normal((8.0, 5.0, 0.0), 0.1, (400, 3))
-    particles.begin(np.concatenate((here, there)))
+    particles.set_particles(np.concatenate((here, there)))
     estimate = particles.estimate()
     assert estimate.weight == pytest.approx(0.6, abs=0.01)
     assert estimate.pose[:2] == pytest.approx((2.0, 1.0), abs=0.03)
     assert abs(estimate.pose[2]) == pytest.approx(pi, abs=0.03)
     assert not particles.has_converged()
-    particles.begin(there)
+    particles.set_particles(there)
     assert particles.has_converged()
 
 
 def test_particles_come_from_anywhere_when_scans_fit_less_than_before() -> None:
     particles = ParticleFilter(FilterSettings(recovery_alpha_slow=0.001, recovery_alpha_fast=0.5))
-    particles.begin(np.tile((1.0, 1.0, 0.0), (1000, 1)))
+    particles.set_particles(np.tile((1.0, 1.0, 0.0), (1000, 1)))
     asked: list[int] = []
 
     def anywhere(count: int) -> Poses:
@@ -99,7 +99,7 @@ def test_a_pose_that_is_half_a_metre_wrong_is_put_right_while_driving() -> None:
         before = (float(true[0]), float(true[1]), float(true[2]))
         true += (0.25 * np.cos(true[2]), 0.25 * np.sin(true[2]), 0.05)
         after = (float(true[0]), float(true[1]), float(true[2]))
-        differential(particles.particles, before, after, Noise(), particles.random)
+        move_differentially(particles.particles, before, after, Noise(), particles.random)
         particles.update_weights(
             likelihoods.likelihoods("likelihood_field", particles.particles, beams_in_room(*after))
         )

@@ -11,7 +11,12 @@ from linkwright.geometry.single import IDENTITY, Transform, quaternion_from_rpy
 from linkwright.messages import get_message
 from linkwright.navigation.grids.grid import FREE, OCCUPIED, UNKNOWN, Grid
 from linkwright.navigation.localization.beams import Beams, beams_of_scan
-from linkwright.navigation.localization.motion_models import MotionModel, Noise, differential, omnidirectional
+from linkwright.navigation.localization.motion_models import (
+    MotionModel,
+    Noise,
+    move_differentially,
+    move_omnidirectionally,
+)
 from linkwright.navigation.localization.sensor_models import MODELS, BeamSkipping, LaserSettings, MapLikelihoods
 
 _QUIET = Noise(0.0, 0.0, 0.0, 0.0, 0.0)
@@ -121,7 +126,7 @@ def test_beams_that_are_none_or_too_short_or_too_long() -> None:
     assert len(beams_of_scan(_scan([]), IDENTITY, 60).ranges) == 0
 
 
-@pytest.mark.parametrize("model", [differential, omnidirectional])
+@pytest.mark.parametrize("model", [move_differentially, move_omnidirectionally])
 def test_without_noise_particles_move_as_odometry_says(model: MotionModel) -> None:
     particles = np.array([[0.0, 0.0, 0.0], [5.0, 5.0, pi / 2]])
     model(particles, (1.0, 1.0, 0.0), (2.0, 1.5, 0.5), _QUIET, np.random.default_rng(0))
@@ -131,17 +136,17 @@ def test_without_noise_particles_move_as_odometry_says(model: MotionModel) -> No
 def test_driving_back_is_no_half_turn() -> None:
     random = np.random.default_rng(0)
     particles = np.zeros((4000, 3))
-    differential(particles, (0.0, 0.0, 0.0), (-1.0, 0.0, 0.0), Noise(0.2, 0.0, 0.0, 0.0), random)
+    move_differentially(particles, (0.0, 0.0, 0.0), (-1.0, 0.0, 0.0), Noise(0.2, 0.0, 0.0, 0.0), random)
     assert particles == pytest.approx(np.tile((-1.0, 0.0, 0.0), (4000, 1)), abs=1e-9)
 
 
 @pytest.mark.parametrize(
     ("model", "noise", "column", "sigma"),
     [
-        (differential, Noise(0.0, 0.0, 0.04, 0.0), 0, 0.2),
-        (omnidirectional, Noise(0.0, 0.0, 0.04, 0.0), 0, 0.2),
-        (omnidirectional, Noise(0.0, 0.0, 0.0, 0.0, 0.04), 1, 0.2),
-        (omnidirectional, Noise(0.0, 0.04, 0.0, 0.0), 2, 0.2),
+        (move_differentially, Noise(0.0, 0.0, 0.04, 0.0), 0, 0.2),
+        (move_omnidirectionally, Noise(0.0, 0.0, 0.04, 0.0), 0, 0.2),
+        (move_omnidirectionally, Noise(0.0, 0.0, 0.0, 0.0, 0.04), 1, 0.2),
+        (move_omnidirectionally, Noise(0.0, 0.04, 0.0, 0.0), 2, 0.2),
     ],
 )
 def test_noise_is_as_large_as_said(model: MotionModel, noise: Noise, column: int, sigma: float) -> None:

@@ -138,7 +138,7 @@ def seen_points(faces: np.ndarray, grid: Grid) -> np.ndarray:
         free = np.ones(len(row), dtype=bool)
         for distance in (0.1, 0.2):
             cells = grid.cells_of(row + distance * np.array((along[1], -along[0])))
-            free &= grid.has(cells)
+            free &= grid.contains(cells)
             free[free] = grid.cells[tuple(cells[free].T)] == FREE
         points.append(row[free])
     return np.concatenate(points)

@@ -9,7 +9,7 @@ import numpy as np
 
 from linkwright.graph import ActionClient, Graph, JumpClock
 from linkwright.messages import get_action, get_message
-from linkwright.navigation.following.follower import STILL, Velocity, predict_poses
+from linkwright.navigation.following.follower import ZERO_VELOCITY, Velocity, predict_poses
 from tests.navigation.nodes.scene import Scene
 
 PERIOD = 0.02
@@ -29,7 +29,7 @@ class DrivingScene(Scene):
     def __init__(self, graph: Graph, clock: JumpClock) -> None:
         super().__init__(graph, clock)
         self.speeds: list[Velocity] = []
-        self.velocity = STILL
+        self.velocity = ZERO_VELOCITY
         self.told, self.held = True, False
         self.seen: tuple[tuple[int, float], ...] = ()
         self.sees = True
@@ -44,7 +44,7 @@ class DrivingScene(Scene):
         self.speeds.append(self.velocity)
 
     def _move(self) -> None:
-        velocity = STILL if self.held else self.velocity
+        velocity = ZERO_VELOCITY if self.held else self.velocity
         self.pose = tuple(map(float, predict_poses(self.pose, np.array([velocity]), np.array([PERIOD]))[0, 0]))
         if self.told:
             self.tell_pose()

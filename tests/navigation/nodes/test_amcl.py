@@ -130,7 +130,7 @@ def begin() -> Iterator[Begin]:
 def test_the_map_is_that_of_the_house() -> None:
     grid = load_map(MAP)
     here = grid.cells_of(np.array([(0.0, 0.0), (4.9, 2.0), (4.95, 2.0), (20.0, 0.0)]))
-    assert grid.has(here).tolist() == [True, True, True, False]
+    assert grid.contains(here).tolist() == [True, True, True, False]
     assert grid.cells[tuple(here[0])] == 0
     assert 100 in (grid.cells[tuple(here[1])], grid.cells[tuple(here[2])])
 

@@ -13,7 +13,7 @@ from linkwright.graph.time.values import Duration
 from linkwright.messages import get_message
 from linkwright.navigation.costmaps.costmap import LETHAL, Costmap
 from linkwright.navigation.costmaps.footprints import circle, place_footprint
-from linkwright.navigation.following.follower import STILL
+from linkwright.navigation.following.follower import ZERO_VELOCITY
 from linkwright.navigation.grids.grid import Grid
 from linkwright.navigation.nodes.behavior_server import BehaviorServer
 from linkwright.navigation.nodes.costmap_messages import raw_message
@@ -59,7 +59,7 @@ async def test_it_spins(scene):
     await goal.send(target_yaw=pi / 2, time_allowance=Duration(seconds=10.0).to_msg())
     assert await goal.ends(10.0) == GoalStatus.SUCCEEDED
     assert scene.pose[2] == pytest.approx(0.4 + pi / 2, abs=0.1)
-    assert scene.velocity == STILL
+    assert scene.velocity == ZERO_VELOCITY
     assert goal.feedback[-1].angular_distance_traveled == pytest.approx(pi / 2, abs=0.15)
     assert goal.answer.result.total_elapsed_time.sec >= 1
 
@@ -74,7 +74,7 @@ async def test_it_drives_straight(scene, name, kind, sign):
     assert await goal.ends(10.0) == GoalStatus.SUCCEEDED
     assert scene.distance_to(*before[:2]) == pytest.approx(0.3, abs=0.05)
     assert np.sign(scene.pose[0] - before[0]) == sign
-    assert scene.velocity == STILL
+    assert scene.velocity == ZERO_VELOCITY
 
 
 async def test_it_does_not_back_into_an_obstacle(scene, log):
@@ -84,7 +84,7 @@ async def test_it_does_not_back_into_an_obstacle(scene, log):
     await goal.send(target=get_message("geometry_msgs/msg/Point")(x=3.0), speed=0.2)
     assert await goal.ends(20.0) == GoalStatus.ABORTED
     assert 1.65 < scene.pose[0] < 2.4
-    assert scene.velocity == STILL
+    assert scene.velocity == ZERO_VELOCITY
     assert any("there is an obstacle ahead" in record.text for record in log)
 
 
@@ -93,7 +93,7 @@ async def test_it_takes_no_longer_than_is_allowed(scene):
     target = get_message("geometry_msgs/msg/Point")(x=1.5)
     await goal.send(target=target, speed=0.05, time_allowance=Duration(seconds=2.0).to_msg())
     assert await goal.ends(4.0) == GoalStatus.ABORTED
-    assert scene.velocity == STILL
+    assert scene.velocity == ZERO_VELOCITY
 
 
 async def test_a_costmap_that_falls_silent_stops_the_robot(scene, log):
@@ -101,7 +101,7 @@ async def test_a_costmap_that_falls_silent_stops_the_robot(scene, log):
     await goal.send(target=get_message("geometry_msgs/msg/Point")(x=2.0), speed=0.02)
     scene.sees = False
     assert await goal.ends(10.0) == GoalStatus.ABORTED
-    assert scene.velocity == STILL
+    assert scene.velocity == ZERO_VELOCITY
     assert any("the costmap is no longer published" in record.text for record in log)
 
 
@@ -129,7 +129,7 @@ async def test_who_drives_with_assistance_is_stopped_before_a_wall(scene):
         await scene.run(0.1)
     assert 2.9 < scene.pose[0] < 3.31
     assert await goal.ends(3.0) == GoalStatus.ABORTED
-    assert scene.velocity == STILL
+    assert scene.velocity == ZERO_VELOCITY
 
 
 async def test_targets_beside_the_robot_are_refused(scene):

@@ -9,7 +9,7 @@ from linkwright.graph import DESCRIPTION_QOS, ActionServer
 from linkwright.graph.actions.goal import GoalStatus
 from linkwright.messages import get_action
 from linkwright.navigation.costmaps.costmap import LETHAL, Costmap
-from linkwright.navigation.following.follower import STILL
+from linkwright.navigation.following.follower import ZERO_VELOCITY
 from linkwright.navigation.grids.grid import Grid
 from linkwright.navigation.nodes.behavior_server import BehaviorServer
 from linkwright.navigation.nodes.bt_navigator import BtNavigator
@@ -70,7 +70,7 @@ async def test_it_goes_to_a_pose_and_tells_how_far_it_is(scene):
     await goal.send(pose=pose_stamped(3.0, 1.0))
     assert await goal.ends(60.0) == GoalStatus.SUCCEEDED
     assert scene.distance_to(3.0, 1.0) < 0.26
-    assert scene.velocity == STILL
+    assert scene.velocity == ZERO_VELOCITY
     left = [each.distance_remaining for each in goal.feedback]
     assert max(left) == pytest.approx(2.0, abs=0.2)
     assert left[-1] < 0.4
@@ -103,7 +103,7 @@ async def test_canceling_stops_the_robot(scene):
     goal.handle.cancel_goal_async()
     assert await goal.ends(2.0) == GoalStatus.CANCELED
     await scene.run(0.2)
-    assert scene.velocity == STILL
+    assert scene.velocity == ZERO_VELOCITY
 
 
 async def test_another_goal_takes_over(scene):
@@ -145,7 +145,7 @@ async def test_a_goal_in_a_wall_is_refused_with_a_reason(scene, log):
     await goal.send(pose=pose_stamped(2.1, 1.0))
     assert await goal.ends(10.0) == GoalStatus.ABORTED
     assert any("the goal (2.10, 1.00) is in an obstacle" in record.text for record in log)
-    assert scene.velocity == STILL
+    assert scene.velocity == ZERO_VELOCITY
 
 
 async def test_no_poses_are_no_goal(scene):

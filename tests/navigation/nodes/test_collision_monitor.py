@@ -9,7 +9,7 @@ from linkwright.diagnostics import LinkwrightError
 from linkwright.graph import LogLevel
 from linkwright.graph.lifecycle.states import ACTIVE, UNCONFIGURED
 from linkwright.messages import get_message
-from linkwright.navigation.following.follower import STILL
+from linkwright.navigation.following.follower import ZERO_VELOCITY
 from linkwright.navigation.nodes.collision_monitor import CollisionMonitor
 from linkwright.nodes import NodeOptions
 from tests.navigation.nodes.robots import DrivingScene
@@ -75,7 +75,7 @@ async def test_the_robot_stops_for_something_in_the_zone_and_goes_on_when_it_is_
     await scene.run(1.0)
     scene.seen = ((0, 0.5),)
     await scene.run(1.0)
-    assert scene.velocity == STILL
+    assert scene.velocity == ZERO_VELOCITY
     scene.seen = ()
     await scene.run(1.0)
     assert scene.velocity.x == pytest.approx(0.4)
@@ -99,7 +99,7 @@ async def test_a_silent_sensor_stops_the_robot(scene, monitor):
     assert scene.velocity.x == pytest.approx(0.4)
     scene.sees = False
     await scene.run(2.0)
-    assert scene.velocity == STILL
+    assert scene.velocity == ZERO_VELOCITY
 
 
 async def test_a_sensor_without_a_timeout_may_be_silent(scene, monitor):
@@ -124,7 +124,7 @@ async def test_humbles_corners_and_number_of_points_are_read(scene, monitor):
     assert scene.velocity.x == pytest.approx(0.4)  # one point is allowed
     scene.seen = ((0, 0.5), (1, 0.5))
     await scene.run(1.0)
-    assert scene.velocity == STILL
+    assert scene.velocity == ZERO_VELOCITY
 
 
 async def test_what_was_seen_stands_still_while_the_robot_moves_on(scene, monitor):
@@ -135,7 +135,7 @@ async def test_what_was_seen_stands_still_while_the_robot_moves_on(scene, monito
     scene.sees = False  # for less than the timeout
     scene.tell_pose(x=scene.pose[0] + 0.35)
     await scene.run(0.5)
-    assert scene.velocity == STILL
+    assert scene.velocity == ZERO_VELOCITY
 
 
 async def test_a_robot_slows_down_towards_a_wall_with_the_footprint_of_its_costmap(scene, monitor):
@@ -176,7 +176,7 @@ async def test_the_zone_of_a_speed_is_used_at_it(scene, monitor):
     monitor(**zone)
     scene.seen = ((0, 0.7),)
     await scene.run(1.0)
-    assert scene.velocity == STILL
+    assert scene.velocity == ZERO_VELOCITY
     scene.wanted = 0.2
     await scene.run(1.0)
     assert scene.velocity.x == pytest.approx(0.2)
@@ -186,7 +186,7 @@ async def test_a_zone_can_be_switched_off(scene, monitor):
     node = monitor(**STOP)
     scene.seen = ((0, 0.5),)
     await scene.run(1.0)
-    assert scene.velocity == STILL
+    assert scene.velocity == ZERO_VELOCITY
     node.set_parameters([type(node.get_parameter("stop.enabled"))("stop.enabled", value=False)])
     await scene.run(1.0)
     assert scene.velocity.x == pytest.approx(0.4)
@@ -210,7 +210,7 @@ async def test_clouds_count_between_two_heights(scene, monitor):
     assert scene.velocity.x == pytest.approx(0.4)
     height[0] = 0.2
     await scene.run(1.0)
-    assert scene.velocity == STILL
+    assert scene.velocity == ZERO_VELOCITY
 
 
 @pytest.mark.parametrize(("distance", "passes"), [(0.5, False), (2.0, True), (9.0, True)])
@@ -226,7 +226,7 @@ async def test_a_single_distance_is_an_arc(scene, monitor, distance, passes):
     scene.node.create_timer(0.1, tell)
     monitor(**STOP, **{"scan.type": "range", "scan.topic": "sonar"})
     await scene.run(1.0)
-    assert (scene.velocity != STILL) is passes
+    assert (scene.velocity != ZERO_VELOCITY) is passes
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,7 @@ import pytest
 
 from linkwright.graph.actions.goal import GoalStatus
 from linkwright.messages import get_message
-from linkwright.navigation.following.follower import STILL
+from linkwright.navigation.following.follower import ZERO_VELOCITY
 from linkwright.navigation.nodes.controller_server import ControllerServer
 from linkwright.nodes import NodeOptions
 from tests.navigation.following.driving import line
@@ -72,7 +72,7 @@ async def test_a_path_is_driven_to_its_end(start, parameters):
     assert await goal.ends(60.0) == GoalStatus.SUCCEEDED
     assert scene.distance_to(2.5, 2.0) < 0.26
     assert abs(scene.pose[2] - pi / 2) < 0.26
-    assert scene.velocity == STILL
+    assert scene.velocity == ZERO_VELOCITY
     assert goal.feedback[0].distance_to_goal == pytest.approx(2.5, abs=0.15)
     assert max(each.speed for each in goal.feedback) > 0.15
 
@@ -84,7 +84,7 @@ async def test_canceling_stops_the_robot(start):
     assert scene.velocity.x > 0.0
     goal.handle.cancel_goal_async()
     assert await goal.ends(2.0) == GoalStatus.CANCELED
-    assert scene.velocity == STILL
+    assert scene.velocity == ZERO_VELOCITY
 
 
 async def test_another_path_takes_over_while_the_robot_drives(start, log):
@@ -93,7 +93,7 @@ async def test_another_path_takes_over_while_the_robot_drives(start, log):
     await scene.run(2.0)
     second = Asked(scene, "FollowPath", "follow_path")
     await second.send(path=path_message(line((1.5, 1.0), (3.0, 1.0))))
-    assert STILL not in scene.speeds[5:]
+    assert ZERO_VELOCITY not in scene.speeds[5:]
     assert await goal.ends(1.0) == GoalStatus.ABORTED
     assert await second.ends(30.0) == GoalStatus.SUCCEEDED
     assert scene.distance_to(3.0, 1.0) < 0.26
@@ -106,7 +106,7 @@ async def test_an_obstacle_on_the_path_stops_the_robot(start, log):
     await goal.send(path=path_message(line((1.0, 1.0), (4.5, 1.0))))
     scene.seen = tuple((degree % 360, 0.8) for degree in range(-20, 21))
     assert await goal.ends(30.0) == GoalStatus.ABORTED
-    assert scene.velocity == STILL
+    assert scene.velocity == ZERO_VELOCITY
     assert any("there is an obstacle ahead" in record.text for record in log)
 
 
@@ -125,13 +125,13 @@ async def test_lost_transforms_stop_the_robot(start, log):
     assert scene.velocity.x > 0.0
     scene.told = False
     await scene.run(0.5)
-    assert scene.velocity == STILL, "it waits"
+    assert scene.velocity == ZERO_VELOCITY, "it waits"
     scene.told = True
     await scene.run(1.0)
     assert scene.velocity.x > 0.0, "it goes on"
     scene.told = False
     assert await goal.ends(5.0) == GoalStatus.ABORTED
-    assert scene.velocity == STILL
+    assert scene.velocity == ZERO_VELOCITY
     assert any("s old; the goal is aborted" in record.text for record in log)
 
 
@@ -142,7 +142,7 @@ async def test_a_silent_laser_stops_the_robot(start, log):
     assert scene.velocity.x > 0.0
     scene.sees = False
     await scene.run(1.5)
-    assert scene.velocity == STILL
+    assert scene.velocity == ZERO_VELOCITY
     assert await goal.ends(10.0) == GoalStatus.ABORTED
     assert any("the costmap is not current" in record.text for record in log)
 
@@ -153,7 +153,7 @@ async def test_a_server_that_is_deactivated_stops_the_robot(start):
     await scene.run(1.0)
     server.node.trigger_deactivate()
     await scene.run(0.1)
-    assert scene.velocity == STILL
+    assert scene.velocity == ZERO_VELOCITY
     assert await goal.ends(1.0) == GoalStatus.ABORTED
     await goal.send(path=path_message(PATH))
     assert not goal.handle.accepted

@@ -63,7 +63,7 @@ def start(graph, scene):
 
     yield start
     for node in made:
-        node.leave()
+        node.shut_down()
         node.destroy_node()
 
 
@@ -96,7 +96,7 @@ async def test_transforms_are_heard_where_its_server_hears_them(graph, scene):
     node = make_costmap(scene.node, graph, options, "global_costmap")
     heard = {subscription.topic_name for subscription in node.subscriptions}
     assert {"/tf", "/tf_static"} <= heard
-    node.leave()
+    node.shut_down()
     node.destroy_node()
 
 

@@ -142,6 +142,6 @@ async def test_who_ends_a_bond_is_not_told_that_it_broke(graph: Graph, clock: Ju
     await clock.advance(0.2)
     pair.manager.end()
     await graph.settle()
-    assert server.broken
+    assert server.is_broken
     assert pair.events == ["formed"]
     server.end()

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from linkwright.messages import get_message
 from linkwright.navigation.nodes.velocity_smoother import VelocitySmoother
-from linkwright.navigation.nodes.velocity_smoothing import Limits, smooth_velocities
+from linkwright.navigation.nodes.velocity_smoothing import AxisLimits, smooth_velocities
 from linkwright.nodes import NodeOptions
 from tests.remote_publishers import RemotePublisher, RemoteTransport
 
@@ -16,19 +16,19 @@ TWIST, STAMPED = get_message("geometry_msgs/msg/Twist"), get_message("geometry_m
 ODOMETRY = get_message("nav_msgs/msg/Odometry")
 
 velocities = st.floats(-3.0, 3.0)
-LIMITS = [Limits(-0.5, 0.5, 2.5, -2.0), Limits(-1.0, 1.0, 0.0, 0.0), Limits(-2.5, 2.5, 3.2, -3.0)]
+LIMITS = [AxisLimits(-0.5, 0.5, 2.5, -2.0), AxisLimits(-1.0, 1.0, 0.0, 0.0), AxisLimits(-2.5, 2.5, 3.2, -3.0)]
 
 
 @given(wanted=st.tuples(*[velocities] * 3), now=st.tuples(*[st.floats(-0.5, 0.5)] * 3), scaled=st.booleans())
 def test_no_axis_leaves_its_limits(wanted, now, scaled):
     after = smooth_velocities(LIMITS, now, wanted, 0.05, keep_direction=scaled)
     for limits, before, velocity, goal in zip(LIMITS, now, after, wanted, strict=True):
-        assert abs(velocity - before) <= limits.change(before, limits.clamped(goal), 0.05) + 1e-12
+        assert abs(velocity - before) <= limits.max_change(before, limits.clamped(goal), 0.05) + 1e-12
         assert min(before, limits.min_velocity) - 1e-12 <= velocity <= max(before, limits.max_velocity) + 1e-12
 
 
 def test_the_direction_stays_where_it_is_asked_for():
-    limits = [Limits(-1, 1, 1.0, -1.0), Limits(-1, 1, 4.0, -4.0)]
+    limits = [AxisLimits(-1, 1, 1.0, -1.0), AxisLimits(-1, 1, 4.0, -4.0)]
     assert smooth_velocities(limits, (0, 0), (1.0, 1.0), 0.1, keep_direction=True) == pytest.approx([0.1, 0.1])
     assert smooth_velocities(limits, (0, 0), (1.0, 1.0), 0.1, keep_direction=False) == pytest.approx([0.1, 0.4])
 

@@ -14,9 +14,9 @@ from linkwright.navigation.costmaps.inflation_layer import Inflation
 from linkwright.navigation.grids.distances import distance_field
 from linkwright.navigation.grids.grid import Grid
 from linkwright.navigation.grids.library import load_scipy
-from linkwright.navigation.planning.planner import PlanError, Problem, Settings, plan, run
-from linkwright.navigation.planning.potential import NEUTRAL, crossing_prices, potential
-from linkwright.navigation.planning.smoothing import Smoothing, smoothed
+from linkwright.navigation.planning.planner import PlanError, Problem, Settings, plan, run_to_end
+from linkwright.navigation.planning.potential import NEUTRAL, compute_potential, crossing_prices
+from linkwright.navigation.planning.smoothing import Smoothing, smooth_path
 
 RESOLUTION = 0.1
 
@@ -38,7 +38,7 @@ def inflated(obstacles) -> Costmap:
 
 
 def planned(scene: Costmap, start, goal, **more) -> np.ndarray:
-    return run(plan(scene, (*start, 0.0)[:3], (*goal, 0.0)[:3], Settings(**more)))
+    return run_to_end(plan(scene, (*start, 0.0)[:3], (*goal, 0.0)[:3], Settings(**more)))
 
 
 def length(path: np.ndarray) -> float:
@@ -95,7 +95,7 @@ def rooms(seed: int, size: int = 60) -> np.ndarray:
 
 
 def test_in_the_open_it_is_the_distance():
-    least = run(potential(np.full((81, 81), NEUTRAL), (40, 40)))
+    least = run_to_end(compute_potential(np.full((81, 81), NEUTRAL), (40, 40)))
     rows, columns = np.ogrid[:81, :81]
     truth = NEUTRAL * np.hypot(rows - 40, columns - 40)
     far = truth > 20 * NEUTRAL
@@ -106,7 +106,7 @@ def test_in_the_open_it_is_the_distance():
 @pytest.mark.parametrize("seed", range(12))
 def test_it_is_what_the_cheapest_ways_along_cells_cost(seed):
     price = crossing_prices(inflated(rooms(seed)).grid.cells)
-    least, truth = run(potential(price, (2, 2))), dijkstra(price, (2, 2))
+    least, truth = run_to_end(compute_potential(price, (2, 2))), dijkstra(price, (2, 2))
     reached = np.isfinite(least)
     assert np.array_equal(np.isfinite(truth), reached)
     far = reached & (truth > 10 * NEUTRAL)
@@ -119,7 +119,7 @@ def test_it_is_what_the_cheapest_ways_along_cells_cost(seed):
 @given(obstacles=st.integers(0, 10_000).map(lambda seed: np.random.default_rng(seed).random((25, 25)) < 0.35))
 def test_it_reaches_what_is_connected_and_no_more(obstacles):
     obstacles[12, 12] = False
-    least = run(potential(np.where(obstacles, np.inf, NEUTRAL), (12, 12)))
+    least = run_to_end(compute_potential(np.where(obstacles, np.inf, NEUTRAL), (12, 12)))
     groups, _ = load_scipy("ndimage").label(~obstacles)
     assert np.array_equal(np.isfinite(least), groups == groups[12, 12])
 
@@ -127,9 +127,9 @@ def test_it_reaches_what_is_connected_and_no_more(obstacles):
 @pytest.mark.parametrize("seed", range(6))
 def test_looking_only_towards_the_goal_gives_the_same_cost(seed):
     price = crossing_prices(inflated(rooms(seed)).grid.cells)
-    whole = run(potential(price, (2, 2)))
+    whole = run_to_end(compute_potential(price, (2, 2)))
     for heuristic in (False, True):
-        part = run(potential(price, (2, 2), (57, 57), heuristic=heuristic))
+        part = run_to_end(compute_potential(price, (2, 2), (57, 57), heuristic=heuristic))
         assert part[57, 57] == pytest.approx(whole[57, 57], rel=1e-3)
         assert np.isfinite(part).sum() <= np.isfinite(whole).sum()
 
@@ -155,7 +155,7 @@ def test_plans_touch_nothing_and_are_about_as_cheap_as_possible(seed):
     try:
         path = planned(scene, (0.25, 0.25), (5.75, 5.75), tolerance=0.0)
     except PlanError:
-        assert not np.isfinite(run(potential(price, (2, 2)))[57, 57])
+        assert not np.isfinite(run_to_end(compute_potential(price, (2, 2)))[57, 57])
         return
     assert touched(scene, path) <= MAX_PASSABLE
     middles = (path[1:, :2] + path[:-1, :2]) / 2.0
@@ -285,14 +285,14 @@ def bend(points: np.ndarray) -> float:
 
 
 def test_a_corner_becomes_round_and_the_ends_stay():
-    found, complete = smoothed(corner(), Smoothing())
+    found, complete = smooth_path(corner(), Smoothing())
     assert complete
     assert bend(found) < 0.5 * bend(corner())
     assert found[[0, -1]] == pytest.approx(corner()[[0, -1]])
 
 
 def test_it_is_what_relaxation_comes_to():
-    found, _ = smoothed(corner(), Smoothing(do_refinement=False))
+    found, _ = smooth_path(corner(), Smoothing(do_refinement=False))
     relaxed, given = corner(), corner()
     for _ in range(500):
         middle = relaxed[:-2] + relaxed[2:]
@@ -303,7 +303,7 @@ def test_it_is_what_relaxation_comes_to():
 def test_it_keeps_clear_of_obstacles():
     scene = costmap(np.zeros((25, 25)))
     scene.grid.cells[1:10, 10:20] = LETHAL  # within the corner
-    found, complete = smoothed(corner(), Smoothing(), scene)
+    found, complete = smooth_path(corner(), Smoothing(), scene)
     assert not complete
     assert (scene.cost_at(found) == 0).all()
 
@@ -312,7 +312,7 @@ def test_where_the_robot_turns_back_it_stays():
     there = np.column_stack((np.arange(0.0, 1.0, 0.1), np.zeros(10)))
     back = np.column_stack((np.arange(0.8, 0.0, -0.1), np.linspace(0.02, 0.3, 8)))
     points = np.concatenate((there, back))
-    found, _ = smoothed(points, Smoothing())
+    found, _ = smooth_path(points, Smoothing())
     assert found[9] == pytest.approx(points[9])
-    loose, _ = smoothed(points, Smoothing(enforce_path_inversion=False))
+    loose, _ = smooth_path(points, Smoothing(enforce_path_inversion=False))
     assert loose[9] != pytest.approx(points[9])

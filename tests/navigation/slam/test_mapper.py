@@ -12,7 +12,7 @@ from linkwright.navigation.slam.occupancy import OccupancyMap
 from linkwright.navigation.slam.poses import compose, relative_pose
 from linkwright.navigation.slam.scan import PlanarScan
 from linkwright.navigation.slam.settings import MapperSettings
-from linkwright.navigation.slam.steps import finish
+from linkwright.navigation.slam.steps import run_to_end
 from tests.navigation.slam.scenes import along, box, drifting, house, scan_at
 
 HALF_A_SECOND = 500_000_000
@@ -29,7 +29,7 @@ def mapped(walls, path, odometry, settings=None, farthest=12.0, count=180):
         stamp_ns = number * HALF_A_SECOND
         if mapper.should_process(text, stamp_ns):
             scan = scan_at(walls, pose, stamp_ns, rng, count, farthest)
-            outcomes.append(finish(mapper.process(scan, text)))
+            outcomes.append(run_to_end(mapper.process(scan, text)))
             taken.append(pose)
     return mapper, outcomes, np.array(taken)
 
@@ -46,7 +46,7 @@ def test_a_flat_is_mapped_whatever_odometry_says(yaw_per_metre):
     errors = relative_pose(taken, mapper.graph.poses)
     assert furthest(errors) < 0.02
     assert np.abs(errors[:, 2]).max() < 0.004
-    assert all(outcome.matched for outcome in outcomes[1:])
+    assert all(outcome.is_matched for outcome in outcomes[1:])
     assert outcomes[-1].pose == pytest.approx(mapper.graph.poses[-1])
 
 
@@ -63,13 +63,13 @@ def test_a_loop_is_closed_where_odometry_slipped_in_a_corridor_without_marks():
     mapper, outcomes, taken = mapped(
         walls, path, odometry, MapperSettings(loop_match_minimum_chain_size=5), farthest=4.0
     )
-    assert sum(outcome.loops for outcome in outcomes) >= 1
+    assert sum(outcome.loop_count for outcome in outcomes) >= 1
     count = len(taken)
     first = int(np.argmin(np.hypot(*(taken[: count // 2] - taken[-1])[:, :2].T)))
     true = relative_pose(taken[first], taken[-1])
     result = relative_pose(mapper.graph.poses[first], mapper.graph.poses[-1])
     assert result == pytest.approx(true, abs=0.06)
-    assert not any(outcome.loops for outcome in without)
+    assert not any(outcome.loop_count for outcome in without)
     assert furthest((without[-1].pose - taken[-1])[None]) > 0.8
 
 
@@ -77,7 +77,7 @@ def test_scans_are_taken_after_a_way_or_a_turn_and_not_too_often():
     mapper = Mapper(MapperSettings(), OccupancyMap(0.05))
     here = np.zeros(3)
     assert mapper.should_process(here, 0)
-    finish(mapper.process(scan_at(house(), np.array([-4.0, -3.0, 0.0])), here))
+    run_to_end(mapper.process(scan_at(house(), np.array([-4.0, -3.0, 0.0])), here))
     second = 1_000_000_000
     assert not mapper.should_process(here, 10 * second)
     assert not mapper.should_process(np.array([0.3, 0.0, 0.0]), second)
@@ -91,11 +91,11 @@ def test_in_an_empty_world_odometry_is_believed_and_nothing_is_drawn():
     mapper = Mapper(MapperSettings(), OccupancyMap(0.05))
     poses = np.array([[0.5 * each, 0.1 * each, 0.2 * each] for each in range(30)])
     for pose in poses:
-        outcome = finish(mapper.process(empty, pose))
-        assert not outcome.matched
+        outcome = run_to_end(mapper.process(empty, pose))
+        assert not outcome.is_matched
     assert relative_pose(poses, mapper.graph.poses) == pytest.approx(np.zeros((30, 3)), abs=1e-9)
     assert mapper.occupancy.grid() is None
-    assert outcome.links == outcome.loops == 0
+    assert outcome.link_count == outcome.loop_count == 0
 
 
 def test_without_scan_matching_the_map_is_where_odometry_is():
@@ -114,8 +114,8 @@ def test_a_robot_finds_itself_in_a_map_that_stays():
     rng = np.random.default_rng(4)
     for number, (pose, text) in enumerate(zip(path, odometry, strict=True)):
         if mapper.should_process(text, number * HALF_A_SECOND):
-            outcome = finish(mapper.localize(scan_at(walls, pose, number * HALF_A_SECOND, rng, 180), text))
-            assert outcome.matched
+            outcome = run_to_end(mapper.localize(scan_at(walls, pose, number * HALF_A_SECOND, rng, 180), text))
+            assert outcome.is_matched
             assert relative_pose(pose, outcome.pose) == pytest.approx([0, 0, 0], abs=0.03)
     assert len(mapper.scans) == count
 
@@ -131,6 +131,6 @@ def test_another_session_goes_on_with_the_map():
     taken = []
     for number, (pose, text) in enumerate(zip(path, odometry, strict=True)):
         if mapper.should_process(text, number * HALF_A_SECOND):
-            finish(mapper.process(scan_at(walls, pose, number * HALF_A_SECOND, rng, 180), text))
+            run_to_end(mapper.process(scan_at(walls, pose, number * HALF_A_SECOND, rng, 180), text))
             taken.append(pose)
     assert furthest(relative_pose(np.array(taken), mapper.graph.poses[count:])) < 0.03

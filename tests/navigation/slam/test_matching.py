@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 
 from linkwright.navigation.slam.contradiction import contradiction_share
-from linkwright.navigation.slam.matching import match
+from linkwright.navigation.slam.matching import match_scan
 from linkwright.navigation.slam.poses import compose, relative_pose
-from linkwright.navigation.slam.reference import Likelihood, Reference
+from linkwright.navigation.slam.reference import LikelihoodField, Reference
 from linkwright.navigation.slam.scan import PlanarScan
 from linkwright.navigation.slam.search import Search, best_pose
-from linkwright.navigation.slam.steps import finish
+from linkwright.navigation.slam.steps import run_to_end
 from tests.navigation.slam.scenes import box, house, scan_at
 
 WALLS = house()
@@ -36,7 +36,7 @@ def reference():
 def test_a_scan_is_found_to_millimetres(reference, away):
     true = np.array([-1.8, -2.9, 0.4])
     scan = scan_at(WALLS, true, rng=np.random.default_rng(5))
-    found = finish(match(reference, scan, true + away, Search()))
+    found = run_to_end(match_scan(reference, scan, true + away, Search()))
     error = relative_pose(true, found.pose)
     assert np.hypot(error[0], error[1]) < 0.005
     assert abs(error[2]) < 0.002
@@ -50,7 +50,7 @@ def test_a_scan_is_found_to_millimetres(reference, away):
 def test_the_search_for_a_loop_finds_a_robot_that_is_metres_off(reference):
     true = np.array([-1.8, -2.9, 0.4])
     scan = scan_at(WALLS, true, rng=np.random.default_rng(6))
-    found = finish(match(reference, scan, true + np.array([1.9, 1.2, -0.3]), EVERYWHERE))
+    found = run_to_end(match_scan(reference, scan, true + np.array([1.9, 1.2, -0.3]), EVERYWHERE))
     assert relative_pose(true, found.pose) == pytest.approx([0, 0, 0], abs=0.006)
 
 
@@ -58,8 +58,8 @@ def test_branch_and_bound_finds_what_trying_everything_finds(reference):
     scan = scan_at(WALLS, np.array([-2.0, -3.1, 0.2]), count=60)
     search = Search(dimension=0.6, resolution=0.05, smear_deviation=0.1, angle_offset=0.2, angle_resolution=0.02)
     guess = np.array([-1.9, -3.0, 0.1])
-    likelihood = Likelihood(reference.points, search.cell, search.smear_deviation)
-    pose, response = finish(best_pose(likelihood, scan.points, guess, search))
+    likelihood = LikelihoodField(reference.points, search.cell, search.smear_deviation)
+    pose, response = run_to_end(best_pose(likelihood, scan.points, guess, search))
     grid, _ = likelihood.level(0)
     step = min(search.angle_resolution, 1.5 * 0.05 / np.quantile(np.hypot(*scan.points.T), 0.8))
     count = int(np.ceil(search.angle_offset / step - 1e-9))
@@ -83,7 +83,7 @@ def test_along_a_corridor_a_scan_tells_nothing_and_odometry_stays():
     poses = np.array([[0.2 * each, 0.0, 0.0] for each in range(5)])
     reference = Reference([scan_at(walls, pose, rng=rng, farthest=6) for pose in poses], poses)
     true, guess = np.array([1.3, 0.1, 0.05]), np.array([1.1, 0.0, 0.0])
-    found = finish(match(reference, scan_at(walls, true, rng=rng, farthest=6), guess, Search()))
+    found = run_to_end(match_scan(reference, scan_at(walls, true, rng=rng, farthest=6), guess, Search()))
     assert found.pose[0] == pytest.approx(guess[0], abs=0.01)
     assert found.pose[1:] == pytest.approx(true[1:], abs=0.005)
     assert found.information[0, 0] < 1e-2 * found.information[1, 1]
@@ -91,9 +91,9 @@ def test_along_a_corridor_a_scan_tells_nothing_and_odometry_stays():
 
 def test_with_nothing_to_see_nothing_is_matched(reference):
     nothing = PlanarScan(np.zeros((3, 2)), np.zeros((0, 2)), np.zeros(2), 0)
-    assert finish(match(reference, nothing, np.zeros(3), Search())) is None
+    assert run_to_end(match_scan(reference, nothing, np.zeros(3), Search())) is None
     empty = Reference([nothing], np.zeros((1, 3)))
-    assert finish(match(empty, scan_at(WALLS, np.array([-4.0, -3.0, 0.0])), np.zeros(3), Search())) is None
+    assert run_to_end(match_scan(empty, scan_at(WALLS, np.array([-4.0, -3.0, 0.0])), np.zeros(3), Search())) is None
 
 
 def test_the_other_side_of_a_thin_wall_does_not_pull():
@@ -102,7 +102,7 @@ def test_the_other_side_of_a_thin_wall_does_not_pull():
     seen = np.array([[-0.5, 2.0, 0.0], [0.5, 2.0, 0.0]])  # from above the wall
     reference = Reference([scan_at(walls, pose) for pose in seen], seen)
     scan = scan_at(walls, np.array([0.0, 0.0, 0.0]))  # from below it
-    found = finish(match(reference, scan, np.zeros(3), Search(dimension=0.2)))
+    found = run_to_end(match_scan(reference, scan, np.zeros(3), Search(dimension=0.2)))
     assert found.pose == pytest.approx([0, 0, 0], abs=0.01)
 
 
@@ -112,8 +112,8 @@ def test_a_turned_scan_is_found_where_larger_turns_are_tried(reference):
     far = PlanarScan(
         compose(np.array([100.0, 0, 0]), np.zeros(3))[None, :2].repeat(20, 0), np.zeros((0, 2)), np.zeros(2), 0
     )
-    assert finish(match(reference, far, true, search, expand=True)).response == 0
-    assert finish(match(reference, scan_at(WALLS, true), true, search, expand=True)).response > 0.5
+    assert run_to_end(match_scan(reference, far, true, search, expand=True)).response == 0
+    assert run_to_end(match_scan(reference, scan_at(WALLS, true), true, search, expand=True)).response > 0.5
 
 
 def test_scans_of_one_room_do_not_contradict_each_other_and_those_of_two_do():

@@ -61,7 +61,7 @@ def test_a_scan_that_is_drawn_anew_leaves_no_trace_of_where_it_was():
     for number in range(3):
         moved.erase(number)
     assert moved.grid() is None
-    assert moved.drawn_at(0) is None
+    assert moved.drawn_pose(0) is None
 
 
 def test_the_map_of_a_flat_is_that_flat():

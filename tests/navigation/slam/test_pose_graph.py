@@ -9,8 +9,8 @@ import pytest
 
 from linkwright.navigation.grids.library import load_scipy
 from linkwright.navigation.slam.pose_graph import PoseGraph
-from linkwright.navigation.slam.poses import compose, relative_pose, wrapped
-from linkwright.navigation.slam.steps import finish
+from linkwright.navigation.slam.poses import compose, relative_pose, wrap_angles
+from linkwright.navigation.slam.steps import run_to_end
 
 
 def square(noise=0.0, seed=0, side=10):
@@ -32,7 +32,7 @@ def square(noise=0.0, seed=0, side=10):
 def weighted_residuals(graph, poses):
     """The deviation of each edge, in standard deviations."""
     left = relative_pose(np.array(graph.measured), relative_pose(poses[graph.first], poses[graph.second]))
-    left[:, 2] = wrapped(left[:, 2])
+    left[:, 2] = wrap_angles(left[:, 2])
     return left * np.sqrt([np.diag(each) for each in graph.information])
 
 
@@ -43,7 +43,7 @@ def errors(graph):
 def test_a_chain_without_a_loop_stays_as_it_is():
     _, graph = square(noise=0.02)
     before = graph.poses.copy()
-    finish(graph.solve())
+    run_to_end(graph.solve())
     assert graph.poses == pytest.approx(before, abs=1e-6)
     assert errors(graph) == pytest.approx(np.zeros(len(before) - 1), abs=1e-6)
 
@@ -56,7 +56,7 @@ def test_along_a_line_a_loop_is_shared_out_by_the_information():
         graph.add_node(np.array([number + 1.0, 0, 0]))
         graph.add_edge(number, number + 1, np.array([1.0, 0, 0]), information * np.eye(3))
     graph.add_edge(0, 3, np.array([3.7, 0, 0]), 1.0 * np.eye(3))
-    finish(graph.solve())
+    run_to_end(graph.solve())
     variances = np.array([1, 1 / 2, 1 / 4, 1])
     shares = 0.7 * variances / variances.sum()
     assert np.diff(graph.poses[:, 0]) == pytest.approx(1 + shares[:3], abs=1e-6)
@@ -68,7 +68,7 @@ def test_a_closed_loop_is_what_a_batch_of_least_squares_gives():
     last = len(graph.poses) - 1
     graph.add_edge(0, last, np.zeros(3), np.diag([1e4, 1e4, 1e4]))
     start = graph.poses.copy()
-    finish(graph.solve())
+    run_to_end(graph.solve())
 
     def residuals(flat):
         poses = np.concatenate((start[:1], flat.reshape(-1, 3)))
@@ -85,7 +85,7 @@ def test_a_loop_brings_a_drifting_square_back():
     last = len(true) - 1
     before = np.hypot(*(graph.poses - true)[:, :2].T).max()
     graph.add_edge(0, last, np.zeros(3), np.eye(3) * 1e6)
-    finish(graph.solve())
+    run_to_end(graph.solve())
     after = np.hypot(*(graph.poses - true)[:, :2].T).max()
     assert graph.poses[last] == pytest.approx(true[0], abs=1e-3)
     assert after < before / 2
@@ -96,8 +96,8 @@ def test_a_wrong_edge_among_right_ones_is_overruled():
     last = len(true) - 1
     for first, second in ((0, last), (1, last - 1), (3, last), (0, 41), (2, last)):
         measured = relative_pose(true[first], true[second])
-        graph.add_edge(first, second, measured, np.eye(3) * 1e4, doubtful=True)
-    graph.add_edge(5, 25, np.array([1.0, 1.0, 0.0]), np.eye(3) * 1e4, doubtful=True)
-    finish(graph.solve())
+        graph.add_edge(first, second, measured, np.eye(3) * 1e4, is_doubtful=True)
+    graph.add_edge(5, 25, np.array([1.0, 1.0, 0.0]), np.eye(3) * 1e4, is_doubtful=True)
+    run_to_end(graph.solve())
     assert np.hypot(*(graph.poses - true)[:, :2].T).max() < 0.2
     assert errors(graph)[-1] > 1e4

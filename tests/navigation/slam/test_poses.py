@@ -7,7 +7,7 @@ from math import pi
 import numpy as np
 import pytest
 
-from linkwright.navigation.slam.poses import compose, inverse, relative_pose, transform_points, wrapped
+from linkwright.navigation.slam.poses import compose, inverse, relative_pose, transform_points, wrap_angles
 
 
 def test_a_pose_and_its_inverse_are_nothing():
@@ -23,4 +23,4 @@ def test_points_go_where_poses_do():
 
 
 def test_angles_stay_between_minus_pi_and_pi():
-    assert wrapped(np.array([3 * pi / 2, -3 * pi / 2, 0.1])) == pytest.approx([-pi / 2, pi / 2, 0.1])
+    assert wrap_angles(np.array([3 * pi / 2, -3 * pi / 2, 0.1])) == pytest.approx([-pi / 2, pi / 2, 0.1])

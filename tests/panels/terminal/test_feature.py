@@ -44,6 +44,12 @@ class Reader:
         self.acknowledges = acknowledges
 
     async def until(self, part: str) -> None:
+        try:
+            await asyncio.wait_for(self._until(part), SECONDS)
+        except asyncio.TimeoutError:
+            pytest.fail(f"the terminal does not show {part!r}, but {self.text!r}")
+
+    async def _until(self, part: str) -> None:
         while part not in self.text:
             await self.next()
 
@@ -316,12 +322,13 @@ async def test_a_character_in_two_blocks_arrives_whole(tmp_path: Path) -> None:
         await reader.until("机<")
 
 
-async def test_the_terminal_has_the_commands_of_linkwright_shell(tmp_path: Path) -> None:
-    environment = {**os.environ, "SHELL": "/bin/sh"}
+async def test_the_terminal_has_the_commands_of_linkwright_shell(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("SHELL", "/bin/sh")
     async with world() as scene, page(scene.viewer) as client:
-        os.environ.update(environment)
         scene.viewer.add_feature(TerminalFeature).enable(tmp_path)
         reader = await open_terminal(client)
         await reader.type("command -v ros2; command -v linkwright\r")
-        await reader.until("bin/ros2\r\n")
-        await reader.until("bin/linkwright\r\n")
+        await reader.until("/ros2\r\n")
+        await reader.until("/linkwright\r\n")

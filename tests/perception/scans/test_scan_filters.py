@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.geometry.single import quaternion_from_rpy
-from linkwright.perception.scans.neighbours import ScanShadowsFilter, SpeckleFilter
-from linkwright.perception.scans.places import (
+from linkwright.perception.scans.neighbor_filters import ScanShadowsFilter, SpeckleFilter
+from linkwright.perception.scans.position_filters import (
     AngularBoundsFilter,
     AngularBoundsInPlaceFilter,
     BoxFilter,
@@ -19,7 +19,7 @@ from linkwright.perception.scans.places import (
     SectorFilter,
 )
 from linkwright.perception.scans.scan import Scan
-from linkwright.perception.scans.values import (
+from linkwright.perception.scans.value_filters import (
     ArrayFilter,
     IntensityFilter,
     InterpolationFilter,

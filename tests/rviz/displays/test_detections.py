@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from linkwright.graph import SetParametersResult
-from linkwright.images.colour_words import PAINTS
+from linkwright.images.color_words import RGB_BY_COLOR_WORD
 from linkwright.messages import Time, get_message
 from linkwright.rviz import RvizConfig
 from linkwright.rviz.displays.class_colors import class_color, read_class_colors
@@ -125,9 +125,9 @@ def test_a_class_has_the_same_colour_everywhere():
 
 
 def test_a_class_named_for_a_colour_has_it_unless_the_file_says_another():
-    assert class_color("red", {}) == class_color("Red_cube", {}) == PAINTS["red"]
-    assert class_color("ball-gray", {}) == PAINTS["grey"]
-    assert class_color("infrared lamp", {}) != PAINTS["red"]
+    assert class_color("red", {}) == class_color("Red_cube", {}) == RGB_BY_COLOR_WORD["red"]
+    assert class_color("ball-gray", {}) == RGB_BY_COLOR_WORD["grey"]
+    assert class_color("infrared lamp", {}) != RGB_BY_COLOR_WORD["red"]
     assert class_color("red", {"red": (1, 2, 3)}) == (1, 2, 3)
 
 

@@ -72,14 +72,14 @@ def commands() -> CommandSet:
 
 @pytest.mark.parametrize(("text", "intent", "values"), UNDERSTOOD)
 def test_what_a_text_means(commands: CommandSet, text: str, intent: str, values: dict[str, object]) -> None:
-    found = commands.understand(text)
+    found = commands.match_command(text)
     assert found is not None
     assert (found.command.intent, found.values) == (intent, pytest.approx(values) if "angle" in values else values)
 
 
 @pytest.mark.parametrize("text", NOTHING)
 def test_what_means_nothing(commands: CommandSet, text: str) -> None:
-    assert commands.understand(text) is None
+    assert commands.match_command(text) is None
 
 
 @pytest.mark.parametrize("language", ["en", "zh"])
@@ -87,7 +87,7 @@ def test_all_that_engines_are_told_is_understood_and_no_more_than_they_take(
     commands: CommandSet, language: str
 ) -> None:
     phrases = commands.phrases(language)
-    assert [text for text in phrases if commands.understand(text) is None and commands.answer(text) is None] == []
+    assert [text for text in phrases if commands.match_command(text) is None and commands.answer(text) is None] == []
     assert len(phrases) == len(set(phrases)) < 500
     assert {"en": "turn left ninety degrees", "zh": "左转九十度"}[language] in phrases
 
@@ -131,7 +131,7 @@ def test_the_phrase_that_says_more_of_itself_is_meant() -> None:
     text = "places: {hall: {x: 1, y: 2, names: [hall, big hall]}}\ncommands:\n"
     text += "  a: {phrases: 'go {place}', go_to: '{place}'}\n"
     found = read(text + "  b: {phrases: go big hall, stop: true}\n")
-    understood = found.understand("go big hall")
+    understood = found.match_command("go big hall")
     assert understood is not None
     assert understood.command.intent == "b"
 

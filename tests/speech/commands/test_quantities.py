@@ -6,7 +6,7 @@ from math import pi
 
 import pytest
 
-from linkwright.speech.commands.numbers import number
+from linkwright.speech.commands.numbers import parse_number
 from linkwright.speech.commands.quantities import GRAMMAR_VALUES, parse_quantity
 from linkwright.speech.commands.words import words_of
 
@@ -96,12 +96,12 @@ QUANTITIES = [
 
 @pytest.mark.parametrize(("text", "value"), NUMBERS.items())
 def test_numbers(text: str, value: float) -> None:
-    assert number(words_of(text)) == value
+    assert parse_number(words_of(text)) == value
 
 
 @pytest.mark.parametrize("text", NO_NUMBERS)
 def test_what_is_no_number(text: str) -> None:
-    assert number(words_of(text)) is None
+    assert parse_number(words_of(text)) is None
 
 
 @pytest.mark.parametrize(("slot", "text", "value"), QUANTITIES)

@@ -11,7 +11,7 @@ from linkwright.diagnostics import LinkwrightError
 from linkwright.graph import LogLevel
 from linkwright.nodes import NodeOptions
 from linkwright.speech.nodes.audio_capture import AudioCapture, RobotAudioCapture
-from linkwright.speech.sound.wav import wav_bytes
+from linkwright.speech.sound.wav import encode_wav
 from linkwright.testing.stepped import AsyncSteppedGraph
 from tests.speech.nodes import fake_sounddevice
 
@@ -26,7 +26,7 @@ async def test():
 
 @pytest.fixture
 def wav(tmp_path):
-    (tmp_path / "said.wav").write_bytes(wav_bytes(TONE))
+    (tmp_path / "said.wav").write_bytes(encode_wav(TONE))
     return str(tmp_path / "said.wav")
 
 

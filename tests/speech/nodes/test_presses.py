@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from linkwright.speech.nodes.presses import Presses
+from linkwright.speech.nodes.presses import ButtonPresses
 from tests.speech.nodes.fakes import BOOL, ENTRY, final, partial
 from tests.waiting import eventually
 
@@ -85,34 +85,34 @@ def missed(presses, times):
     answers = []
     for _ in range(times):
         presses.begin()
-        presses.note_unknown(final(""))
+        presses.record_unknown_speech(final(""))
         answers.append("enrol" in str(presses.end()))
     return answers
 
 
 def test_after_three_presses_without_a_command_enrolling_is_proposed():
-    assert missed(Presses(can_enrol=True), 7) == [False, False, True, False, False, True, False]
-    assert missed(Presses(), 6) == [False] * 6
+    assert missed(ButtonPresses(can_enrol=True), 7) == [False, False, True, False, False, True, False]
+    assert missed(ButtonPresses(), 6) == [False] * 6
 
 
 def test_a_command_between_them_begins_the_count_anew():
-    presses = Presses(can_enrol=True)
+    presses = ButtonPresses(can_enrol=True)
     missed(presses, 2)
     presses.begin()
-    presses.settle()
+    presses.record_command()
     presses.end()
     assert missed(presses, 3) == [False, False, True]
 
 
 def test_the_proposal_stands_until_the_next_press_or_command():
-    presses = Presses(can_enrol=True)
+    presses = ButtonPresses(can_enrol=True)
     missed(presses, 3)
     assert presses.proposes_enrolling
     presses.begin()
     assert not presses.proposes_enrolling
     presses.end()
     missed(presses, 3)
-    presses.settle()
+    presses.record_command()
     assert not presses.proposes_enrolling
 
 

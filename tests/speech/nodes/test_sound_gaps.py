@@ -19,7 +19,7 @@ def stamped(arrivals):
 
 def missing(stamps):
     gaps = SoundGaps()
-    return [gaps.missing(stamp, BLOCK) for stamp in stamps]
+    return [gaps.measure_gap(stamp, BLOCK) for stamp in stamps]
 
 
 def test_stamps_count_samples_while_blocks_come_early_and_late():
@@ -51,16 +51,16 @@ def test_a_stream_that_begins_anew_has_no_gap_before_it():
     stamps.restart()
     assert stamps.stamp(BLOCK, 15 * SECOND) == 15 * SECOND - LENGTH
     gaps = SoundGaps()
-    assert not any(gaps.missing(each, BLOCK) for each in first)
+    assert not any(gaps.measure_gap(each, BLOCK) for each in first)
     gaps.restart()
-    assert gaps.missing(15 * SECOND, BLOCK) == 0.0
+    assert gaps.measure_gap(15 * SECOND, BLOCK) == 0.0
 
 
 def test_what_the_source_itself_lost_is_told_however_much_it_is():
     stamps, gaps, found = SampleStamps(), SoundGaps(), []
     for each in range(100):
         lost = 0.4 if each >= 10 and each % 10 == 0 else 0.0
-        found.append(gaps.missing(stamps.stamp(BLOCK, round((10.0 + 0.1 * each) * SECOND), lost), BLOCK))
+        found.append(gaps.measure_gap(stamps.stamp(BLOCK, round((10.0 + 0.1 * each) * SECOND), lost), BLOCK))
     assert [number for number, each in enumerate(found) if each] == list(range(10, 100, 10))
     assert np.allclose([each for each in found if each], 0.4, atol=0.005)
 
@@ -69,7 +69,7 @@ def test_small_losses_are_told_together_and_hide_no_large_one():
     stamps, gaps = SampleStamps(), SoundGaps()
     losses = {10: 0.01, 11: 0.04, 12: 0.03, 13: 0.5, 20: 0.02}
     result = [stamps.stamp(BLOCK, round((10.0 + 0.1 * each) * SECOND), losses.get(each, 0.0)) for each in range(30)]
-    found = [gaps.missing(stamp, BLOCK) for stamp in result]
+    found = [gaps.measure_gap(stamp, BLOCK) for stamp in result]
     assert [number for number, each in enumerate(found) if each] == [12, 13]
     assert np.allclose([found[12], found[13]], [0.08, 0.5], atol=0.005)
 
@@ -77,7 +77,7 @@ def test_small_losses_are_told_together_and_hide_no_large_one():
 def test_of_who_stamps_blocks_as_they_come_small_jumps_are_no_gaps():
     gaps = SoundGaps()
     late = [0, 0, 0, 0, 0.03, 0, 0.04, 0, 0, 0, 0, 0.03, 0, 0.04, 0]
-    assert not any(gaps.missing(round((10.0 + 0.1 * each + by) * SECOND), BLOCK) for each, by in enumerate(late))
+    assert not any(gaps.measure_gap(round((10.0 + 0.1 * each + by) * SECOND), BLOCK) for each, by in enumerate(late))
 
 
 def test_stamps_do_not_run_ahead_of_the_clock_whatever_the_source_says_it_lost():
@@ -89,10 +89,10 @@ def test_stamps_do_not_run_ahead_of_the_clock_whatever_the_source_says_it_lost()
 
 def test_after_the_next_press_of_a_button_gaps_are_told_at_once():
     gaps = SoundGaps()
-    assert not any(gaps.missing(round((10.0 + 0.1 * each) * SECOND), BLOCK) for each in range(5))
+    assert not any(gaps.measure_gap(round((10.0 + 0.1 * each) * SECOND), BLOCK) for each in range(5))
     gaps.restart()
-    assert gaps.missing(20 * SECOND, BLOCK) == 0.0
-    assert gaps.missing(20 * SECOND + 3 * LENGTH, BLOCK) == 0.2
+    assert gaps.measure_gap(20 * SECOND, BLOCK) == 0.0
+    assert gaps.measure_gap(20 * SECOND + 3 * LENGTH, BLOCK) == 0.2
 
 
 def test_of_who_stamps_what_comes_when_it_comes_nothing_is_told():

@@ -121,4 +121,4 @@ def test_the_words_that_the_page_offers_are_commands(language):
     (offered,) = re.findall(r"suggestions: \[(.*?)\]", (STRINGS / language / "voice.ts").read_text(encoding="utf-8"))
     commands = read_command_file(DEFAULT_FILE)
     for phrase in re.findall(r'"(.*?)"', offered):
-        assert commands.understand(phrase) is not None, phrase
+        assert commands.match_command(phrase) is not None, phrase

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 
-def mask_of(counts, height, width):
+def color_mask(counts, height, width):
     """Decode COCO's run lengths: shape (height, width)."""
     values = np.arange(len(counts)) % 2 == 1
     return np.repeat(values, counts).reshape((height, width), order="F")

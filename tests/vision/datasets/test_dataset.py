@@ -16,9 +16,9 @@ from PIL import Image
 from linkwright.diagnostics import LinkwrightError
 from linkwright.vision.datasets.dataset import make_dataset
 from linkwright.vision.datasets.labels import box_of
-from linkwright.vision.datasets.making import Source, Studio, split_of
 from linkwright.vision.datasets.options import SPLITS, Options
-from tests.vision.datasets.masks import mask_of
+from linkwright.vision.datasets.rendering import Source, Studio, split_of
+from tests.vision.datasets.masks import color_mask
 from tests.vision.datasets.places import BALL, GROUND, WALL, world_text, yard
 
 OPTIONS = Options(width=160, height=120, seed=3, copies=2, distractors=4)
@@ -108,7 +108,7 @@ def test_all_forms_say_the_same(source, tmp_path):
                 assert [x - width / 2, y - height / 2, width, height] == pytest.approx(each["bbox"], abs=1e-3)
                 objects += 1
         for each in text["annotations"]:
-            mask = mask_of(tuple(each["segmentation"]["counts"]), *each["segmentation"]["size"])
+            mask = color_mask(tuple(each["segmentation"]["counts"]), *each["segmentation"]["size"])
             left, top, right, bottom = box_of(mask)
             assert each["bbox"] == [left, top, right - left, bottom - top]
             assert each["area"] == mask.sum()
@@ -226,7 +226,7 @@ def test_an_interrupted_dataset_is_complete(source, tmp_path):
             raise KeyboardInterrupt
 
     made = make(source, folder, 9, progress=stop)
-    assert made.interrupted
+    assert made.was_interrupted
     assert made.folder.count == 3
     assert json.loads((folder / "dataset.json").read_text())["images"] == 3
     assert len([name for name in files(folder) if name.startswith("images")]) == 3

@@ -9,13 +9,13 @@ from linkwright.sdf.optics import Optics
 from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.rendering.choice import make_renderer
 from linkwright.simulation.rendering.renderer import Channels, axes_of
-from linkwright.vision.datasets.arranging import Shot, arrange
+from linkwright.vision.datasets.arrangement import Shot, arrange
 from linkwright.vision.datasets.classes import default_rules, find_objects
-from linkwright.vision.datasets.labels import box_of, label_image, runs_of
+from linkwright.vision.datasets.labels import box_of, label_image, run_lengths_of
 from linkwright.vision.datasets.options import Options
 from linkwright.vision.datasets.stage import Stage
 from tests.simulation.worlds import loaded
-from tests.vision.datasets.masks import mask_of
+from tests.vision.datasets.masks import color_mask
 from tests.vision.datasets.places import SIGN, world_text, yard
 
 OPTIONS = Options(width=320, height=240)
@@ -48,10 +48,10 @@ def alone(shot, prop):
 def test_runs_are_the_mask():
     masks = np.random.default_rng(0).random((20, 7, 5)) < 0.5
     for mask in (*masks, np.zeros((7, 5), bool), np.ones((7, 5), bool)):
-        counts = runs_of(mask)
+        counts = run_lengths_of(mask)
         assert sum(counts) == mask.size
         assert all(count > 0 for count in counts[1:])
-        assert (mask_of(counts, 7, 5) == mask).all()
+        assert (color_mask(counts, 7, 5) == mask).all()
 
 
 def test_the_box_of_a_mask():
@@ -121,8 +121,8 @@ def test_visible_and_whole_fit_together(stage):
         labels, geoms = labelled(stage, shot)
         for label in labels:
             left, top, right, bottom = label.box
-            assert mask_of(label.counts, *geoms.shape).sum() == label.area
-            assert box_of(mask_of(label.counts, *geoms.shape)) == label.box
+            assert color_mask(label.run_lengths, *geoms.shape).sum() == label.area
+            assert box_of(color_mask(label.run_lengths, *geoms.shape)) == label.box
             assert label.full_box[0] <= left
             assert label.full_box[1] <= top
             assert label.full_box[2] >= right
@@ -134,7 +134,7 @@ def test_visible_and_whole_fit_together(stage):
                 and label.full_box[2] <= 320
                 and label.full_box[3] <= 240
             )
-            assert label.truncated != inside
+            assert label.is_truncated != inside
 
 
 def test_what_nothing_hides_is_visible(stage):
@@ -147,7 +147,7 @@ def test_what_nothing_hides_is_visible(stage):
                 if other is not prop:
                     stage.hide(other.geoms)
             labels, _ = labelled(stage, alone(shot, prop))
-            assert all(label.visibility > 0.97 or label.truncated for label in labels)
+            assert all(label.visibility > 0.97 or label.is_truncated for label in labels)
             break
 
 
@@ -179,7 +179,7 @@ def test_a_sign_counts_where_its_plate_is_seen(tmp_path, height, focal, ignored)
     finally:
         stage.close()
     assert label.visibility >= 0.3  # of the whole sign; without its plate it is a pole
-    assert label.ignored == ignored
+    assert label.is_ignored == ignored
 
 
 def test_shapes_without_a_label_are_far_from_balls_and_drums(stage):

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from linkwright.diagnostics import LinkwrightError
-from linkwright.images.colour_words import PAINTS
+from linkwright.images.color_words import RGB_BY_COLOR_WORD
 from linkwright.vision.detections import Detections
 from linkwright.vision.detector import Limits
-from linkwright.vision.detectors.drawing import colour_of, draw_detections
+from linkwright.vision.detectors.drawing import class_color, draw_detections
 from linkwright.vision.detectors.options import DetectorOptions
 from linkwright.vision.detectors.registry import make_detector
 
@@ -167,8 +167,8 @@ def test_what_was_found_is_drawn_and_the_image_is_left_as_it_is():
     boxes = np.array([[50, 60, 150, 160], [200, 5, 400, 90]], np.float32)
     found = Detections(boxes, np.array([0.9, 0.6], np.float32), np.array([0, 1], np.int32), ("ball", "box"))
     canvas = draw_detections(image, found)
-    assert tuple(canvas[160, 100]) == colour_of("ball")
-    assert tuple(canvas[90, 300]) == colour_of("box")
+    assert tuple(canvas[160, 100]) == class_color("ball")
+    assert tuple(canvas[90, 300]) == class_color("box")
     assert (image == FLOOR).all()
     assert (draw_detections(image, Detections.empty(("ball",))) == image).all()
     marker = Detections(
@@ -178,8 +178,8 @@ def test_what_was_found_is_drawn_and_the_image_is_left_as_it_is():
         found.names,
         np.array([[[50, 60], [150, 60], [150, 160], [50, 160]]], np.float32),
     )
-    assert tuple(draw_detections(image, marker)[160, 100]) == colour_of("ball")
-    assert colour_of("red") == colour_of("red cube") == PAINTS["red"]
+    assert tuple(draw_detections(image, marker)[160, 100]) == class_color("ball")
+    assert class_color("red") == class_color("red cube") == RGB_BY_COLOR_WORD["red"]
 
 
 WITHOUT = ("colours", "aruco", "apriltag", "qr", "line")

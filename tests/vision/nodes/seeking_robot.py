@@ -17,7 +17,7 @@ from linkwright.vision.nodes.object_seeker import ObjectSeeker
 from linkwright.vision.nodes.tracking_node import TrackingNode
 from linkwright.vision.places.camera import make_camera_model
 from tests.places import GAZEBO_PACKAGE
-from tests.vision.nodes.colour_detector import ColourDetector, detection
+from tests.vision.nodes.color_detector import ColourDetector, detection
 
 if TYPE_CHECKING:
     from typing_extensions import Self

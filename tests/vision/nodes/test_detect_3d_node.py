@@ -10,7 +10,7 @@ from linkwright.messages import TFMessage, Time, TransformBatch, get_message
 from linkwright.nodes import NodeOptions
 from linkwright.testing import SteppedGraph
 from linkwright.vision.nodes.detect_3d_node import Detect3DNode, YoloDetect3DNode
-from tests.vision.nodes.colour_detector import detection, yolo_detection
+from tests.vision.nodes.color_detector import detection, yolo_detection
 
 NOW = Time.from_nanoseconds(10**9)
 

@@ -38,9 +38,9 @@ def test_it_goes_to_the_red_ball_that_its_camera_sees(tmp_path):
         test.tell("/vision/go_to", "红色的球")
         assert test.advance_until_said("我到红色的球这里了")
         assert test.distance() - RADIUS == pytest.approx(0.5, abs=0.08)
-        described = test.call("/vision/describe", TRIGGER.Request())
-        assert described.message.startswith("I see a red ball 0.")
-        assert described.message.endswith(" m ahead.")
+        describe_sightings = test.call("/vision/describe", TRIGGER.Request())
+        assert describe_sightings.message.startswith("I see a red ball 0.")
+        assert describe_sightings.message.endswith(" m ahead.")
 
 
 @pytest.mark.parametrize("language", ["en", "zh"])

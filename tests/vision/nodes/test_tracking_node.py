@@ -9,7 +9,7 @@ from linkwright.messages import Time, get_message
 from linkwright.nodes import NodeOptions
 from linkwright.testing import SteppedGraph
 from linkwright.vision.nodes.tracking_node import TrackingNode, YoloTrackingNode
-from tests.vision.nodes.colour_detector import detection, yolo_detection
+from tests.vision.nodes.color_detector import detection, yolo_detection
 
 
 def image(test, number, *objects):

@@ -6,8 +6,8 @@ from math import atan2, cos, hypot, inf, pi, sin
 
 import pytest
 
+from linkwright.vision.places.object_requests import Answer
 from linkwright.vision.places.seeking import Phase, Seeker, SeekSettings, View
-from linkwright.vision.places.words import Answer
 
 PERIOD = 0.1
 
@@ -18,12 +18,12 @@ class Robot:
     def __init__(self, seeker, thing=None, radius=0.15):
         self.seeker, self.thing, self.radius = seeker, thing, radius
         self.x = self.y = self.heading = self.time = 0.0
-        self.seen_at, self.silence, self.free = -inf, 0.0, inf
+        self.seen_at, self.detection_silence, self.free_distance = -inf, 0.0, inf
         self.way = 0.0
         self.hidden = False
 
     def step(self):
-        view = View(self.time, self.heading, silence=self.silence, free=self.free)
+        view = View(self.time, self.heading, detection_silence=self.detection_silence, free_distance=self.free_distance)
         if self.thing is not None:
             away = hypot(self.thing[0] - self.x, self.thing[1] - self.y)
             bearing = atan2(self.thing[1] - self.y, self.thing[0] - self.x) - self.heading
@@ -32,7 +32,15 @@ class Robot:
                 self.seen_at = self.time
             if self.seen_at > -inf:
                 seen_ago = self.time - self.seen_at
-                view = View(self.time, self.heading, bearing, away - self.radius, seen_ago, self.silence, self.free)
+                view = View(
+                    self.time,
+                    self.heading,
+                    bearing,
+                    away - self.radius,
+                    seen_ago,
+                    self.detection_silence,
+                    self.free_distance,
+                )
         move = self.seeker.step(view)
         self.heading += move.angular * PERIOD
         self.x += move.linear * cos(self.heading) * PERIOD
@@ -95,8 +103,8 @@ def test_a_detector_that_says_nothing_stops_it():
     robot = Robot(seeker, (3.0, 0.0))
     seeker.begin()
     robot.advance(2)
-    robot.silence = 3.5
-    assert robot.advance(1) == [Answer.BLIND]
+    robot.detection_silence = 3.5
+    assert robot.advance(1) == [Answer.NO_DETECTIONS]
     way = robot.way
     robot.advance(2)
     assert robot.way == way
@@ -107,14 +115,14 @@ def test_it_waits_before_an_obstacle_and_gives_up():
     robot = Robot(seeker, (3.0, 0.0))
     seeker.begin()
     robot.advance(2)
-    robot.free = 0.3
+    robot.free_distance = 0.3
     way = robot.way
     assert robot.advance(3) == []
     assert robot.way == way
-    robot.free = inf
+    robot.free_distance = inf
     robot.advance(1)
     assert robot.way > way
-    robot.free = 0.3
+    robot.free_distance = 0.3
     assert robot.advance(7) == [Answer.BLOCKED]
 
 
@@ -123,7 +131,7 @@ def test_the_thing_itself_is_no_obstacle():
     robot = Robot(seeker, (2.0, 0.0))
     seeker.begin()
     for _ in range(300):
-        robot.free = 1.85 - robot.x
+        robot.free_distance = 1.85 - robot.x
         if robot.step().event is Answer.ARRIVED:
             break
     assert 1.85 - robot.x == pytest.approx(0.3, abs=0.05)

@@ -59,7 +59,7 @@ def test_who_is_away_for_a_moment_comes_back_and_after_long_is_another():
 
 
 def test_a_detection_of_low_score_keeps_a_track_and_begins_none():
-    tracker = Tracker(TrackerSettings(high=0.5, low=0.1, new_track_score=0.6))
+    tracker = Tracker(TrackerSettings(high_threshold=0.5, low_threshold=0.1, new_track_score=0.6))
     for step in range(5):
         tracker.update(found((100, 100, 40)), step * PERIOD)
     weak = [tracker.update(found((100, 100, 40, 0.2), (300, 300, 40, 0.2)), step * PERIOD) for step in range(5, 60)]

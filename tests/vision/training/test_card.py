@@ -8,7 +8,7 @@ import pytest
 
 from linkwright.vision.detections import Detections
 from linkwright.vision.evaluation import GroundTruth, evaluate
-from linkwright.vision.training.card import Examination, confusion, dataset_facts, make_card, origin
+from linkwright.vision.training.card import EvaluationReport, confusion_table, dataset_facts, describe_origin, make_card
 
 BOXES = np.array([[0, 0, 8, 8], [20, 20, 60, 60]], np.float32)
 
@@ -23,7 +23,7 @@ def figures(classes):
 
 
 def test_a_card_says_what_was_done_how_well_it_is_and_where_it_fails():
-    text = make_card("eye", {"command": "`a | b`"}, [Examination("Rooms", figures([None, 0]))])
+    text = make_card("eye", {"command": "`a | b`"}, [EvaluationReport("Rooms", figures([None, 0]))])
     assert text.startswith("# eye\n")
     assert "| command | `a \\| b` |" in text
     assert "| ball | 1 | 0.000 | 0.000 | 0.000 | 0.000 |" in text
@@ -32,13 +32,13 @@ def test_a_card_says_what_was_done_how_well_it_is_and_where_it_fails():
 
 
 def test_a_card_of_a_network_without_faults_says_so():
-    text = make_card("eye", {}, [Examination("Rooms", figures([0, 1]))])
+    text = make_card("eye", {}, [EvaluationReport("Rooms", figures([0, 1]))])
     assert "| all | 2 | 1.000 | 1.000 | | |" in text
     assert text.endswith("## Where it fails\n\nNothing stands out in these images.\n")
 
 
 def test_confusion_has_a_row_for_what_is_there_and_a_column_for_what_was_said():
-    assert confusion(figures([None, 0])) == [
+    assert confusion_table(figures([None, 0])) == [
         "| label \\ detection | ball | box | nothing |",
         "| --- | ---: | ---: | ---: |",
         "| ball |  |  | 1 |",
@@ -62,16 +62,16 @@ def write_card(folder, *worlds, more=()):
 
 
 def test_a_card_says_which_worlds_judge_and_which_of_them_taught_too(tmp_path):
-    lesson = write_card(tmp_path / "lesson", "playground", "house")
-    assert origin(write_card(tmp_path / "unseen", "maze", "line_track"), lesson) == (
+    training_folder = write_card(tmp_path / "lesson", "playground", "house")
+    assert describe_origin(write_card(tmp_path / "unseen", "maze", "line_track"), training_folder) == (
         "Worlds: line_track, maze. Options: seed 3, most 10. It was trained on none of them."
     )
-    seen = origin(write_card(tmp_path / "seen", "maze", "house"), lesson)
+    seen = describe_origin(write_card(tmp_path / "seen", "maze", "house"), training_folder)
     assert seen.endswith(" It was trained on other images of house.")
-    text = make_card("eye", {}, [Examination("Rooms", figures([0, 1]), seen)])
+    text = make_card("eye", {}, [EvaluationReport("Rooms", figures([0, 1]), seen)])
     assert f"## Rooms\n\n{seen}\n\n1 images." in text
-    assert origin(tmp_path, lesson) == ""
-    assert origin(write_card(tmp_path / "unseen", "maze"), tmp_path).endswith(" Options: seed 3, most 10.")
+    assert describe_origin(tmp_path, training_folder) == ""
+    assert describe_origin(write_card(tmp_path / "unseen", "maze"), tmp_path).endswith(" Options: seed 3, most 10.")
 
 
 def test_a_card_says_how_the_dataset_was_made(tmp_path):

@@ -15,8 +15,8 @@ from linkwright.cli import main
 from linkwright.diagnostics import LinkwrightError
 from linkwright.vision.training.images import read_labelled_images
 from linkwright.vision.training.options import Options
-from linkwright.vision.training.reading import open_dataset
-from linkwright.vision.training.teaching import train_network
+from linkwright.vision.training.training_run import train_network
+from linkwright.vision.training.yolo_dataset import open_dataset
 from tests.vision.training.images_of_shapes import NAMES, write_shapes
 
 # `make test-train` sets the variable: there it is an error when PyTorch is missing, which would else skip everything.
@@ -27,12 +27,12 @@ if HERE:
     import onnxruntime
     import torch
 
-    from linkwright.vision.training.learning.course import Course
-    from linkwright.vision.training.learning.export import to_onnx
+    from linkwright.vision.training.learning.export import export_to_onnx
     from linkwright.vision.training.learning.initial_weights import load_weights
-    from linkwright.vision.training.learning.losses import assign, loss, overlaps
+    from linkwright.vision.training.learning.losses import assign, loss, pairwise_iou
     from linkwright.vision.training.learning.network import Network, Shape, cells
     from linkwright.vision.training.learning.optimizer import orthogonalize
+    from linkwright.vision.training.learning.training_loop import TrainingLoop
 
 
 @pytest.fixture(scope="module")
@@ -45,34 +45,34 @@ def options(shapes: Path, output: Path, **changed) -> Options:
     return replace(usual, **changed)
 
 
-def course_of(given: Options) -> Course:
+def course_of(given: Options) -> TrainingLoop:
     given.output.mkdir(exist_ok=True)
     dataset = open_dataset(given.dataset)
-    lesson = read_labelled_images(dataset.read("train"), given.width, given.height)
-    return Course(dataset.names, given, lesson, lesson)
+    labelled_images = read_labelled_images(dataset.read("train"), given.width, given.height)
+    return TrainingLoop(dataset.names, given, labelled_images, labelled_images)
 
 
-def weights(course: Course) -> np.ndarray:
-    return np.concatenate([parameter.detach().numpy().ravel() for parameter in course.network.parameters()])
+def weights(training_loop: TrainingLoop) -> np.ndarray:
+    return np.concatenate([parameter.detach().numpy().ravel() for parameter in training_loop.network.parameters()])
 
 
 def test_a_network_overfits_eight_images(shapes, tmp_path):
-    course = course_of(options(shapes, tmp_path, epochs=300, whole_epochs=300, rate=1.5e-3))
+    training_loop = course_of(options(shapes, tmp_path, epochs=300, whole_epochs=300, rate=1.5e-3))
     epochs = []
-    course.run(epochs.append)
+    training_loop.run(epochs.append)
     first, last = (
         np.mean([epoch.losses for epoch in epochs[:5]], 0),
         np.mean([epoch.losses for epoch in epochs[-5:]], 0),
     )
     assert (last < first / 2).all()
-    assert course.best_map > 0.5
-    assert course.evaluate_averaged().map50 >= 0.9
+    assert training_loop.best_map > 0.5
+    assert training_loop.evaluate_averaged().map50 >= 0.9
 
 
 def test_the_same_seed_gives_the_same_weights_and_another_one_others(shapes, tmp_path):
     same = [course_of(options(shapes, tmp_path, seed=seed)) for seed in (3, 3, 4)]
-    for course in same:
-        course.run(lambda _: None)
+    for training_loop in same:
+        training_loop.run(lambda _: None)
     assert (weights(same[0]) == weights(same[1])).all()
     assert (weights(same[0]) != weights(same[2])).any()
 
@@ -80,9 +80,12 @@ def test_the_same_seed_gives_the_same_weights_and_another_one_others(shapes, tmp
 def test_with_16_bits_it_learns_the_same_but_for_rounding(shapes, tmp_path):
     losses = []
     for precision in ("float32", "bfloat16"):
-        course, received = course_of(options(shapes, tmp_path, epochs=12, whole_epochs=0, precision=precision)), []
-        course.run(received.append)
-        assert all(parameter.dtype == torch.float32 for parameter in course.network.parameters())
+        training_loop, received = (
+            course_of(options(shapes, tmp_path, epochs=12, whole_epochs=0, precision=precision)),
+            [],
+        )
+        training_loop.run(received.append)
+        assert all(parameter.dtype == torch.float32 for parameter in training_loop.network.parameters())
         losses.append([each.losses for each in received])
     exact, rounded = np.array(losses)
     assert (exact != rounded).any()
@@ -132,7 +135,7 @@ def test_the_exported_network_says_what_the_network_says():
     image = torch.rand(1, 3, 96, 64)
     with torch.no_grad():
         boxes, logits = network(image)
-    content = to_onnx(network, ("a", "b", "c"), 64, 96, {"seed": "2"}, 0.2)
+    content = export_to_onnx(network, ("a", "b", "c"), 64, 96, {"seed": "2"}, 0.2)
     session = onnxruntime.InferenceSession(content, providers=["CPUExecutionProvider"])
     output = session.run(None, {"images": image.numpy()})[0][0].T
     left, right = output[:, :2] - output[:, 2:4] / 2, output[:, :2] + output[:, 2:4] / 2
@@ -153,7 +156,7 @@ def exported(tmp_path):
         for parameter in network.parameters():
             parameter.add_(0.1 * torch.randn_like(parameter)).copy_(parameter.half().float())
     file = tmp_path / "shapes.onnx"
-    file.write_bytes(to_onnx(network.eval(), ("disc", "square", "bar"), 64, 64, {}))
+    file.write_bytes(export_to_onnx(network.eval(), ("disc", "square", "bar"), 64, 64, {}))
     return network, file
 
 
@@ -229,7 +232,7 @@ def test_a_training_begins_with_weights_of_an_earlier_one_and_its_card_says_so(s
 def test_boxes_that_do_not_touch_are_told_apart_by_the_generalised_overlap():
     first = torch.tensor([[0.0, 0.0, 10.0, 10.0]] * 3)
     second = torch.tensor([[0.0, 0.0, 10.0, 10.0], [20.0, 0.0, 30.0, 10.0], [90.0, 0.0, 100.0, 10.0]])
-    plain, generalised = overlaps(first, second)
+    plain, generalised = pairwise_iou(first, second)
     assert plain.tolist() == pytest.approx([1, 0, 0])
     assert generalised.tolist() == pytest.approx([1, -1 / 3, -0.8])
 
@@ -281,10 +284,10 @@ def test_what_was_learnt_until_ctrl_c_is_kept(shapes, tmp_path):
             raise KeyboardInterrupt
 
     result = train_network(options(shapes, tmp_path), stop_after_two)
-    assert result.interrupted
+    assert result.was_interrupted
     assert result.network.is_file()
     assert "2 of 4" in result.card.read_text(encoding="utf-8")
-    assert tuple(each.name for each in result.examinations[0].figures.classes) == NAMES
+    assert tuple(each.name for each in result.reports[0].evaluation.classes) == NAMES
 
 
 @pytest.mark.parametrize("shape", [(8, 16, 3, 3), (48, 16, 1, 1)])

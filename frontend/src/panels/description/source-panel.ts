@@ -104,6 +104,19 @@ export class SourcePanel implements Panel {
     this.update();
   }
 
+  /** Opens the editor for the files of a folder, even if no description is shown. */
+  openWorkspace(folder: string): void {
+    this.element.classList.add("of-workspace");
+    this.editor.openWorkspace(folder);
+    this.update();
+  }
+
+  /** Edits a file, which is created if it does not exist. */
+  edit(path: string): void {
+    this.requested = null;
+    void this.editor.edit(path);
+  }
+
   /** Returns what is shown and marked, for tests. */
   inspect(): object {
     const marks = (view: SourceView): object => view.highlighted.map(({ from, to, look }) => ({ from, to, look }));
@@ -146,7 +159,7 @@ export class SourcePanel implements Panel {
     const { model } = this;
     const faulty = this.session.diagnostics.flatMap((item) => (item.file === null ? [] : [item.file]));
     const files = [...new Set([...(model?.description.files ?? []), ...faulty, ...this.editor.files, ...(this.requested ? [this.requested.file] : [])])];
-    this.empty.hidden = model !== undefined || files.length > 0;
+    this.empty.hidden = model !== undefined || files.length > 0 || this.editor.hasWorkspace;
     this.panes.hidden = !this.empty.hidden;
     if (!files.includes(this.file)) this.file = files[0] ?? "";
     this.listFiles(files);

@@ -7,6 +7,8 @@ interface Placement {
   beside: readonly (readonly [PanelId, Direction])[];
   width?: number;
   height?: number;
+  /** The width as a share of the dock's. */
+  share?: number;
   inactive?: boolean;
 }
 
@@ -18,7 +20,7 @@ const RIGHT: Placement["beside"] = [
 ];
 
 /** Wide panels that are read line by line share one place below the scene. */
-const BOTTOM: readonly PanelId[] = ["terminal", "source", "diagram", "joint-table", "editing", "plot", "topics", "graph", "parameters", "log"];
+const BOTTOM: readonly PanelId[] = ["terminal", "checks", "source", "diagram", "joint-table", "editing", "plot", "topics", "graph", "parameters", "log"];
 const BELOW: Placement = { beside: [...BOTTOM.map((id) => [id, "within"] as const), ["scene", "below"]], height: 300 };
 /** The largest share of the dock's height that a panel requests. */
 const MAX_HEIGHT_SHARE = 0.4;
@@ -66,7 +68,9 @@ const PLACEMENTS: Readonly<Record<PanelId, Placement>> = {
   links: { beside: [["displays", "within"], ["scene", "left"]], width: 320, inactive: true },
   comparison: { beside: [["displays", "within"], ["links", "within"], ["scene", "left"]], width: 320 },
   world: { beside: [["displays", "within"], ["links", "within"], ["scene", "left"]], width: 320 },
+  lesson: { beside: [["displays", "within"], ["links", "within"], ["scene", "left"]], width: 320 },
   terminal: BELOW,
+  checks: BELOW,
   source: BELOW,
   diagram: BELOW,
   "joint-table": BELOW,
@@ -128,7 +132,7 @@ const MIN_WIDTH_SHARE = 0.7;
  * In windows where panels share a group, those that open in front: the displays, and the panel that the page was opened
  * for.
  */
-const IN_FRONT: readonly PanelId[] = ["displays", "world", "comparison"];
+const IN_FRONT: readonly PanelId[] = ["displays", "world", "comparison", "lesson"];
 
 /** A phone in landscape, where the status bar is hidden, too. */
 const LOW = "(max-height: 480px) and (max-width: 1000px) and (min-aspect-ratio: 3/2)";
@@ -167,21 +171,40 @@ function lowHome(api: DockviewApi, id: PanelId): Placement {
   return { beside, inactive, width: Math.round(Math.min(LOW_MOST, Math.max(LOW_LEAST, api.width * LOW_SHARE))) };
 }
 
-function wideHome(api: DockviewApi, id: PanelId): Placement {
-  const home = { ...PLACEMENTS[id] };
+/** The panels of the classroom. */
+export const CLASSROOM_PANELS: readonly PanelId[] = ["scene", "lesson", "source", "checks", "terminal", "displays", "links", "diagnostics", "joints"];
+
+const CLASSROOM_LOWER = 260;
+const CLASSROOM_VIEW: Placement = { beside: [["joints", "within"], ["displays", "within"], ["scene", "below"]], height: CLASSROOM_LOWER, inactive: true };
+
+/** Where panels of the classroom open: the lesson on the left, the files in the middle, the robot on the right. */
+const CLASSROOM: Readonly<Partial<Record<PanelId, Placement>>> = {
+  lesson: { beside: [["source", "left"], ["scene", "left"]], share: 0.24 },
+  source: { beside: [["scene", "left"]], share: 0.4 },
+  checks: { beside: [["lesson", "below"], ["terminal", "within"], ["scene", "left"]], height: CLASSROOM_LOWER },
+  terminal: { beside: [["source", "below"], ["scene", "below"]], height: CLASSROOM_LOWER },
+  displays: CLASSROOM_VIEW,
+  links: CLASSROOM_VIEW,
+  diagnostics: CLASSROOM_VIEW,
+  joints: { ...CLASSROOM_VIEW, inactive: false },
+};
+
+function wideHome(api: DockviewApi, id: PanelId, isClassroom: boolean): Placement {
+  const home = { ...((isClassroom ? CLASSROOM[id] : undefined) ?? PLACEMENTS[id]) };
   if (home.width !== undefined) home.width = Math.round(home.width * Math.max(MIN_WIDTH_SHARE, Math.min(1, api.width / ROOMY)));
+  if (home.share !== undefined) home.width = Math.round(home.share * api.width);
   if (home.height !== undefined) home.height = Math.min(home.height, Math.round(api.height * MAX_HEIGHT_SHARE));
   return home;
 }
 
 /** The order in which open panels move to their default places. */
-export const DEFAULT_ORDER: readonly PanelId[] = ["scene", "time", "displays", "links", "world", "comparison", "views", "tool-properties", "selection", "diagnostics", "joints", "teleop", "voice", "navigation", "transformation", ...BOTTOM];
+export const DEFAULT_ORDER: readonly PanelId[] = ["scene", "time", "lesson", "displays", "links", "world", "comparison", "views", "tool-properties", "selection", "diagnostics", "joints", "teleop", "voice", "navigation", "transformation", ...BOTTOM];
 
-/** Adds panels at their default places. */
-export function addPanels(api: DockviewApi, ids: readonly PanelId[]): void {
+/** Adds panels at their default places, or at those in the classroom. */
+export function addPanels(api: DockviewApi, ids: readonly PanelId[], isClassroom = false): void {
   const homeIn = { wide: wideHome, narrow: narrowHome, low: lowHome }[formOf(api)];
   for (const id of ids) {
-    const { beside, height, width, inactive } = homeIn(api, id);
+    const { beside, height, width, inactive } = homeIn(api, id, isClassroom);
     const found = beside.find(([other]) => api.getPanel(other) !== undefined);
     const options: AddPanelOptions = { id, component: id, tabComponent: id, title: strings.panels[id] };
     if (width !== undefined) options.initialWidth = width;

@@ -5,7 +5,7 @@ import type { TextStorage } from "../../storage";
 import { strings } from "../../strings";
 import type { Panel, PanelId } from "../panel";
 import { ColumnWidths } from "./column-widths";
-import { addPanels, formOf, DEFAULT_ORDER, type Form } from "./default-layout";
+import { addPanels, CLASSROOM_PANELS, formOf, DEFAULT_ORDER, type Form } from "./default-layout";
 import { DisplayPanels } from "./display-panels";
 import { FILE_PANELS } from "./file-panels";
 import { FrontTabs } from "./front-tabs";
@@ -23,6 +23,8 @@ export class Dock {
   readonly arrangementReplaced = new Signal();
   /** The panels that the file shows, for `reset`; null if it does not specify them. */
   panelsOfFile: readonly PanelName[] | null = null;
+  /** Whether the page shows a course, for which panels have other default places. */
+  isClassroom = false;
   /** The file for which the arrangement is stored; null until one is known. */
   file: string | null = null;
   /** The panels of displays. */
@@ -119,6 +121,12 @@ export class Dock {
 
   /** Restores the arrangement of the first visit. */
   reset(): void {
+    if (this.isClassroom) {
+      this.build(CLASSROOM_PANELS);
+      this.open("lesson");
+      this.arrangementReplaced.emit();
+      return;
+    }
     const joints = this.api.getPanel("joints") !== undefined;
     this.build(["scene", "time", "displays", "links", "views", "tool-properties", "selection", "diagnostics", ...(joints ? (["joints"] as const) : [])]);
     if (this.panelsOfFile) this.showOnly(this.panelsOfFile);
@@ -157,13 +165,13 @@ export class Dock {
 
   private add(id: PanelId): void {
     if (this.isOpen(id)) return;
-    addPanels(this.api, [id]);
+    addPanels(this.api, [id], this.isClassroom);
     this.retitle();
   }
 
   private build(ids: readonly PanelId[]): void {
     this.api.clear();
-    addPanels(this.api, this.form !== "wide" ? [...ids.filter((id) => id !== "time"), ...ids.filter((id) => id === "time")] : ids);
+    addPanels(this.api, this.form !== "wide" ? [...ids.filter((id) => id !== "time"), ...ids.filter((id) => id === "time")] : ids, this.isClassroom);
     this.retitle();
     this.hideLoneTabs();
     this.displayPanels.restore();

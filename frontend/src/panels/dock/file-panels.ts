@@ -19,12 +19,14 @@ export interface Arrangement {
   readonly changed: Signal;
   readonly file: string | null;
   panelsOfFile: readonly PanelName[] | null;
+  isClassroom: boolean;
   isOpen(id: PanelId): boolean;
   /** Shows the arrangement that the browser stores for a file; returns false if there is none. */
   arrange(file: string): boolean;
   storeFor(file: string): void;
   open(id: PanelId): void;
   showOnly(panels: readonly PanelName[]): void;
+  reset(): void;
 }
 
 /**
@@ -47,6 +49,7 @@ export class FilePanels {
   /** Whether the browser stores no arrangement for the file. */
   private isFirstVisit = false;
   private hasVoice = false;
+  private hasCourse = false;
 
   constructor(
     private readonly connection: Connection,
@@ -54,7 +57,7 @@ export class FilePanels {
   ) {
     connection.on("hello", () => {
       this.panelsMessage = this.configuration = this.shownNumber = null;
-      this.drivable = this.hasVoice = false;
+      this.drivable = this.hasVoice = this.hasCourse = false;
     });
     connection.on("panels", (message) => {
       this.panelsMessage = message;
@@ -72,6 +75,10 @@ export class FilePanels {
       this.hasVoice = present;
       this.openVoice();
     });
+    connection.on("course", () => {
+      this.hasCourse = true;
+      this.openCourse();
+    });
     dock.changed.on(() => this.compare());
   }
 
@@ -87,6 +94,15 @@ export class FilePanels {
     if (!this.hasVoice || !this.isFirstVisit) return;
     this.isFirstVisit = false;
     this.dock.open("voice");
+  }
+
+  /** Arranges the panels for a course, if it is shown for the first time. */
+  private openCourse(): void {
+    if (!this.hasCourse) return;
+    this.dock.isClassroom = true;
+    if (!this.isFirstVisit) return;
+    this.isFirstVisit = false;
+    this.dock.reset();
   }
 
   /** Applies the configuration once both messages about it have arrived. */
@@ -110,6 +126,7 @@ export class FilePanels {
     this.openTeleop();
     this.isFirstVisit = !isStored;
     this.openVoice();
+    this.openCourse();
   }
 
   private compare(): void {

@@ -18,6 +18,8 @@ export class EditorPane {
   private editor: SourceEditor | null = null;
   private isWanted: boolean;
   private isLoading = false;
+  /** The folder whose files can be edited without a description; empty if there is none. */
+  private workspace = "";
   private failure = "";
   /** The file that is to be shown. */
   private file: string | null = null;
@@ -46,7 +48,29 @@ export class EditorPane {
 
   /** Whether the editor is in place of the text. */
   get isShown(): boolean {
-    return this.isWanted && this.editor !== null && this.editor.whyNot === "" && this.editor.shown !== null;
+    return this.isWanted && this.editor !== null && !this.editor.whyNot && (this.editor.shown !== null || this.hasWorkspace);
+  }
+
+  /** Whether files can be edited without a description. */
+  get hasWorkspace(): boolean {
+    return this.workspace !== "";
+  }
+
+  /** Opens the editor for the files of a folder, which it lists. */
+  openWorkspace(folder: string): void {
+    if (folder === this.workspace) return;
+    this.workspace = folder;
+    this.isWanted = true;
+    this.showToggle();
+    if (this.editor === null) void this.load();
+    else this.editor.openWorkspace(folder);
+  }
+
+  /** Edits a file, which is created if it does not exist. */
+  async edit(path: string): Promise<void> {
+    this.file = path;
+    if (this.editor === null) await this.load();
+    await this.editor?.showOrCreate(path);
   }
 
   /** The files that are open in the editor. */
@@ -69,7 +93,7 @@ export class EditorPane {
       else if (this.editor.shown?.path !== file) void this.editor.show(file);
     }
     if (file !== null && line !== null) this.line = { file, line };
-    const isEdited = this.isShown && file !== null && this.editor?.shown?.path === file;
+    const isEdited = this.isShown && (file === null ? this.hasWorkspace : this.editor?.shown?.path === file);
     if (isEdited) this.mark();
     this.element.hidden = !isEdited;
     this.notice.textContent = this.failure || (this.editor?.whyNot ?? "");
@@ -115,6 +139,7 @@ export class EditorPane {
     const { editor } = this;
     if (editor !== null) {
       this.element.append(editor.element);
+      if (this.hasWorkspace) editor.openWorkspace(this.workspace);
       let last = "";
       editor.changed.on(() => {
         const now = `${String(editor.whyNot)} ${editor.shown?.path ?? ""} ${editor.open.length}`;

@@ -1,30 +1,34 @@
 const ALLOWED = new Set("A B BLOCKQUOTE BR CODE DEL EM H1 H2 H3 H4 H5 H6 HR I LI OL P PRE SPAN STRONG TABLE TBODY TD TH THEAD TR UL".split(" "));
 const DROPPED = new Set(["SCRIPT", "STYLE", "TEMPLATE", "IFRAME", "OBJECT", "EMBED", "SVG", "MATH"]);
 
+const IMAGE_ADDRESS = /^data:image\/(?:png|jpeg|webp|gif);base64,/i;
+
 /**
  * Returns HTML with nothing but formatted text and links to web pages: what is shown comes from the files of packages,
- * which strangers write.
+ * which strangers write. With `allowsImages`, images that are part of the HTML remain.
  */
-export function safeHtml(html: string): string {
+export function safeHtml(html: string, { allowsImages = false } = {}): string {
   const { body } = new DOMParser().parseFromString(html, "text/html");
-  clean(body);
+  clean(body, allowsImages);
   return body.innerHTML;
 }
 
-function clean(element: Element): void {
+function clean(element: Element, allowsImages: boolean): void {
   for (const child of [...element.children]) {
     if (DROPPED.has(child.tagName.toUpperCase())) {
       child.remove();
       continue;
     }
-    clean(child);
-    if (!ALLOWED.has(child.tagName)) {
+    clean(child, allowsImages);
+    const isImage = allowsImages && child.tagName === "IMG" && IMAGE_ADDRESS.test(child.getAttribute("src") ?? "");
+    if (!isImage && !ALLOWED.has(child.tagName)) {
       child.replaceWith(...child.childNodes);
       continue;
     }
     for (const { name, value } of [...child.attributes]) {
       const isLink = child.tagName === "A" && name === "href" && /^https?:\/\//i.test(value);
-      if (!isLink && !(child.tagName === "SPAN" && name === "class")) child.removeAttribute(name);
+      const isOfImage = isImage && (name === "src" || name === "alt");
+      if (!isLink && !isOfImage && !(child.tagName === "SPAN" && name === "class")) child.removeAttribute(name);
     }
     if (child.tagName === "A") {
       child.setAttribute("target", "_blank");

@@ -30,6 +30,9 @@ import "../../styles/source-editor.css";
 /** The line at the cursor is reported this time after the last key, ms. */
 const LINE_MS = 200;
 
+/** Pixels; a narrower editor of a workspace lists the files only on request. */
+const TREE_WIDTH = 480;
+
 /** The editor of the source files: one view, and the documents that it can show. */
 export class SourceEditor implements Documents {
   readonly element: HTMLElement;
@@ -80,7 +83,7 @@ export class SourceEditor implements Documents {
     const buttons = [files, symbols, this.save, actions, format, this.list];
     const bar = h("div", { class: "editor-bar", role: "toolbar", aria: { label: words.label } }, ...buttons, this.scene, this.status);
     this.tree.shownChanged.on((isShown) => files.setAttribute("aria-expanded", String(isShown)));
-    this.view = new EditorView({ dispatchTransactions: (transactions, view) => this.dispatch(transactions, view) });
+    this.view = new EditorView({ extensions: EditorView.editable.of(false), dispatchTransactions: (transactions, view) => this.dispatch(transactions, view) });
     const body = h("div", { class: "editor-body" }, this.tree.element, this.view.dom);
     this.element = h("div", { class: "source-editor" }, bar, this.notice, body, this.places.element);
     // The page's own keys would change the scene or save the configuration.
@@ -124,6 +127,19 @@ export class SourceEditor implements Documents {
     if (document === null || this.requestedFile !== path) return document !== null;
     if (document !== this.shown) this.display(document);
     return true;
+  }
+
+  /** Opens a workspace before any file of it, and lists its files. */
+  openWorkspace(folder: string): void {
+    this.files.openWorkspace(folder);
+    requestAnimationFrame(() => {
+      if (this.tree.element.hidden && this.element.clientWidth >= TREE_WIDTH) this.tree.toggle();
+    });
+  }
+
+  /** Shows a file, and creates it if it does not exist. */
+  async showOrCreate(path: string): Promise<void> {
+    if (!(await this.show(path))) await this.createAndShow(path);
   }
 
   load(path: string): Promise<SourceDocument | null> {

@@ -3,6 +3,7 @@ import type { SourceFile, SourceFileWritten } from "../../protocol";
 import { Signal } from "../../signal";
 import type { Session } from "../../state/session";
 import { strings } from "../../strings";
+import { nameOf } from "../place";
 import { fitsMessage } from "./message-size";
 import { SourceDocument } from "./source-document";
 
@@ -54,6 +55,12 @@ export class SourceFiles {
     return this.open.filter((document) => document.isUnsaved);
   }
 
+  /** Opens a workspace, whose files can then be loaded. */
+  openWorkspace(folder: string): void {
+    this.main = folder;
+    if (!this.isOpen) this.requestWorkspace();
+  }
+
   /** Opens a file, and the workspace if it is the first one; null if it cannot be read. */
   load(path: string): Promise<SourceDocument | null> {
     const known = this.documents.get(path);
@@ -65,7 +72,7 @@ export class SourceFiles {
       else {
         this.awaited.set(path, [resolve]);
         if (this.isOpen) this.session.connection.send({ type: "ask_source_file", path });
-        else this.openWorkspace();
+        else this.requestWorkspace();
       }
     });
   }
@@ -130,10 +137,10 @@ export class SourceFiles {
 
   /** Opens the workspace again, after the program was restarted. */
   private reopen(): void {
-    if (!this.isOpen && this.main !== "") this.openWorkspace();
+    if (!this.isOpen && this.main !== "") this.requestWorkspace();
   }
 
-  private openWorkspace(): void {
+  private requestWorkspace(): void {
     this.session.connection.send({ type: "open_editor", file: this.main });
   }
 
@@ -187,9 +194,4 @@ export class SourceFiles {
     this.awaited.delete(path);
     for (const resolve of waiting) resolve(document);
   }
-}
-
-/** Returns the name of a file without its folders. */
-export function nameOf(path: string): string {
-  return path.slice(path.lastIndexOf("/") + 1);
 }

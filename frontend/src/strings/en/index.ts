@@ -4,6 +4,7 @@ import { details } from "./details";
 import { displays } from "./displays";
 import { editing } from "./editing";
 import { sourceEditor } from "./source-editor";
+import { learning } from "./learning";
 import { meshes } from "./meshes";
 import { modelling } from "./modelling";
 import { monitor } from "./monitor";
@@ -34,6 +35,8 @@ export const en = {
     voice: voice.panel,
     editing: editing.panel,
     terminal: terminal.panel,
+    lesson: learning.lesson,
+    checks: learning.checks,
   },
   shell,
   sharing,
@@ -48,6 +51,7 @@ export const en = {
   modelling,
   voice,
   terminal,
+  learning,
   details,
   displays,
   tree: {

@@ -5,6 +5,7 @@ import { details } from "./details";
 import { displays } from "./displays";
 import { editing } from "./editing";
 import { sourceEditor } from "./source-editor";
+import { learning } from "./learning";
 import { meshes } from "./meshes";
 import { modelling } from "./modelling";
 import { monitor } from "./monitor";
@@ -21,7 +22,7 @@ import { voice } from "./voice";
 /** 简体中文 */
 export const zh: Strings = {
   panels: { ...description.panels,
-    ...tools.panels, ...monitor.panels, displays: "显示", scene: "三维视图", views: "视角", joints: "关节", diagnostics: "诊断", world: modelling.panel, comparison: comparison.panel, voice: voice.panel, editing: editing.panel, terminal: terminal.panel },
+    ...tools.panels, ...monitor.panels, displays: "显示", scene: "三维视图", views: "视角", joints: "关节", diagnostics: "诊断", world: modelling.panel, comparison: comparison.panel, voice: voice.panel, editing: editing.panel, terminal: terminal.panel, lesson: learning.lesson, checks: learning.checks },
   shell,
   sharing,
   simulation,
@@ -35,6 +36,7 @@ export const zh: Strings = {
   modelling,
   voice,
   terminal,
+  learning,
   details,
   displays,
   tree: {

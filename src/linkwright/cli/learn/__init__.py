@@ -1,5 +1,5 @@
 """``linkwright learn``: courses whose steps are checked."""
 
-from linkwright.cli.learn.verb import VERBS, configure, run
+from linkwright.cli.learn.verb import DEFAULT_VERB, VERBS, configure, run
 
-__all__ = ["VERBS", "configure", "run"]
+__all__ = ["DEFAULT_VERB", "VERBS", "configure", "run"]

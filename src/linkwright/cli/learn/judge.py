@@ -6,20 +6,22 @@ import argparse
 import json
 import sys
 from contextlib import redirect_stdout
+from functools import partial
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
 from linkwright.cli.simulation_options import add_simulation_options
 from linkwright.cli.view import add_viewer_options
 from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, phrase
 from linkwright.diagnostics.translation import language, localized
+from linkwright.files.scratch_folders import ScratchFolder
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from linkwright.learning.judging.exercise import Exercise
     from linkwright.learning.judging.running import RunResult
+    from linkwright.viewer import Viewer
 
 _PASS_SCORE = 50.0
 
@@ -97,13 +99,20 @@ def run_judge(arguments: argparse.Namespace) -> int:
 def configure_world(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments of ``learn world``."""
     parser.add_argument("exercise", metavar="EXERCISE", help="an exercise by its name, or the folder of one")
+    parser.add_argument(
+        "program",
+        metavar="PROGRAM",
+        nargs="?",
+        type=Path,
+        help="your program, which is created from the template if it does not exist (default: EXERCISE.py)",
+    )
     parser.add_argument("--seed", metavar="N", type=int, default=0, help="the seed of the world (default: 0)")
     add_simulation_options(parser)
-    add_viewer_options(parser)
+    add_viewer_options(parser, terminal=False)
 
 
 def run_world(arguments: argparse.Namespace) -> int:
-    """Simulate the world of an exercise in real time, with its robot and its judge."""
+    """Simulate the world of an exercise in real time, with its robot and its judge, beside the program."""
     from linkwright.cli.command import parser_for
     from linkwright.cli.sim import run
     from linkwright.learning.judging.exercise import find_exercise
@@ -111,16 +120,29 @@ def run_world(arguments: argparse.Namespace) -> int:
     from linkwright.packages import PackageFinder
 
     exercise = find_exercise(arguments.exercise)
-    with TemporaryDirectory(prefix="linkwright-exercise-") as folder:
+    program = (arguments.program or Path(f"{exercise.id}.py")).absolute()
+    if not arguments.headless and not program.exists():
+        _copy_template(exercise, program)
+    with ScratchFolder("exercise") as folder:
         arrangement = write_world(exercise, arguments.seed, Path(folder), publishes=True)
         words = [str(arrangement.world)]
         if exercise.robot:
             words.append(str(PackageFinder(start=[exercise.folder]).resolve(exercise.robot, exercise.folder)))
             words += [f"{name}:={str(value).lower()}" for name, value in exercise.arguments.items()]
         simulated = parser_for("sim").parse_args(words)
-        vars(simulated).update(vars(arguments))
+        vars(simulated).update(vars(arguments), terminal=not arguments.headless)
         simulated.x, simulated.y, simulated.z, _, _, simulated.Y = arrangement.pose
-        return run(simulated)
+        return run(simulated, partial(_show_exercise, exercise, program))
+
+
+def _show_exercise(exercise: Exercise, program: Path, viewer: Viewer) -> None:
+    from linkwright.learning.page.exercise_guide import ExerciseGuide
+    from linkwright.learning.page.feature import CourseFeature
+    from linkwright.panels.source_editor.feature import SourceEditorFeature
+
+    viewer.add_feature(SourceEditorFeature).edit_workspace(program.parent)
+    context = viewer.context
+    viewer.add_feature(CourseFeature).show(ExerciseGuide(exercise, program, context.pages.publish, context.node))
 
 
 def _copy_template(exercise: Exercise, program: Path) -> int:

@@ -15,7 +15,7 @@ from linkwright.diagnostics.translation import localized
 from linkwright.process.interruption import INTERRUPTED
 
 if TYPE_CHECKING:
-    from linkwright.vision.training.learning.course import Epoch
+    from linkwright.vision.training.learning.training_loop import Epoch
 
 _CELL_SIZE = 32
 
@@ -94,9 +94,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Train a network, evaluate it, and print the results."""
-    from linkwright.vision.training.card import table
+    from linkwright.vision.training.card import results_table
     from linkwright.vision.training.options import Options
-    from linkwright.vision.training.teaching import train_network
+    from linkwright.vision.training.training_run import train_network
 
     width, height = arguments.size
     options = Options(
@@ -120,12 +120,12 @@ def run(arguments: argparse.Namespace) -> int:
         command=shlex.join(["linkwright", *(word for word in sys.argv[1:] if word != "--resume")]),
     )
     result = train_network(options, lambda epoch: _print_epoch(epoch, options.epochs))
-    for examination in result.examinations:
-        print(f"{examination.title}: mAP50 {examination.figures.map50:.3f}, mAP50-95 {examination.figures.map:.3f}")
-        print("\n".join(table(examination.figures)))
+    for report in result.reports:
+        print(f"{report.title}: mAP50 {report.evaluation.map50:.3f}, mAP50-95 {report.evaluation.map:.3f}")
+        print("\n".join(results_table(report.evaluation)))
     print(result.network)
     print(result.card)
-    return INTERRUPTED if result.interrupted else FINE
+    return INTERRUPTED if result.was_interrupted else FINE
 
 
 def _print_epoch(epoch: Epoch, epoch_count: int) -> None:

@@ -29,11 +29,11 @@ class Workspace:
 
     Args:
         main: the file that was opened.
+        folder: the folder of the workspace; None to find it from the file.
     """
 
-    def __init__(self, main: Path) -> None:
-        real_path = Path(os.path.realpath(main))
-        self.folder = _find_workspace(real_path)
+    def __init__(self, main: Path, folder: Path | None = None) -> None:
+        self.folder = _find_workspace(Path(os.path.realpath(main))) if folder is None else folder.resolve()
 
     def refusal(self, path: str) -> Diagnostic | None:
         """Return the reason why a file must not be written (EDIT106), or None if it may be written.

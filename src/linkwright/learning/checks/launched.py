@@ -189,7 +189,7 @@ class LaunchCheck:
         from linkwright.messages import get_message
 
         node = self._checker
-        self._wait_until(lambda: node.count_publishers(topic) > 0, lambda: _missing("topic", topic, self._topics()))
+        self._wait_until(lambda: node.count_publishers(topic) > 0, lambda: self._missing_topic(topic))
         received: list[Any] = []
 
         def subscribe() -> None:
@@ -308,10 +308,25 @@ class LaunchCheck:
             self._run.result()
         except LinkwrightError as error:
             return phrase("{file}: {message}", file=self._file, message=error.diagnostics[0].message)
-        lines = [line for line in self._output.getvalue().splitlines() if "error" in line.casefold()]
-        if lines:
-            return phrase("{file}: {message}", file=self._file, message=lines[0])
+        errors = self._errors()
+        if errors:
+            return phrase("{file}: {message}", file=self._file, message=errors[0])
         return phrase("the launch of '{file}' ended by itself", file=self._file)
+
+    def _missing_topic(self, topic: str) -> Phrase:
+        """Return that no node publishes a topic, with the first error that the launch printed."""
+        topics = self._topics()
+        errors = self._errors()
+        if errors:
+            return phrase("no node publishes '{topic}'; the launch says: {message}", topic=topic, message=errors[0])
+        if topic in topics:
+            return phrase("no node publishes '{topic}'", topic=topic)
+        return _missing("topic", topic, topics)
+
+    def _errors(self) -> list[str]:
+        """Return the lines of the launch's output that report errors."""
+        words = ("error", "fatal")
+        return [line for line in self._output.getvalue().splitlines() if any(word in line.casefold() for word in words)]
 
 
 def _is_latched(node: Node, topic: str) -> bool:

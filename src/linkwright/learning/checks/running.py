@@ -7,7 +7,6 @@ import os
 import signal
 import subprocess
 import sys
-import tempfile
 import time
 from collections.abc import Sequence
 from contextlib import suppress
@@ -15,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from linkwright.diagnostics import LinkwrightError, foreign, phrase
+from linkwright.files.scratch_folders import ScratchFolder
 from linkwright.learning.checks.declaring import Check, load_checks
 from linkwright.learning.checks.not_yet import NotYet
 from linkwright.learning.checks.programs import describe_failure
@@ -27,7 +27,10 @@ TIME_LIMIT = 120.0
 """The seconds after which the process of a step's checks is ended. Checks with simulated worlds take the longest."""
 
 _DOMAINS = 100
-"""The number of ROS domains among which the process of a check selects its own, without domain 0, the default."""
+"""The number of ROS domains among which the process of a check selects one, without domain 0, the default.
+
+The domain of the learner's own programs is left out, too.
+"""
 
 PYTHON = [sys.executable]
 """The command that runs Python for checks. Tests measure the coverage of its processes."""
@@ -88,7 +91,12 @@ def check_command(step: Step, workspace: Path, output: Path, *, answer: str | No
 def check_in_process(
     step: Step, workspace: Path, *, answer: str | None = None, time_limit: float = TIME_LIMIT
 ) -> StepResult:
-    """Run the checks of a step in a process of their own.
+    """Run the checks of a step in a process of their own; see `CheckProcess`."""
+    return CheckProcess(step, workspace, answer=answer, time_limit=time_limit).run()
+
+
+class CheckProcess:
+    """A process that runs the checks of a step.
 
     Everything that the process started ends with it. A process that takes longer than `time_limit`, or that dies,
     fails the step with a message.
@@ -99,42 +107,64 @@ def check_in_process(
         answer: the number that the learner answered, as text.
         time_limit: the seconds after which the process is ended.
     """
-    begin = time.monotonic()
-    with tempfile.TemporaryDirectory(prefix="linkwright-check-") as scratch:
-        output = Path(scratch) / "result.json"
-        command = check_command(step, workspace, output, answer=answer)
-        reason = _run_command(command, workspace, time_limit)
-        data = _read(output)
-    if data is not None and reason is None:
-        return StepResult.from_data(data)
-    message = reason or phrase("the checks of this step ended without a result")
-    failed = CheckResult(step.title, passed=False, message=LocalText.from_phrase(message))
-    return StepResult(step.address, [failed], time.monotonic() - begin)
 
+    def __init__(
+        self, step: Step, workspace: Path, *, answer: str | None = None, time_limit: float = TIME_LIMIT
+    ) -> None:
+        self._step = step
+        self._workspace = workspace
+        self._answer = answer
+        self._time_limit = time_limit
+        self._process: subprocess.Popen[str] | None = None
+        self._is_canceled = False
 
-def _run_command(command: Sequence[str], workspace: Path, time_limit: float) -> Any:
-    """Run a command, and return why it ended early, or None."""
-    with subprocess.Popen(  # noqa: S603 - our own command
-        command,
-        cwd=workspace,
-        stdin=subprocess.DEVNULL,
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.PIPE,
-        start_new_session=True,
-        text=True,
-        encoding="utf-8",
-        errors="replace",
-    ) as process:
-        try:
-            _, errors = process.communicate(timeout=time_limit)
-        except subprocess.TimeoutExpired:
-            return phrase("the check took longer than {seconds:g} s and was ended", seconds=time_limit)
-        finally:
+    def run(self) -> StepResult:
+        """Run the checks, and return their results."""
+        begin = time.monotonic()
+        with ScratchFolder("check") as scratch:
+            output = Path(scratch) / "result.json"
+            reason = self._run_command(check_command(self._step, self._workspace, output, answer=self._answer))
+            data = _read(output)
+        if data is not None and reason is None:
+            return StepResult.from_data(data)
+        message = reason or phrase("the checks of this step ended without a result")
+        failed = CheckResult(self._step.title, passed=False, message=LocalText.from_phrase(message))
+        return StepResult(self._step.address, [failed], time.monotonic() - begin)
+
+    def cancel(self) -> None:
+        """End the process, from any thread. `run` then returns soon, with a result that is of no use."""
+        self._is_canceled = True
+        process = self._process
+        if process is not None:
             _end_group(process)
-        if process.returncode:
-            last = (errors.strip().splitlines() or [""])[-1]
-            return phrase("the process of the check ended early: {error}", error=foreign(last))
-    return None
+
+    def _run_command(self, command: Sequence[str]) -> Any:
+        """Run a command, and return why it ended early, or None."""
+        with subprocess.Popen(  # noqa: S603 - our own command
+            command,
+            cwd=self._workspace,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.PIPE,
+            start_new_session=True,
+            text=True,
+            encoding="utf-8",
+            errors="replace",
+        ) as process:
+            self._process = process
+            if self._is_canceled:
+                _end_group(process)
+            try:
+                _, errors = process.communicate(timeout=self._time_limit)
+            except subprocess.TimeoutExpired:
+                return phrase("the check took longer than {seconds:g} s and was ended", seconds=self._time_limit)
+            finally:
+                self._process = None
+                _end_group(process)
+            if process.returncode:
+                last = (errors.strip().splitlines() or [""])[-1]
+                return phrase("the process of the check ended early: {error}", error=foreign(last))
+        return None
 
 
 def _end_group(process: subprocess.Popen[str]) -> None:
@@ -156,7 +186,8 @@ def _read(output: Path) -> Any:
 def main(words: Sequence[str]) -> int:
     """Run the checks of a step, as `check_command` requests it."""
     os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
-    os.environ["ROS_DOMAIN_ID"] = str(1 + os.getpid() % _DOMAINS)
+    domains = [domain for domain in range(1, _DOMAINS + 1) if str(domain) != os.environ.get("ROS_DOMAIN_ID")]
+    os.environ["ROS_DOMAIN_ID"] = str(domains[os.getpid() % len(domains)])
     lesson_folder, step_id, workspace, output, *answers = words
     lesson = load_lesson(Path(lesson_folder))
     step = next(step for step in lesson.steps if step.id == step_id)

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-import tempfile
 import traceback
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from linkwright.files.scratch_folders import ScratchFolder
 from linkwright.learning.judging.exercise import Exercise
 from linkwright.learning.judging.judge import Judge
 from linkwright.learning.judging.world import JudgePlugin, status, write_world
 from linkwright.testing import Program, SteppedSimulation
+from linkwright.wire.switch import switched_off
 
 _STEP_S = 0.2
 _AFTER_END_S = 2.0
@@ -48,7 +49,8 @@ def judge_program(
     """Run a program in the worlds of an exercise, and yield the result for each seed.
 
     The program runs in lockstep with the world, so a result depends on the program and the seed alone. It gets the
-    topics of its robot, but not the simulator's services, which could move the robot or tell its true pose.
+    topics of its robot, but not the simulator's services, which could move the robot or tell its true pose. It does not
+    communicate with other processes.
 
     Args:
         exercise: the exercise.
@@ -61,8 +63,9 @@ def judge_program(
         OSError: the program cannot be read.
     """
     for seed in seeds:
-        with tempfile.TemporaryDirectory(prefix="linkwright-judge-") as folder:
-            yield _run(exercise, program, seed, Path(folder), budget)
+        with switched_off(), ScratchFolder("judge") as folder:
+            result = _run(exercise, program, seed, Path(folder), budget)
+        yield result
 
 
 def _run(exercise: Exercise, program: Path, seed: int, folder: Path, budget: float) -> RunResult:

@@ -13,6 +13,7 @@ from functools import cache
 from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, foreign, phrase
+from linkwright.files.scratch_folders import ScratchFolder
 from linkwright.learning.sandbox.contents import remove_harmful
 from linkwright.learning.sandbox.outcome import Limits, Outcome, Protection
 from linkwright.learning.sandbox.plan import Plan, outcome_from_json
@@ -78,7 +79,7 @@ def run_in_sandbox(
 @cache
 def protections_available() -> frozenset[Protection]:
     """Return the protections that this system offers, found out by a run of an empty program."""
-    with tempfile.TemporaryDirectory(prefix="linkwright-") as folder:
+    with ScratchFolder("sandbox") as folder:
         Path(folder).chmod(0o711)
         arguments = [sys.executable, "-I", "-S", "-c", ""]
         return run_in_sandbox(arguments, folder=Path(folder), limits=Limits()).protections

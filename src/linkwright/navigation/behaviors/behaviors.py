@@ -14,7 +14,7 @@ from math import copysign, hypot, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
-from linkwright.navigation.following.follower import STILL, Pose, Velocity, predict_poses, wrapped
+from linkwright.navigation.following.follower import ZERO_VELOCITY, Pose, Velocity, predict_poses, wrap_angle
 
 IsFree = Callable[[NDArray[np.float64]], bool]
 """Returns whether the robot touches no obstacle at any of the poses, of shape (poses, 3)."""
@@ -40,7 +40,7 @@ class Step:
     """
 
     outcome: Outcome
-    velocity: Velocity = STILL
+    velocity: Velocity = ZERO_VELOCITY
     traveled: float = 0.0
 
 
@@ -103,7 +103,7 @@ class Spin(Behavior):
         self._turned_angle = 0.0
 
     def _step(self, pose: Pose, elapsed: float, is_free: IsFree) -> Step:
-        self._turned_angle += wrapped(pose[2] - self._previous_yaw)
+        self._turned_angle += wrap_angle(pose[2] - self._previous_yaw)
         self._previous_yaw = pose[2]
         remaining_angle = abs(self._angle) - copysign(self._turned_angle, self._turned_angle * self._angle)
         if remaining_angle <= _ANGLE_TOLERANCE:

@@ -23,7 +23,7 @@ Points = NDArray[np.float64]
 """Points of sensors in the frame of the robot, in metres, of shape (points, 2)."""
 
 
-class Action(IntEnum):
+class ZoneAction(IntEnum):
     """The actions of zones, numbered as in nav2_msgs/msg/CollisionMonitorState."""
 
     NOTHING = 0
@@ -45,12 +45,12 @@ class Circle:
 
     def contains(self, points: Points) -> NDArray[np.bool_]:
         """Return a mask of the points inside the circle, of shape (points,)."""
-        inside: NDArray[np.bool_] = (points**2).sum(axis=1) < self.radius**2
-        return inside
+        is_inside: NDArray[np.bool_] = (points**2).sum(axis=1) < self.radius**2
+        return is_inside
 
 
 @dataclass(frozen=True, slots=True)
-class Outline:
+class Polygon:
     """A polygonal zone.
 
     Attributes:
@@ -64,11 +64,11 @@ class Outline:
         return within_polygon(points, self.corners)
 
 
-Shape = Circle | Outline
+Shape = Circle | Polygon
 
 
 @dataclass(frozen=True, slots=True)
-class Rule:
+class ZoneRule:
     """The action of a zone and the action's parameters.
 
     Attributes:
@@ -81,7 +81,7 @@ class Rule:
         simulation_time_step: the time step of the collision check, in seconds.
     """
 
-    action: Action
+    action: ZoneAction
     min_points: int = 4
     slowdown_ratio: float = 0.5
     linear_limit: float = 0.5
@@ -89,16 +89,16 @@ class Rule:
     time_before_collision: float = 2.0
     simulation_time_step: float = 0.1
 
-    def allowed(self, shape: Shape, points: Points, velocity: Velocity) -> Velocity | None:
+    def limit_velocity(self, shape: Shape, points: Points, velocity: Velocity) -> Velocity | None:
         """Return the permitted velocity, or None if the zone does not restrict `velocity`."""
-        if self.action is Action.APPROACH:
+        if self.action is ZoneAction.APPROACH:
             seconds = self._time_to_collision(shape, points, velocity)
             return None if seconds is None else _scaled(velocity, seconds / self.time_before_collision)
-        if self.action is Action.NOTHING or np.count_nonzero(shape.contains(points)) < self.min_points:
+        if self.action is ZoneAction.NOTHING or np.count_nonzero(shape.contains(points)) < self.min_points:
             return None
-        if self.action is Action.STOP:
+        if self.action is ZoneAction.STOP:
             return Velocity(0.0, 0.0, 0.0)
-        if self.action is Action.SLOWDOWN:
+        if self.action is ZoneAction.SLOWDOWN:
             return _scaled(velocity, self.slowdown_ratio)
         return _scaled(velocity, self._limit_ratio(velocity))
 
@@ -140,7 +140,7 @@ class SpeedRange:
             that is not holonomic.
     """
 
-    shape: Outline
+    shape: Polygon
     linear: tuple[float, float]
     angular: tuple[float, float]
     direction: tuple[float, float] | None = None
@@ -167,11 +167,11 @@ class Verdict:
     """
 
     velocity: Velocity
-    action: Action = Action.NOTHING
+    action: ZoneAction = ZoneAction.NOTHING
     zone: str = ""
 
 
-def limit_by_zones(velocity: Velocity, zones: Sequence[tuple[str, Rule, Shape, Points]]) -> Verdict:
+def limit_by_zones(velocity: Velocity, zones: Sequence[tuple[str, ZoneRule, Shape, Points]]) -> Verdict:
     """Limit a velocity by all zones, and return the lowest velocity that a zone permits.
 
     After a zone that stops the robot, the remaining zones are not checked.
@@ -182,12 +182,12 @@ def limit_by_zones(velocity: Velocity, zones: Sequence[tuple[str, Rule, Shape, P
     """
     verdict = Verdict(velocity)
     for name, rule, shape, points in zones:
-        permitted = rule.allowed(shape, points, velocity)
+        permitted = rule.limit_velocity(shape, points, velocity)
         if permitted is not None and (
-            rule.action is Action.STOP or _squared_size(permitted) < _squared_size(verdict.velocity)
+            rule.action is ZoneAction.STOP or _squared_size(permitted) < _squared_size(verdict.velocity)
         ):
             verdict = Verdict(permitted, rule.action, name)
-        if verdict.action is Action.STOP:
+        if verdict.action is ZoneAction.STOP:
             break
     return verdict
 

@@ -50,21 +50,21 @@ class Costmap:
         grid = self.grid
         return Costmap(Grid(cells=grid.cells.copy(), resolution=grid.resolution, x=grid.x, y=grid.y))
 
-    def cost_at(self, points: NDArray[np.float64], outside: int = UNKNOWN) -> NDArray[np.uint8]:
+    def cost_at(self, points: NDArray[np.float64], outside_cost: int = UNKNOWN) -> NDArray[np.uint8]:
         """Return the costs of the cells that contain points.
 
         Args:
             points: x and y in the frame of the costmap, in metres, of shape (..., 2).
-            outside: the cost of points that are not in the grid.
+            outside_cost: the cost of points that are not in the grid.
 
         Returns:
             Costs, of shape (...).
         """
         indices = self.grid.cells_of(np.asarray(points, np.float64))
-        inside = self.grid.has(indices)
-        indices = np.where(inside[..., None], indices, 0)
+        is_inside = self.grid.contains(indices)
+        indices = np.where(is_inside[..., None], indices, 0)
         costs: NDArray[np.uint8] = np.where(
-            inside, self.grid.cells[indices[..., 0], indices[..., 1]], np.uint8(outside)
+            is_inside, self.grid.cells[indices[..., 0], indices[..., 1]], np.uint8(outside_cost)
         )
         return costs
 
@@ -83,4 +83,4 @@ class Costmap:
         cosine, sine = np.cos(poses[..., 2, None]), np.sin(poses[..., 2, None])
         x = poses[..., 0, None] + cosine * outline_points[:, 0] - sine * outline_points[:, 1]
         y = poses[..., 1, None] + sine * outline_points[:, 0] + cosine * outline_points[:, 1]
-        return self.cost_at(np.stack((x, y), axis=-1), outside=LETHAL).max(axis=-1)
+        return self.cost_at(np.stack((x, y), axis=-1), outside_cost=LETHAL).max(axis=-1)

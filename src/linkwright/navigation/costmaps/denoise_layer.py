@@ -29,11 +29,11 @@ class DenoiseLayer(Layer):
         if group_connectivity_type != _ALL_NEIGHBOURS:
             self._connectivity[[0, 0, 2, 2], [0, 2, 0, 2]] = False
 
-    def changed(self, window: Window, moment: UpdateContext, grid: Grid) -> Window:
+    def update_window(self, window: Window, context: UpdateContext, grid: Grid) -> Window:
         """Return the window changed by the layers below, padded by the minimum group size."""
         return window.padded(self._min_group_size, grid)
 
-    def write(self, grid: Grid, window: Window, moment: UpdateContext) -> None:
+    def write_costs(self, grid: Grid, window: Window, context: UpdateContext) -> None:
         """Free small groups of lethal cells.
 
         Cells around the window are counted too, so that a group that crosses the edge has its full size.

@@ -63,17 +63,17 @@ class InflationLayer(Layer):
     def inflation(self, inflation: Inflation) -> None:
         self._inflation, self._inscribed_radius = inflation, None
 
-    def changed(self, window: Window, moment: UpdateContext, grid: Grid) -> Window:
+    def update_window(self, window: Window, context: UpdateContext, grid: Grid) -> Window:
         """Return the window changed by the layers below, padded by the inflation radius.
 
         After a change of the inscribed radius or of the parameters, the window is the whole grid.
         """
-        if self._inscribed_radius != moment.inscribed_radius:
-            self._inscribed_radius = moment.inscribed_radius
+        if self._inscribed_radius != context.inscribed_radius:
+            self._inscribed_radius = context.inscribed_radius
             return Window.of(grid)
         return window.padded(self._radius_in_cells(grid), grid)
 
-    def write(self, grid: Grid, window: Window, moment: UpdateContext) -> None:
+    def write_costs(self, grid: Grid, window: Window, context: UpdateContext) -> None:
         """Write the costs caused by obstacles inside and around the window into the window."""
         radius_in_cells = self._radius_in_cells(grid)
         if not radius_in_cells:
@@ -88,7 +88,7 @@ class InflationLayer(Layer):
         all_distances = distance_field(is_source, grid.resolution)
         top, left = window.top - padded_window.top, window.left - padded_window.left
         distances = all_distances[top : top + window.bottom - window.top, left : left + window.right - window.left]
-        costs = self._inflation.costs(distances, moment.inscribed_radius)
+        costs = self._inflation.costs(distances, context.inscribed_radius)
         costs[distances > radius_in_cells * grid.resolution] = FREE
         cells = grid.cells[window.cells]
         is_unknown = cells == UNKNOWN

@@ -40,7 +40,7 @@ class Window:
         if not len(indices):
             return cls()
         (top, left), (bottom, right) = indices.min(axis=0), indices.max(axis=0) + 1
-        return cls(int(top), int(left), int(bottom), int(right)).within(grid)
+        return cls(int(top), int(left), int(bottom), int(right)).clipped_to(grid)
 
     @property
     def is_empty(self) -> bool:
@@ -52,7 +52,7 @@ class Window:
         """The array index that selects the window's cells."""
         return slice(self.top, self.bottom), slice(self.left, self.right)
 
-    def within(self, grid: Grid) -> Window:
+    def clipped_to(self, grid: Grid) -> Window:
         """Return the part of the window within a grid, or an empty window."""
         clipped = Window(
             max(0, self.top), max(0, self.left), min(grid.rows, self.bottom), min(grid.columns, self.right)
@@ -67,9 +67,9 @@ class Window:
         if self.is_empty:
             return self
         padded_window = Window(self.top - cells, self.left - cells, self.bottom + cells, self.right + cells)
-        return padded_window.within(grid)
+        return padded_window.clipped_to(grid)
 
-    def joined(self, other: Window) -> Window:
+    def union(self, other: Window) -> Window:
         """Return the smallest window that contains this window and another."""
         if self.is_empty or other.is_empty:
             return other if self.is_empty else self
@@ -110,19 +110,19 @@ class Layer(ABC):
     enabled: bool = True
     is_clearable: bool = False
 
-    def match(self, grid: Grid, default: int) -> None:  # noqa: B027  # Most layers store no cells.
+    def match_grid(self, grid: Grid, default: int) -> None:  # noqa: B027  # Most layers store no cells.
         """Adapt to a new size or origin of the costmap.
 
         `default` is the cost of the costmap's cells before any layer writes to them.
         """
 
     @abstractmethod
-    def changed(self, window: Window, moment: UpdateContext, grid: Grid) -> Window:
+    def update_window(self, window: Window, context: UpdateContext, grid: Grid) -> Window:
         """Process new data, and return the window whose costs must be rewritten.
 
         Args:
             window: the window that changed in the layers below.
-            moment: the time of the update and the robot's pose.
+            context: the time of the update and the robot's pose.
             grid: the costmap.
 
         Returns:
@@ -130,7 +130,7 @@ class Layer(ABC):
         """
 
     @abstractmethod
-    def write(self, grid: Grid, window: Window, moment: UpdateContext) -> None:
+    def write_costs(self, grid: Grid, window: Window, context: UpdateContext) -> None:
         """Write costs into the cells of the window."""
 
     def reset(self) -> None:  # noqa: B027  # Most layers store no data.
@@ -139,7 +139,7 @@ class Layer(ABC):
         By default, do nothing.
         """
 
-    def clear(self, window: Window, *, outside: bool) -> None:  # noqa: B027  # Only clearable layers override it.
+    def clear(self, window: Window, *, clear_outside: bool) -> None:  # noqa: B027  # Only clearable layers override it.
         """Clear the layer's data in a window, or all data outside the window."""
 
     def is_current(self, time_ns: int) -> bool:
@@ -159,9 +159,9 @@ class PersistentLayer(Layer):
     def __init__(self) -> None:
         self.layer_grid = Grid(cells=np.zeros((0, 0), np.uint8), resolution=1.0)
         self._default = FREE
-        self._extra = Window()
+        self._extra_window = Window()
 
-    def match(self, grid: Grid, default: int) -> None:
+    def match_grid(self, grid: Grid, default: int) -> None:
         """Move the layer's cells to a new grid.
 
         Cells outside the old grid get the default cost.
@@ -169,26 +169,26 @@ class PersistentLayer(Layer):
         cells = shift_cells(self.layer_grid.cells, self.layer_grid, grid, default)
         self.layer_grid = Grid(cells=cells, resolution=grid.resolution, x=grid.x, y=grid.y)
         self._default = default
-        self._extra = Window.of(grid)
+        self._extra_window = Window.of(grid)
 
     def reset(self) -> None:
         """Set all cells to the default cost."""
         self.layer_grid.cells[:] = self._default
-        self._extra = Window.of(self.layer_grid)
+        self._extra_window = Window.of(self.layer_grid)
 
-    def clear(self, window: Window, *, outside: bool) -> None:
+    def clear(self, window: Window, *, clear_outside: bool) -> None:
         """Set the cells in a window, or all cells outside it, to unknown."""
         kept_cells = self.layer_grid.cells[window.cells].copy()
-        if outside:
+        if clear_outside:
             self.layer_grid.cells[:] = UNKNOWN
             self.layer_grid.cells[window.cells] = kept_cells
         else:
             self.layer_grid.cells[window.cells] = UNKNOWN
-        self._extra = Window.of(self.layer_grid)
+        self._extra_window = Window.of(self.layer_grid)
 
     def pop_extra_window(self) -> Window:
         """Return the window changed by resizing or clearing since the last call."""
-        window, self._extra = self._extra, Window()
+        window, self._extra_window = self._extra_window, Window()
         return window
 
 
@@ -201,21 +201,21 @@ def shift_cells(cells: NDArray[Any], old: Grid, new: Grid, fill: int) -> NDArray
     if old.resolution != new.resolution:
         return shifted_cells
     rows, columns = round((new.y - old.y) / new.resolution), round((new.x - old.x) / new.resolution)
-    overlap = Window(-rows, -columns, old.rows - rows, old.columns - columns).within(new)
+    overlap = Window(-rows, -columns, old.rows - rows, old.columns - columns).clipped_to(new)
     if not overlap.is_empty:
         source = Window(overlap.top + rows, overlap.left + columns, overlap.bottom + rows, overlap.right + columns)
         shifted_cells[overlap.cells] = cells[source.cells]
     return shifted_cells
 
 
-def footprint_window(moment: UpdateContext, grid: Grid) -> Window:
+def footprint_window(context: UpdateContext, grid: Grid) -> Window:
     """Return the smallest window that contains the robot's footprint."""
-    return Window.around(grid.cells_of(moment.footprint), grid)
+    return Window.around(grid.cells_of(context.footprint), grid)
 
 
-def free_footprint(cells: Costs, moment: UpdateContext, grid: Grid, window: Window) -> None:
+def free_footprint(cells: Costs, context: UpdateContext, grid: Grid, window: Window) -> None:
     """Free the cells of a window whose centres are within the robot's footprint."""
-    footprint_cells = footprint_window(moment, grid)
+    footprint_cells = footprint_window(context, grid)
     footprint_cells = Window(
         max(footprint_cells.top, window.top),
         max(footprint_cells.left, window.left),
@@ -226,4 +226,4 @@ def free_footprint(cells: Costs, moment: UpdateContext, grid: Grid, window: Wind
         return
     rows, columns = np.mgrid[footprint_cells.top : footprint_cells.bottom, footprint_cells.left : footprint_cells.right]
     centres = grid.centres_of(np.stack((rows, columns), axis=-1))
-    cells[footprint_cells.cells][within_polygon(centres, moment.footprint)] = FREE
+    cells[footprint_cells.cells][within_polygon(centres, context.footprint)] = FREE

@@ -25,7 +25,7 @@ class LayeredCostmap:
         grid: the size, origin and resolution; its cells are not used.
         layers: the layers from bottom to top.
         footprint: the footprint of the robot without padding; see `Footprint`.
-        rolling: whether the costmap moves to keep the robot in its middle.
+        is_rolling: whether the costmap moves to keep the robot in its middle.
         track_unknown: whether cells without data are unknown; otherwise they are free.
         footprint_padding: the padding of the footprint, in metres.
 
@@ -33,7 +33,7 @@ class LayeredCostmap:
         costmap: the costs after the last update.
         layers: the layers from bottom to top.
         padding: the padding that is applied when the footprint is next set, in metres.
-        changed: the window that the last update wrote.
+        changed_window: the window that the last update wrote.
     """
 
     def __init__(
@@ -42,15 +42,15 @@ class LayeredCostmap:
         layers: Sequence[Layer],
         footprint: Footprint,
         *,
-        rolling: bool = False,
+        is_rolling: bool = False,
         track_unknown: bool = False,
         footprint_padding: float = 0.0,
     ) -> None:
         self.layers = list(layers)
-        self.rolling = rolling
+        self.is_rolling = is_rolling
         self._default = UNKNOWN if track_unknown else FREE
         self.padding = footprint_padding
-        self.changed = Window()
+        self.changed_window = Window()
         self._is_updated = False
         self.footprint = footprint
         self.resize(grid)
@@ -76,7 +76,7 @@ class LayeredCostmap:
         cells = np.full((grid.rows, grid.columns), self._default, np.uint8)
         self.costmap = Costmap(Grid(cells=cells, resolution=grid.resolution, x=grid.x, y=grid.y))
         for layer in self.layers:
-            layer.match(self.costmap.grid, self._default)
+            layer.match_grid(self.costmap.grid, self._default)
         self._is_updated = False
 
     def update(self, pose: Pose, time_ns: int) -> bool:
@@ -87,25 +87,25 @@ class LayeredCostmap:
             time_ns: the time of the update.
 
         Returns:
-            Whether any cell was written; `changed` is the written window.
+            Whether any cell was written; `changed_window` is the written window.
         """
         x, y, yaw = pose
-        if self.rolling:
-            self._centre(x, y)
+        if self.is_rolling:
+            self._center_on(x, y)
         grid = self.costmap.grid
         footprint = place_footprint(self._footprint, x, y, yaw)
-        moment = UpdateContext(x, y, footprint, self.inscribed_radius, time_ns)
+        context = UpdateContext(x, y, footprint, self.inscribed_radius, time_ns)
         enabled_layers = [layer for layer in self.layers if layer.enabled]
-        window = Window() if self._is_updated and not self.rolling else Window.of(grid)
+        window = Window() if self._is_updated and not self.is_rolling else Window.of(grid)
         for layer in enabled_layers:
-            window = layer.changed(window, moment, grid)
-        self.changed = window
+            window = layer.update_window(window, context, grid)
+        self.changed_window = window
         self._is_updated = True
         if window.is_empty:
             return False
         grid.cells[window.cells] = self._default
         for layer in enabled_layers:
-            layer.write(grid, window, moment)
+            layer.write_costs(grid, window, context)
         return True
 
     def invalidate(self) -> None:
@@ -123,22 +123,22 @@ class LayeredCostmap:
             layer.reset()
         self._is_updated = False
 
-    def clear_around(self, pose: Pose, distance: float, *, outside: bool = False) -> None:
+    def clear_around(self, pose: Pose, distance: float, *, clear_outside: bool = False) -> None:
         """Clear the clearable layers in a square, or everywhere outside the square.
 
         Args:
             pose: the centre of the square.
             distance: the side of the square, in metres.
-            outside: whether to keep the square and clear the rest.
+            clear_outside: whether to keep the square and clear the rest.
         """
         corners = np.array([[pose[0], pose[1]]]) + distance / 2.0 * np.array([[-1.0, -1.0], [1.0, 1.0]])
         window = Window.around(self.costmap.grid.cells_of(corners), self.costmap.grid)
         for layer in self.layers:
             if layer.is_clearable:
-                layer.clear(window, outside=outside)
+                layer.clear(window, clear_outside=clear_outside)
         self._is_updated = False
 
-    def _centre(self, x: float, y: float) -> None:
+    def _center_on(self, x: float, y: float) -> None:
         """Move the grid by an integer number of cells so that a position is in its middle."""
         grid = self.costmap.grid
         columns = int((x - grid.columns * grid.resolution / 2.0 - grid.x) / grid.resolution)

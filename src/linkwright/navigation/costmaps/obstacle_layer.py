@@ -32,7 +32,7 @@ Cells = NDArray[np.int64]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Heights:
+class HeightRange:
     """The height range of obstacles, in metres."""
 
     min_obstacle_height: float = 0.0
@@ -52,7 +52,7 @@ class ObstacleLayer(PersistentLayer):
     def __init__(
         self,
         buffers: list[ObservationBuffer],
-        heights: Heights,
+        heights: HeightRange,
         *,
         combination_method: int = MAXIMUM,
         footprint_clearing: bool = True,
@@ -76,32 +76,32 @@ class ObstacleLayer(PersistentLayer):
         """Return whether the layer was updated since its reset and no sensor is overdue."""
         return not self._was_reset and all(buffer.is_current(time_ns) for buffer in self.buffers)
 
-    def changed(self, window: Window, moment: UpdateContext, grid: Grid) -> Window:
+    def update_window(self, window: Window, context: UpdateContext, grid: Grid) -> Window:
         """Apply the valid observations, and return the window that must be rewritten."""
         self._was_reset = False
-        window = window.joined(self.pop_extra_window())
+        window = window.union(self.pop_extra_window())
         observed = [
             (observation, buffer.source)
             for buffer in self.buffers
-            for observation in buffer.observations(moment.time_ns)
+            for observation in buffer.observations(context.time_ns)
         ]
         for observation, source in observed:
             if source.clearing:
-                window = window.joined(self.clear_rays(observation, grid))
+                window = window.union(self.clear_rays(observation, grid))
         for observation, source in observed:
             if source.marking:
-                window = window.joined(self.mark_points(observation, grid))
+                window = window.union(self.mark_points(observation, grid))
         if self._footprint_clearing:
-            window = window.joined(footprint_window(moment, grid))
+            window = window.union(footprint_window(context, grid))
         return window
 
-    def write(self, grid: Grid, window: Window, moment: UpdateContext) -> None:
+    def write_costs(self, grid: Grid, window: Window, context: UpdateContext) -> None:
         """Combine the layer's cells with the costs of the layers below.
 
         If footprint clearing is enabled, free the cells under the robot first.
         """
         if self._footprint_clearing:
-            free_footprint(self.layer_grid.cells, moment, self.layer_grid, window)
+            free_footprint(self.layer_grid.cells, context, self.layer_grid, window)
         own_costs, lower_costs = self.layer_grid.cells[window.cells], grid.cells[window.cells]
         is_written = own_costs != UNKNOWN
         if self.combination_method == MAXIMUM:
@@ -114,14 +114,14 @@ class ObstacleLayer(PersistentLayer):
         """Free the cells on the rays to the points, and return the window around these cells."""
         start, ends, _ = ray_ends(observation, grid)
         cells, _ = cells_on_lines(start, ends)
-        cells = cells[grid.has(cells) & _beyond_min_range(cells, start, observation, grid)]
+        cells = cells[grid.contains(cells) & _beyond_min_range(cells, start, observation, grid)]
         self.layer_grid.cells[cells[:, 0], cells[:, 1]] = FREE
         return Window.around(cells, grid)
 
     def mark_points(self, observation: Observation, grid: Grid) -> Window:
         """Mark the cells that contain obstacle points, and return the window around these cells."""
         cells = grid.cells_of(self.obstacles(observation)[:, :2])
-        cells = cells[grid.has(cells)]
+        cells = cells[grid.contains(cells)]
         self.layer_grid.cells[cells[:, 0], cells[:, 1]] = LETHAL
         return Window.around(cells, grid)
 

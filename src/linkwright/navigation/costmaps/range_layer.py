@@ -50,7 +50,7 @@ class RangeSettings:
 
 
 @dataclass(frozen=True, slots=True)
-class Reading:
+class RangeReading:
     """A reading of a range sensor.
 
     Attributes:
@@ -58,7 +58,7 @@ class Reading:
         yaw: the direction of the sensor, in radians.
         distance: the measured distance, in metres.
         field_of_view: the full angle of the cone, in radians.
-        free: whether the sensor found no obstacle up to the distance.
+        is_free: whether the sensor found no obstacle up to the distance.
         time_ns: the time of the reading.
     """
 
@@ -67,7 +67,7 @@ class Reading:
     yaw: float
     distance: float
     field_of_view: float
-    free: bool
+    is_free: bool
     time_ns: int
 
 
@@ -80,24 +80,24 @@ class RangeLayer(PersistentLayer):
     def __init__(self, settings: RangeSettings) -> None:
         super().__init__()
         self.settings = settings
-        self._readings: deque[Reading] = deque()
+        self._readings: deque[RangeReading] = deque()
         self._latest_reading_ns: int | None = None
 
-    def add(self, reading: Reading) -> None:
+    def add(self, reading: RangeReading) -> None:
         """Queue a reading for the next update."""
         self._readings.append(reading)
         self._latest_reading_ns = reading.time_ns
 
-    def match(self, grid: Grid, default: int) -> None:
+    def match_grid(self, grid: Grid, default: int) -> None:
         """Move the probabilities to the new grid.
 
         Cells outside the old grid get the probability of an unknown cell.
         """
-        super().match(grid, _UNKNOWN_PROBABILITY)
+        super().match_grid(grid, _UNKNOWN_PROBABILITY)
 
-    def clear(self, window: Window, *, outside: bool) -> None:
+    def clear(self, window: Window, *, clear_outside: bool) -> None:
         """Set the cells in a window, or all cells outside it, to the probability of an unknown cell."""
-        super().clear(window, outside=outside)
+        super().clear(window, clear_outside=clear_outside)
         self.layer_grid.cells[self.layer_grid.cells == UNKNOWN] = _UNKNOWN_PROBABILITY
 
     def is_current(self, time_ns: int) -> bool:
@@ -111,14 +111,14 @@ class RangeLayer(PersistentLayer):
             and (time_ns - self._latest_reading_ns) / NANOSECONDS_PER_SECOND <= timeout
         )
 
-    def changed(self, window: Window, moment: UpdateContext, grid: Grid) -> Window:
+    def update_window(self, window: Window, context: UpdateContext, grid: Grid) -> Window:
         """Apply the queued readings, and return the window that must be rewritten."""
-        window = window.joined(self.pop_extra_window())
+        window = window.union(self.pop_extra_window())
         while self._readings:
-            window = window.joined(self._apply_reading(self._readings.popleft(), grid))
+            window = window.union(self._apply_reading(self._readings.popleft(), grid))
         return window
 
-    def write(self, grid: Grid, window: Window, moment: UpdateContext) -> None:
+    def write_costs(self, grid: Grid, window: Window, context: UpdateContext) -> None:
         """Mark cells above the upper threshold, and free unknown cells below the lower threshold."""
         probabilities, lower_costs = self.layer_grid.cells[window.cells], grid.cells[window.cells]
         lower_costs[(probabilities < self.settings.clear_threshold * _MAX_PROBABILITY) & (lower_costs == UNKNOWN)] = (
@@ -126,37 +126,41 @@ class RangeLayer(PersistentLayer):
         )
         lower_costs[probabilities > self.settings.mark_threshold * _MAX_PROBABILITY] = LETHAL
 
-    def _apply_reading(self, reading: Reading, grid: Grid) -> Window:
+    def _apply_reading(self, reading: RangeReading, grid: Grid) -> Window:
         """Update the probabilities by Bayes' rule, and return the window that changed."""
         reach_in_cells = ceil(_UPDATE_FACTOR * reading.distance / grid.resolution) + 1
         row, column = grid.cells_of(np.array((reading.x, reading.y))).tolist()
         window = Window(
             row - reach_in_cells, column - reach_in_cells, row + reach_in_cells + 1, column + reach_in_cells + 1
-        ).within(grid)
+        ).clipped_to(grid)
         rows, columns = np.mgrid[window.top : window.bottom, window.left : window.right]
         centres = grid.centres_of(np.stack((rows, columns), axis=-1))
         x, y = centres[..., 0] - reading.x, centres[..., 1] - reading.y
         angles = np.abs((np.arctan2(y, x) - reading.yaw + np.pi) % (2.0 * np.pi) - np.pi)
         half_angle = max(reading.field_of_view / 2.0, np.finfo(float).tiny)
         distances = np.hypot(x, y)
-        if not reading.free:
+        if not reading.is_free:
             hit_position = (
                 reading.x + reading.distance * np.cos(reading.yaw),
                 reading.y + reading.distance * np.sin(reading.yaw),
             )
             hit_cell = grid.cells_of(np.array(hit_position))
-            if grid.has(hit_cell):
+            if grid.contains(hit_cell):
                 self.layer_grid.cells[hit_cell[0], hit_cell[1]] = _HIT_PROBABILITY
         likelihood = self._likelihood(distances, angles / half_angle, reading, grid.resolution)
         previous = self.layer_grid.cells[window.cells]
         prior = np.clip(previous / _MAX_PROBABILITY, _MIN_PRIOR, 1.0 - _MIN_PRIOR)
-        occupied, free = likelihood * prior, (1.0 - likelihood) * (1.0 - prior)
-        posterior = np.round(_MAX_PROBABILITY * occupied / (occupied + free))
+        occupied_weight, free_weight = likelihood * prior, (1.0 - likelihood) * (1.0 - prior)
+        posterior = np.round(_MAX_PROBABILITY * occupied_weight / (occupied_weight + free_weight))
         self.layer_grid.cells[window.cells] = np.where(angles <= half_angle, posterior, previous)
         return window
 
     def _likelihood(
-        self, distance: NDArray[np.float64], angular_offset: NDArray[np.float64], reading: Reading, resolution: float
+        self,
+        distance: NDArray[np.float64],
+        angular_offset: NDArray[np.float64],
+        reading: RangeReading,
+        resolution: float,
     ) -> NDArray[np.float64]:
         """Return the probability that a cell is occupied according to this reading alone.
 
@@ -166,7 +170,7 @@ class RangeLayer(PersistentLayer):
             reading: the measurement.
             resolution: the side of a cell, in metres.
         """
-        if reading.free:
+        if reading.is_free:
             return np.where(distance <= reading.distance, 0.0, 0.5)
         weight = (1.0 - np.tanh(2.0 * (distance - self.settings.phi))) / 2.0 * np.maximum(1.0 - angular_offset**2, 0.0)
         blur = max(resolution * reading.distance, np.finfo(float).tiny)

@@ -102,7 +102,7 @@ class StaticLayer(Layer):
         self._needs_rewrite = True
         return True
 
-    def match(self, grid: Grid, default: int) -> None:
+    def match_grid(self, grid: Grid, default: int) -> None:
         """Make the next update write all cells."""
         self._needs_rewrite = True
 
@@ -114,7 +114,7 @@ class StaticLayer(Layer):
         """Return whether there is a map whose pose is known or will be requested by the next update."""
         return self.map is not None and (self._map_pose is not None or self._needs_rewrite)
 
-    def changed(self, window: Window, moment: UpdateContext, grid: Grid) -> Window:
+    def update_window(self, window: Window, context: UpdateContext, grid: Grid) -> Window:
         """Return the window that must be rewritten: the whole grid after a new map or transform."""
         if self.map is None:
             return window
@@ -122,13 +122,13 @@ class StaticLayer(Layer):
         if pose != self._map_pose:
             self._map_pose, self._needs_rewrite = pose, True
         if self._footprint_clearing:
-            window = window.joined(footprint_window(moment, grid))
+            window = window.union(footprint_window(context, grid))
         if not self._needs_rewrite:
             return window
         self._needs_rewrite = False
         return Window.of(grid)
 
-    def write(self, grid: Grid, window: Window, moment: UpdateContext) -> None:
+    def write_costs(self, grid: Grid, window: Window, context: UpdateContext) -> None:
         """Write the map's costs into the window.
 
         If footprint clearing is enabled, free the cells under the robot afterwards.
@@ -139,7 +139,7 @@ class StaticLayer(Layer):
         covered, costs = self._aligned_cells(grid, window) or self._sampled_cells(grid, window)
         window_cells[covered] = np.maximum(window_cells[covered], costs) if self._use_maximum else costs
         if self._footprint_clearing:
-            free_footprint(grid.cells, moment, grid, window)
+            free_footprint(grid.cells, context, grid, window)
 
     def _aligned_cells(self, grid: Grid, window: Window) -> tuple[tuple[slice, slice], Costs] | None:
         """Return the index of the window's cells that the map covers, and the costs of these cells.
@@ -156,7 +156,7 @@ class StaticLayer(Layer):
             return None
         map_window = Window(
             window.top + rows, window.left + columns, window.bottom + rows, window.right + columns
-        ).within(map_grid)
+        ).clipped_to(map_grid)
         top, left = map_window.top - rows - window.top, map_window.left - columns - window.left
         if map_window.is_empty:
             return (slice(0, 0), slice(0, 0)), map_grid.cells[map_window.cells]
@@ -178,6 +178,6 @@ class StaticLayer(Layer):
         x, y, yaw = self._map_pose
         cosine, sine = np.cos(yaw), np.sin(yaw)
         indices = self.map.cells_of(centres @ np.array([[cosine, sine], [-sine, cosine]]) + (x, y))
-        inside = self.map.has(indices)
-        indices = indices[inside]
-        return inside, self.map.cells[indices[:, 0], indices[:, 1]]
+        is_inside = self.map.contains(indices)
+        indices = indices[is_inside]
+        return is_inside, self.map.cells[indices[:, 0], indices[:, 1]]

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from linkwright.navigation.costmaps.costmap import FREE, LETHAL, UNKNOWN
 from linkwright.navigation.costmaps.layer import Window, shift_cells
 from linkwright.navigation.costmaps.observations import Observation, ObservationBuffer
-from linkwright.navigation.costmaps.obstacle_layer import Cells, Heights, ObstacleLayer, ray_ends
+from linkwright.navigation.costmaps.obstacle_layer import Cells, HeightRange, ObstacleLayer, ray_ends
 from linkwright.navigation.grids.grid import Grid
 from linkwright.navigation.grids.rays import cells_on_lines
 
@@ -54,7 +54,7 @@ class VoxelLayer(ObstacleLayer):
     def __init__(
         self,
         buffers: list[ObservationBuffer],
-        heights: Heights,
+        heights: HeightRange,
         voxels: Voxels,
         *,
         combination_method: int = 1,
@@ -66,14 +66,14 @@ class VoxelLayer(ObstacleLayer):
         self._occupied: Levels = np.zeros((0, 0), np.uint16)
         self._unknown: Levels = np.zeros((0, 0), np.uint16)
 
-    def match(self, grid: Grid, default: int) -> None:
+    def match_grid(self, grid: Grid, default: int) -> None:
         """Move the voxels to a new grid.
 
         Voxels outside the old grid are unknown.
         """
         self._occupied = shift_cells(self._occupied, self.layer_grid, grid, 0)
         self._unknown = shift_cells(self._unknown, self.layer_grid, grid, _ALL_LEVELS)
-        super().match(grid, default)
+        super().match_grid(grid, default)
 
     def reset(self) -> None:
         """Set all voxels to unknown.
@@ -84,13 +84,13 @@ class VoxelLayer(ObstacleLayer):
         self._occupied[:] = 0
         self._unknown[:] = _ALL_LEVELS
 
-    def clear(self, window: Window, *, outside: bool) -> None:
+    def clear(self, window: Window, *, clear_outside: bool) -> None:
         """Set the voxels in a window, or all voxels outside it, to unknown."""
         is_cleared = np.zeros(self._unknown.shape, np.bool_)
         is_cleared[window.cells] = True
-        is_cleared ^= outside
+        is_cleared ^= clear_outside
         self._occupied[is_cleared], self._unknown[is_cleared] = 0, _ALL_LEVELS
-        super().clear(window, outside=outside)
+        super().clear(window, clear_outside=clear_outside)
 
     def clear_rays(self, observation: Observation, grid: Grid) -> Window:
         """Free the voxels on the rays to the points, and return the window around their cells."""
@@ -102,7 +102,7 @@ class VoxelLayer(ObstacleLayer):
         cell_heights = observation.origin[2] + fractions * (heights[ray_indices] - observation.origin[2])
         min_range = observation.source.raytrace_min_range / grid.resolution
         levels, is_cleared = self._levels(cell_heights)
-        is_cleared &= grid.has(cells) & (((cells - start) ** 2).sum(axis=1) >= min_range**2)
+        is_cleared &= grid.contains(cells) & (((cells - start) ** 2).sum(axis=1) >= min_range**2)
         cells, bits = cells[is_cleared], np.left_shift(1, levels[is_cleared]).astype(np.uint16)
         np.bitwise_and.at(self._occupied, (cells[:, 0], cells[:, 1]), ~bits)
         np.bitwise_and.at(self._unknown, (cells[:, 0], cells[:, 1]), ~bits)
@@ -114,7 +114,7 @@ class VoxelLayer(ObstacleLayer):
         points = self.obstacles(observation)
         cells = grid.cells_of(points[:, :2])
         levels, is_marked = self._levels(points[:, 2])
-        is_marked &= grid.has(cells)
+        is_marked &= grid.contains(cells)
         cells, bits = cells[is_marked], np.left_shift(1, levels[is_marked]).astype(np.uint16)
         np.bitwise_or.at(self._occupied, (cells[:, 0], cells[:, 1]), bits)
         np.bitwise_and.at(self._unknown, (cells[:, 0], cells[:, 1]), ~bits)

@@ -61,12 +61,12 @@ class Estimator:
         must_predict = self._timing.predict_to_now
         if self._queue:
             requeued_count = 0
-            if history_ns is not None and kalman.initialized and self._queue[0][0] < kalman.time_ns:
+            if history_ns is not None and kalman.is_initialized and self._queue[0][0] < kalman.time_ns:
                 requeued_count = self._rewind(self._queue[0][0])
             self._process_queue(now_ns, requeued_count)
-        elif kalman.initialized and now_ns - kalman.time_ns >= self._timing.sensor_timeout_ns:
+        elif kalman.is_initialized and now_ns - kalman.time_ns >= self._timing.sensor_timeout_ns:
             must_predict = True
-        if kalman.initialized and must_predict and now_ns > kalman.time_ns:
+        if kalman.is_initialized and must_predict and now_ns > kalman.time_ns:
             kalman.predict(now_ns)
         if history_ns is not None:
             self._drop_history(kalman.time_ns - history_ns)

@@ -36,11 +36,11 @@ _ITERATIONS = 6
 """The number of iterations for the latitude. Each reduces the error by a factor of hundreds."""
 
 
-class Zone(NamedTuple):
+class UtmZone(NamedTuple):
     """A UTM zone, 1 to 60, in the northern or southern hemisphere."""
 
     number: int
-    northern: bool
+    is_northern: bool
 
     @property
     def meridian(self) -> float:
@@ -48,7 +48,7 @@ class Zone(NamedTuple):
         return radians(6.0 * self.number - 183.0)
 
 
-def zone_from_degrees(latitude: float, longitude: float) -> Zone:
+def zone_from_degrees(latitude: float, longitude: float) -> UtmZone:
     """Return the UTM zone of a position in degrees.
 
     Some zones of Norway and Svalbard are wider or narrower than the others.
@@ -59,10 +59,10 @@ def zone_from_degrees(latitude: float, longitude: float) -> Zone:
         number = 32
     elif 72.0 <= latitude <= 84.0 and 0.0 <= longitude < 42.0:
         number = 31 + 2 * int((longitude + 3.0) // 12.0)
-    return Zone(number, latitude >= 0.0)
+    return UtmZone(number, latitude >= 0.0)
 
 
-def utm_from_degrees(latitude: float, longitude: float, zone: Zone) -> tuple[float, float]:
+def utm_from_degrees(latitude: float, longitude: float, zone: UtmZone) -> tuple[float, float]:
     """Convert a position in degrees to easting and northing in metres."""
     tau = tan(radians(latitude))
     sigma = sinh(_ECCENTRICITY * atanh(_ECCENTRICITY * tau / hypot(1.0, tau)))
@@ -74,16 +74,16 @@ def utm_from_degrees(latitude: float, longitude: float, zone: Zone) -> tuple[flo
     for order, factor in enumerate(_FORWARD, 1):
         north += factor * sin(2 * order * xi) * cosh(2 * order * eta)
         east += factor * cos(2 * order * xi) * sinh(2 * order * eta)
-    false_northing = 0.0 if zone.northern else _FALSE_NORTHING
+    false_northing = 0.0 if zone.is_northern else _FALSE_NORTHING
     return _FALSE_EASTING + _SCALE * _RECTIFYING * east, false_northing + _SCALE * _RECTIFYING * north
 
 
-def degrees_from_utm(easting: float, northing: float, zone: Zone) -> tuple[float, float]:
+def degrees_from_utm(easting: float, northing: float, zone: UtmZone) -> tuple[float, float]:
     """Convert easting and northing in metres to latitude and longitude in degrees.
 
     This is the inverse of `utm_from_degrees`.
     """
-    north = (northing - (0.0 if zone.northern else _FALSE_NORTHING)) / (_SCALE * _RECTIFYING)
+    north = (northing - (0.0 if zone.is_northern else _FALSE_NORTHING)) / (_SCALE * _RECTIFYING)
     east = (easting - _FALSE_EASTING) / (_SCALE * _RECTIFYING)
     xi, eta = north, east
     for order, factor in enumerate(_BACKWARD, 1):
@@ -100,7 +100,7 @@ def degrees_from_utm(easting: float, northing: float, zone: Zone) -> tuple[float
     return degrees(atan(tau)), (longitude + 180.0) % 360.0 - 180.0
 
 
-def convergence(latitude: float, longitude: float, zone: Zone) -> float:
+def convergence(latitude: float, longitude: float, zone: UtmZone) -> float:
     """Return the meridian convergence, in rad, at a position in degrees.
 
     The meridian convergence is the clockwise angle from true north to grid north.

@@ -26,8 +26,8 @@ from linkwright.navigation.estimation.motion_model import (
     Vector,
     predict_state,
     state_jacobian,
-    wrap_angles,
-    wrapped,
+    wrap_angle,
+    wrap_state_angles,
 )
 
 MIN_VARIANCE = 1e-9
@@ -105,7 +105,7 @@ class Snapshot:
     state: Vector
     covariance: Matrix
     time_ns: int
-    initialized: bool
+    is_initialized: bool
     command: tuple[Vector, int]
 
 
@@ -117,14 +117,14 @@ class Settings:
         noise: the covariance added per second, shape (15, 15).
         initial_covariance: the covariance at the start, shape (15, 15).
         initial_state: the state at the start, shape (15,).
-        dynamic_noise: whether the noise of the pose grows with the velocity and is zero at rest.
+        uses_dynamic_noise: whether the noise of the pose grows with the velocity and is zero at rest.
         control: the response to commands; None to ignore commands.
     """
 
     noise: Matrix = field(default_factory=lambda: np.diag(DEFAULT_NOISE))
     initial_covariance: Matrix = field(default_factory=lambda: np.eye(SIZE) * 1e-9)
     initial_state: Vector = field(default_factory=lambda: np.zeros(SIZE))
-    dynamic_noise: bool = False
+    uses_dynamic_noise: bool = False
     control: Control | None = None
 
 
@@ -138,7 +138,7 @@ class KalmanFilter(ABC):
         state: the estimated state, shape (15,).
         covariance: the covariance of the state, shape (15, 15).
         time_ns: the time of the state.
-        initialized: whether a measurement has initialized the state.
+        is_initialized: whether a measurement has initialized the state.
     """
 
     def __init__(self, settings: Settings | None = None) -> None:
@@ -155,17 +155,17 @@ class KalmanFilter(ABC):
         """
         self.state = self.settings.initial_state.copy()
         self.covariance = self.settings.initial_covariance.copy()
-        self.initialized = False
+        self.is_initialized = False
         self.command: tuple[Vector, int] = (np.zeros(6), 0)
 
     def snapshot(self) -> Snapshot:
         """Return a copy of the filter's state that can be passed to `restore`."""
-        return Snapshot(self.state.copy(), self.covariance.copy(), self.time_ns, self.initialized, self.command)
+        return Snapshot(self.state.copy(), self.covariance.copy(), self.time_ns, self.is_initialized, self.command)
 
     def restore(self, snapshot: Snapshot) -> None:
         """Restore the state that `snapshot` returned."""
         self.state, self.covariance = snapshot.state.copy(), snapshot.covariance.copy()
-        self.time_ns, self.initialized, self.command = snapshot.time_ns, snapshot.initialized, snapshot.command
+        self.time_ns, self.is_initialized, self.command = snapshot.time_ns, snapshot.is_initialized, snapshot.command
 
     def process(self, measurement: Measurement) -> bool:
         """Predict the state up to the time of a measurement, and correct it by the measurement.
@@ -173,8 +173,8 @@ class KalmanFilter(ABC):
         A measurement from before the state's time corrects the state without a prediction. The first measurement
         initializes the state. Returns whether the measurement was used.
         """
-        if not self.initialized:
-            self._begin(measurement)
+        if not self.is_initialized:
+            self._initialize(measurement)
             return True
         if measurement.time_ns > self.time_ns:
             self.predict(measurement.time_ns)
@@ -198,7 +198,7 @@ class KalmanFilter(ABC):
         innovation = measurement.values[used_indices] - self.state[used_indices]
         for row, index in enumerate(used_indices):
             if index in _ANGLES:
-                innovation[row] = wrapped(float(innovation[row]))
+                innovation[row] = wrap_angle(float(innovation[row]))
         noise = _measurement_noise(measurement, used_indices)
         try:
             inverse = np.linalg.inv(self.covariance[np.ix_(used_indices, used_indices)] + noise)
@@ -211,22 +211,22 @@ class KalmanFilter(ABC):
         correction = np.eye(SIZE)
         correction[:, used_indices] -= gain
         self.covariance = correction @ self.covariance @ correction.T + gain @ noise @ gain.T
-        wrap_angles(self.state)
+        wrap_state_angles(self.state)
         return True
 
     @abstractmethod
     def _predict(self, seconds: float) -> None: ...
 
-    def _begin(self, measurement: Measurement) -> None:
+    def _initialize(self, measurement: Measurement) -> None:
         used_indices = _used_indices(measurement)
         self.state[used_indices] = measurement.values[used_indices]
         self.covariance[np.ix_(used_indices, used_indices)] = measurement.covariance[np.ix_(used_indices, used_indices)]
         self.time_ns = measurement.time_ns
-        self.initialized = True
+        self.is_initialized = True
 
     def _process_noise(self, seconds: float) -> Matrix:
         noise = self.settings.noise
-        if self.settings.dynamic_noise:
+        if self.settings.uses_dynamic_noise:
             noise = noise.copy()
             noise[POSE, POSE] *= float(self.state[TWIST] @ self.state[TWIST])
         return noise * seconds
@@ -287,11 +287,11 @@ class UnscentedKalmanFilter(KalmanFilter):
         centre = predicted_points[0]
         deviations = predicted_points - centre
         for index in _ANGLES:
-            deviations[:, index] = [wrapped(float(angle)) for angle in deviations[:, index]]
+            deviations[:, index] = [wrap_angle(float(angle)) for angle in deviations[:, index]]
         mean = self._weights @ deviations
         deviations -= mean
         self.state = centre + mean
-        wrap_angles(self.state)
+        wrap_state_angles(self.state)
         self.covariance = (deviations.T * self._covariance_weights) @ deviations + noise
 
 

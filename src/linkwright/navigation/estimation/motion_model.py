@@ -46,14 +46,14 @@ TWIST = slice(6, 12)
 ACCELERATION = slice(12, 15)
 
 
-def wrapped(angle: float) -> float:
+def wrap_angle(angle: float) -> float:
     """Return an angle wrapped to -pi to pi."""
     return (angle + pi) % (2.0 * pi) - pi if not -pi <= angle <= pi else angle
 
 
-def wrap_angles(state: Vector) -> None:
+def wrap_state_angles(state: Vector) -> None:
     """Wrap roll, pitch and yaw of a state to -pi to pi, in place."""
-    state[ANGLES] = [wrapped(angle) for angle in state[ANGLES].tolist()]
+    state[ANGLES] = [wrap_angle(angle) for angle in state[ANGLES].tolist()]
 
 
 def rotation(roll: float, pitch: float, yaw: float) -> Matrix:
@@ -81,7 +81,7 @@ def predict_state(state: Vector, seconds: float) -> Vector:
     predicted[POSITION] += rotation_matrix @ _shift(state, seconds)
     predicted[ANGLES] += angle_rates @ state[RATES] * seconds
     predicted[VELOCITY] += state[ACCELERATION] * seconds
-    wrap_angles(predicted)
+    wrap_state_angles(predicted)
     return predicted
 
 

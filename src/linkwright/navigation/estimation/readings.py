@@ -45,7 +45,7 @@ _PLANAR_ZEROS = (State.Z, State.ROLL, State.PITCH, State.VZ, State.VROLL, State.
 _FLAT_VARIANCE = 1e-6
 _MIN_INFLUENCE = 1e-6
 
-Used = tuple[bool, ...]
+UsedFlags = tuple[bool, ...]
 
 
 class Reading(NamedTuple):
@@ -59,7 +59,7 @@ class Reading(NamedTuple):
 
     values: Vector
     covariance: Matrix
-    used: Used
+    used: UsedFlags
 
 
 @dataclass(slots=True)
@@ -73,14 +73,14 @@ class PoseReader:
         two_d: whether the body moves on a plane.
     """
 
-    used: Used
+    used: UsedFlags
     differential: bool = False
     relative: bool = False
     two_d: bool = False
     _first: Transform | None = None
     _previous: tuple[Transform, Matrix, int] | None = None
 
-    def forget(self) -> None:
+    def reset(self) -> None:
         """Treat the next pose as the first pose."""
         self._first = self._previous = None
 
@@ -145,7 +145,7 @@ class PoseReader:
         reading.covariance[POSE, POSE] = rotated_covariance
         return _with_flags(reading, (*used, *([False] * 9)), two_d=self.two_d)
 
-    def _velocity_reading(self, previous: tuple[Transform, Matrix, int], sensor: Transform, used: Used) -> Reading:
+    def _velocity_reading(self, previous: tuple[Transform, Matrix, int], sensor: Transform, used: UsedFlags) -> Reading:
         assert self._previous is not None
         pose, covariance, time_ns = self._previous
         seconds = (time_ns - previous[2]) / 1e9
@@ -158,7 +158,14 @@ class PoseReader:
 
 
 def read_twist(
-    linear: Vector, angular: Vector, covariance: Matrix, mounting: Transform, rates: Vector, used: Used, *, two_d: bool
+    linear: Vector,
+    angular: Vector,
+    covariance: Matrix,
+    mounting: Transform,
+    rates: Vector,
+    used: UsedFlags,
+    *,
+    two_d: bool,
 ) -> Reading:
     """Convert a twist in a sensor's frame to a reading of the body's velocities.
 
@@ -195,7 +202,7 @@ def read_twist(
 
 
 def read_acceleration(
-    acceleration: Vector, covariance: Matrix, mounting: Transform, used: Used, *, two_d: bool
+    acceleration: Vector, covariance: Matrix, mounting: Transform, used: UsedFlags, *, two_d: bool
 ) -> Reading:
     """Convert an acceleration in a sensor's frame to a reading of the body's acceleration.
 
@@ -234,7 +241,7 @@ def _empty_reading() -> Reading:
     return Reading(np.zeros(SIZE), np.zeros((SIZE, SIZE)), ())
 
 
-def _with_flags(reading: Reading, used: Used, *, two_d: bool) -> Reading:
+def _with_flags(reading: Reading, used: UsedFlags, *, two_d: bool) -> Reading:
     if two_d:
         used = tuple(flag or index in _PLANAR_ZEROS for index, flag in enumerate(used))
         for index in _PLANAR_ZEROS:
@@ -243,7 +250,7 @@ def _with_flags(reading: Reading, used: Used, *, two_d: bool) -> Reading:
     return reading._replace(used=used)
 
 
-def _finite_pose(pose: Transform, used: Used) -> tuple[Transform, Used]:
+def _finite_pose(pose: Transform, used: UsedFlags) -> tuple[Transform, UsedFlags]:
     """Return a pose without non-finite values, and flags of the used values that are finite.
 
     A non-finite coordinate becomes 0, and a non-finite orientation becomes the identity.
@@ -255,7 +262,7 @@ def _finite_pose(pose: Transform, used: Used) -> tuple[Transform, Used]:
     return (x, y, z, *IDENTITY[3:]), tuple(flag and not 3 <= index < 6 for index, flag in enumerate(finite_flags))
 
 
-def _finite_flags(used: Used, section: slice, values: Vector) -> Used:
+def _finite_flags(used: UsedFlags, section: slice, values: Vector) -> UsedFlags:
     """Return the flags, with the flags of non-finite values in a section of the state cleared."""
     flags = list(used)
     flags[section] = [bool(value) for value in np.array(used[section]) & np.isfinite(values)]
@@ -267,12 +274,14 @@ def _finite_or_zero(values: Vector) -> Vector:
     return numbers
 
 
-def _rotated_components(used: Used, finite_flags: Used, rotation_to_body: Matrix, section: slice) -> Used:
+def _rotated_components(
+    used: UsedFlags, finite_flags: UsedFlags, rotation_to_body: Matrix, section: slice
+) -> UsedFlags:
     """Return flags of the body's components that depend only on finite sensor components."""
     lost_flags = tuple(used_flag and not finite_flag for used_flag, finite_flag in zip(used, finite_flags, strict=True))
     return tuple(
-        bool(here and not depends_on_lost)
-        for here, depends_on_lost in zip(
+        bool(is_affected and not depends_on_lost)
+        for is_affected, depends_on_lost in zip(
             _affected_components(finite_flags, rotation_to_body, section),
             _affected_components(lost_flags, rotation_to_body, section),
             strict=True,
@@ -280,7 +289,7 @@ def _rotated_components(used: Used, finite_flags: Used, rotation_to_body: Matrix
     )
 
 
-def _affected_components(flags: Used, rotation_to_body: Matrix, section: slice) -> NDArray[np.bool_]:
+def _affected_components(flags: UsedFlags, rotation_to_body: Matrix, section: slice) -> NDArray[np.bool_]:
     """Return a mask of the body's components that depend on a flagged sensor component."""
     columns = rotation_to_body[:, np.array(flags[section], dtype=bool)]
     is_affected: NDArray[np.bool_] = np.sum(columns * columns, axis=1) >= _MIN_INFLUENCE * _MIN_INFLUENCE

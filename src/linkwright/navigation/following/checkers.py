@@ -9,7 +9,7 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from math import hypot
 
-from linkwright.navigation.following.follower import Pose, Velocity, wrapped
+from linkwright.navigation.following.follower import Pose, Velocity, wrap_angle
 
 
 class GoalChecker(ABC):
@@ -25,7 +25,7 @@ class GoalChecker(ABC):
         All arguments are in the same frame.
         """
 
-    def begin(self) -> None:  # noqa: B027  # Some checkers have no state.
+    def reset(self) -> None:  # noqa: B027  # Some checkers have no state.
         """Reset for a new goal."""
 
 
@@ -49,7 +49,7 @@ class SimpleGoalChecker(GoalChecker):
         self.xy_tolerance = self._parameters.xy_goal_tolerance
         self._position_reached = False
 
-    def begin(self) -> None:
+    def reset(self) -> None:
         """Reset for a new goal."""
         self._position_reached = False
 
@@ -59,7 +59,7 @@ class SimpleGoalChecker(GoalChecker):
             if hypot(pose[0] - goal[0], pose[1] - goal[1]) > self._parameters.xy_goal_tolerance:
                 return False
             self._position_reached = self._parameters.stateful
-        return abs(wrapped(pose[2] - goal[2])) <= self._parameters.yaw_goal_tolerance
+        return abs(wrap_angle(pose[2] - goal[2])) <= self._parameters.yaw_goal_tolerance
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -115,7 +115,7 @@ class ProgressChecker:
         self._reference_pose: Pose | None = None
         self._reference_time_ns = 0
 
-    def begin(self) -> None:
+    def reset(self) -> None:
         """Reset for a new goal."""
         self._reference_pose = None
 
@@ -132,5 +132,5 @@ class ProgressChecker:
             return True
         return (
             isinstance(parameters, PoseProgressParameters)
-            and abs(wrapped(pose[2] - reference[2])) > parameters.required_movement_angle
+            and abs(wrap_angle(pose[2] - reference[2])) > parameters.required_movement_angle
         )

@@ -30,7 +30,7 @@ class Velocity(NamedTuple):
     yaw: float = 0.0
 
 
-STILL: Final = Velocity()
+ZERO_VELOCITY: Final = Velocity()
 """No motion."""
 
 
@@ -67,7 +67,7 @@ class FollowingError(Exception):
 class Follower(ABC):
     """The base class of controllers that compute velocities to drive a robot along a path."""
 
-    def begin(self) -> None:  # noqa: B027  # Most followers keep no data of the previous path.
+    def reset(self) -> None:  # noqa: B027  # Most followers keep no data of the previous path.
         """Reset for a new path."""
 
     @abstractmethod
@@ -88,14 +88,14 @@ class Follower(ABC):
         """
 
 
-def limited(max_speed: float, speed: float, *, is_percentage: bool) -> float:
+def apply_speed_limit(max_speed: float, speed: float, *, is_percentage: bool) -> float:
     """Return a maximum speed, in m/s, reduced to the limit of `Follower.limit_speed`."""
     if not speed > 0.0:
         return max_speed
     return max_speed * min(speed, 100.0) / 100.0 if is_percentage else min(max_speed, speed)
 
 
-def wrapped(angle: float) -> float:
+def wrap_angle(angle: float) -> float:
     """Return an angle wrapped to (-pi, pi]."""
     return float(np.arctan2(np.sin(angle), np.cos(angle)))
 
@@ -112,7 +112,7 @@ def to_robot_frame(pose: Pose, points: NDArray[np.float64]) -> NDArray[np.float6
     return robot_points
 
 
-def lengths_along(path: NDArray[np.float64]) -> NDArray[np.float64]:
+def distances_along(path: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the distance along a path to each of its poses, in metres, of shape (poses,)."""
     steps = np.hypot(*np.diff(path[:, :2], axis=0).T)
     lengths: NDArray[np.float64] = np.concatenate(([0.0], np.cumsum(steps)))

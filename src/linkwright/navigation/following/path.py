@@ -7,7 +7,7 @@ from math import hypot
 import numpy as np
 from numpy.typing import NDArray
 
-from linkwright.navigation.following.follower import lengths_along
+from linkwright.navigation.following.follower import distances_along
 
 
 class FollowedPath:
@@ -23,11 +23,11 @@ class FollowedPath:
 
     def __init__(self, poses: NDArray[np.float64], search_distance: float) -> None:
         self.poses = poses
-        self._lengths = lengths_along(poses)
+        self._lengths = distances_along(poses)
         self._search_distance = search_distance
         self._index = 0
 
-    def progress(self, x: float, y: float) -> None:
+    def update_progress(self, x: float, y: float) -> None:
         """Update the progress from the robot's position, in metres."""
         end = int(np.searchsorted(self._lengths, self._lengths[self._index] + self._search_distance, side="right"))
         nearby_points = self.poses[self._index : max(end, self._index + 1), :2]

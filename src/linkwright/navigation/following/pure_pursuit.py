@@ -22,11 +22,11 @@ from linkwright.navigation.following.follower import (
     Pose,
     Situation,
     Velocity,
-    lengths_along,
-    limited,
+    apply_speed_limit,
+    distances_along,
     predict_poses,
     to_robot_frame,
-    wrapped,
+    wrap_angle,
 )
 
 
@@ -72,7 +72,7 @@ class RegulatedPurePursuit(Follower):
 
     def limit_speed(self, speed: float, *, is_percentage: bool = False) -> None:
         """Limit the speed as described in `Follower.limit_speed`."""
-        self._max_speed = limited(self.parameters.desired_linear_vel, speed, is_percentage=is_percentage)
+        self._max_speed = apply_speed_limit(self.parameters.desired_linear_vel, speed, is_percentage=is_percentage)
 
     def velocity(self, situation: Situation) -> Velocity:
         """Return the velocity for the next cycle, as described in `Follower.velocity`."""
@@ -81,16 +81,16 @@ class RegulatedPurePursuit(Follower):
         cusp = _cusp_index(points) if parameters.allow_reversing else len(points)
         points = points[: cusp + 1]
         lookahead = self._lookahead_distance(situation.velocity.x)
-        carrot = carrot_on(points, lookahead)
+        carrot = find_carrot(points, lookahead)
         sign = -1.0 if parameters.allow_reversing and carrot[0] < 0.0 else 1.0
         goal_distance = hypot(*to_robot_frame(situation.pose, situation.path[-1, :2]))
         if parameters.use_rotate_to_heading and goal_distance < situation.xy_tolerance:
-            command = self._turn_in_place(wrapped(situation.path[-1, 2] - situation.pose[2]), situation)
+            command = self._turn_in_place(wrap_angle(situation.path[-1, 2] - situation.pose[2]), situation)
         elif self._must_turn(angle := atan2(sign * carrot[1], sign * carrot[0])):
             command = self._turn_in_place(angle, situation)
         else:
             curvature_point = (
-                carrot_on(points, parameters.curvature_lookahead_dist)
+                find_carrot(points, parameters.curvature_lookahead_dist)
                 if parameters.use_fixed_curvature_lookahead
                 else carrot
             )
@@ -98,7 +98,7 @@ class RegulatedPurePursuit(Follower):
             speed = self._speed(curvature, points, situation)
             command = Velocity(sign * speed, 0.0, sign * speed * curvature)
         if parameters.use_collision_detection:
-            self._check(command, hypot(*carrot), situation)
+            self._check_for_collision(command, hypot(*carrot), situation)
         return command
 
     def _lookahead_distance(self, speed: float) -> float:
@@ -136,7 +136,7 @@ class RegulatedPurePursuit(Follower):
         if parameters.use_cost_regulated_linear_velocity_scaling:
             speed = min(speed, self._speed_near_obstacles(situation.pose, situation.costmap, situation.footprint))
         speed = min(max(speed, parameters.regulated_linear_scaling_min_speed), self._max_speed)
-        remaining_distance = float(lengths_along(points)[-1])
+        remaining_distance = float(distances_along(points)[-1])
         if (
             parameters.approach_velocity_scaling_dist > 0.0
             and remaining_distance < parameters.approach_velocity_scaling_dist
@@ -163,7 +163,7 @@ class RegulatedPurePursuit(Follower):
             return self._max_speed
         return self._max_speed * parameters.cost_scaling_gain * distance / parameters.cost_scaling_dist
 
-    def _check(self, command: Velocity, carrot_distance: float, situation: Situation) -> None:
+    def _check_for_collision(self, command: Velocity, carrot_distance: float, situation: Situation) -> None:
         """Check that a velocity does not lead to a collision.
 
         The footprint is checked within the permitted time to a collision, and not beyond the carrot.
@@ -178,7 +178,7 @@ class RegulatedPurePursuit(Follower):
             raise FollowingError("there is an obstacle ahead")
 
 
-def carrot_on(points: NDArray[np.float64], lookahead: float) -> NDArray[np.float64]:
+def find_carrot(points: NDArray[np.float64], lookahead: float) -> NDArray[np.float64]:
     """Return the interpolated point at which a path first reaches a distance from the robot.
 
     If all points are nearer, the last point is returned.
@@ -206,8 +206,8 @@ def curvature_to(point: NDArray[np.float64]) -> float:
 
     The robot faces along x, so the curvature is 2 y / (x^2 + y^2).
     """
-    squared = float(point @ point)
-    return 2.0 * float(point[1]) / squared if squared > _MIN_SQUARED_DISTANCE else 0.0
+    squared_distance = float(point @ point)
+    return 2.0 * float(point[1]) / squared_distance if squared_distance > _MIN_SQUARED_DISTANCE else 0.0
 
 
 def speed_in_curve(speed: float, curvature: float, min_radius: float) -> float:

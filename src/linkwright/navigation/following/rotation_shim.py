@@ -15,7 +15,7 @@ from linkwright.navigation.following.follower import (
     FollowingError,
     Situation,
     Velocity,
-    lengths_along,
+    distances_along,
     to_robot_frame,
 )
 from linkwright.navigation.following.pure_pursuit import is_free, rotation_speed
@@ -50,10 +50,10 @@ class RotationShim(Follower):
         self._is_new_path = True
         self._is_turning = False
 
-    def begin(self) -> None:
+    def reset(self) -> None:
         """Reset for a new path."""
         self._is_new_path = True
-        self._primary.begin()
+        self._primary.reset()
 
     def limit_speed(self, speed: float, *, is_percentage: bool = False) -> None:
         """Limit the speed as described in `Follower.limit_speed`."""
@@ -63,7 +63,7 @@ class RotationShim(Follower):
         """Return the velocity for the next cycle, as described in `Follower.velocity`."""
         parameters = self._parameters
         points = to_robot_frame(situation.pose, situation.path[:, :2])
-        lengths = lengths_along(situation.path)
+        lengths = distances_along(situation.path)
         index = min(int(np.searchsorted(lengths, parameters.forward_sampling_distance)), len(points) - 1)
         angle = atan2(float(points[index, 1]), float(points[index, 0]))
         if self._is_new_path:

@@ -20,19 +20,23 @@ from linkwright.navigation.following.follower import (
     FollowingError,
     Situation,
     Velocity,
-    lengths_along,
-    limited,
+    apply_speed_limit,
+    distances_along,
     predict_poses,
     to_robot_frame,
-    wrapped,
+    wrap_angle,
 )
 from linkwright.navigation.following.pure_pursuit import is_free, rotation_speed
 
-_MIN_VELOCITY, _MOST, _MAX_ACCELERATION = Velocity(0.0, 0.0, -1.0), Velocity(0.26, 0.0, 1.0), Velocity(2.5, 0.0, 3.2)
+_MIN_VELOCITY, _MAX_VELOCITY, _MAX_ACCELERATION = (
+    Velocity(0.0, 0.0, -1.0),
+    Velocity(0.26, 0.0, 1.0),
+    Velocity(2.5, 0.0, 3.2),
+)
 
 
 @dataclass(frozen=True, kw_only=True)
-class Limits:
+class VelocityLimits:
     """Limits of velocity and acceleration, in m/s, rad/s, m/s^2 and rad/s^2.
 
     Attributes:
@@ -43,7 +47,7 @@ class Limits:
     """
 
     min_velocity: Velocity = _MIN_VELOCITY
-    max_velocity: Velocity = _MOST
+    max_velocity: Velocity = _MAX_VELOCITY
     acceleration: Velocity = _MAX_ACCELERATION
     deceleration: Velocity = _MAX_ACCELERATION
 
@@ -54,23 +58,23 @@ class SamplingParameters:
 
     Attributes:
         limits: the limits of the robot.
-        samples: the number of velocities sampled along x, along y and about z.
-        seconds: how long each motion is simulated.
-        steps: the number of simulation steps.
-        off_path: the cost of each metre of distance from the path, as an equivalent length of path in metres.
-        off_heading: the cost of each radian of deviation from the path's direction, as a length of path in metres.
-        near_obstacle: the weight of the highest costmap cost along the motion.
-        turn_first: the angle to the path above which the robot turns in place, in radians.
+        sample_counts: the number of velocities sampled along x, along y and about z.
+        simulated_seconds: how long each motion is simulated.
+        step_count: the number of simulation steps.
+        path_weight: the cost of each metre of distance from the path, as an equivalent length of path in metres.
+        heading_weight: the cost of each radian of deviation from the path's direction, as a length of path in metres.
+        obstacle_weight: the weight of the highest costmap cost along the motion.
+        min_turn_angle: the angle to the path above which the robot turns in place, in radians.
     """
 
-    limits: Limits = field(default_factory=Limits)
-    samples: tuple[int, int, int] = (7, 5, 15)
-    seconds: float = 1.7
-    steps: int = 12
-    off_path: float = 1.0
-    off_heading: float = 0.12
-    near_obstacle: float = 0.4
-    turn_first: float = 1.2
+    limits: VelocityLimits = field(default_factory=VelocityLimits)
+    sample_counts: tuple[int, int, int] = (7, 5, 15)
+    simulated_seconds: float = 1.7
+    step_count: int = 12
+    path_weight: float = 1.0
+    heading_weight: float = 0.12
+    obstacle_weight: float = 0.4
+    min_turn_angle: float = 1.2
 
 
 _MAX_FOOTPRINTS = 60
@@ -87,34 +91,34 @@ class SamplingFollower(Follower):
         self._max_speed = self.parameters.limits.max_velocity.x
         self._is_turning = False
 
-    def begin(self) -> None:
+    def reset(self) -> None:
         """Reset for a new path."""
         self._is_turning = False
 
     def limit_speed(self, speed: float, *, is_percentage: bool = False) -> None:
         """Limit the speed as described in `Follower.limit_speed`."""
-        self._max_speed = limited(self.parameters.limits.max_velocity.x, speed, is_percentage=is_percentage)
+        self._max_speed = apply_speed_limit(self.parameters.limits.max_velocity.x, speed, is_percentage=is_percentage)
 
     def velocity(self, situation: Situation) -> Velocity:
         """Return the velocity for the next cycle, as described in `Follower.velocity`."""
         x, y, yaw = situation.pose
         goal = situation.path[-1]
         if hypot(goal[0] - x, goal[1] - y) < situation.xy_tolerance:
-            return self._checked_turn(wrapped(float(goal[2]) - yaw), situation)
+            return self._turn_velocity(wrap_angle(float(goal[2]) - yaw), situation)
         angle = self._angle_to_path(situation)
         self._is_turning = abs(angle) > (
-            self.parameters.turn_first / 3.0 if self._is_turning else self.parameters.turn_first
+            self.parameters.min_turn_angle / 3.0 if self._is_turning else self.parameters.min_turn_angle
         )
         if self._is_turning and self.parameters.limits.max_velocity.y <= 0.0:
-            return self._checked_turn(angle, situation)
+            return self._turn_velocity(angle, situation)
         return self._best_velocity(situation)
 
     def _angle_to_path(self, situation: Situation) -> float:
         points = to_robot_frame(situation.pose, situation.path[:, :2])
-        index = min(int(np.searchsorted(lengths_along(situation.path), _LOOK_AHEAD)), len(points) - 1)
+        index = min(int(np.searchsorted(distances_along(situation.path), _LOOK_AHEAD)), len(points) - 1)
         return atan2(float(points[index, 1]), float(points[index, 0]))
 
-    def _checked_turn(self, angle: float, situation: Situation) -> Velocity:
+    def _turn_velocity(self, angle: float, situation: Situation) -> Velocity:
         """Return the velocity to rotate in place by an angle, after a check for collisions.
 
         Raises:
@@ -127,7 +131,7 @@ class SamplingFollower(Follower):
             rotation_speed(angle, current.yaw, situation.period, limits.max_velocity.yaw, limits.acceleration.yaw),
         )
         yaw_rate = abs(command.yaw)
-        seconds = min(self.parameters.seconds, abs(angle) / yaw_rate) if yaw_rate > 0.0 else 0.0
+        seconds = min(self.parameters.simulated_seconds, abs(angle) / yaw_rate) if yaw_rate > 0.0 else 0.0
         if not is_free(situation, command, seconds):
             raise FollowingError("there is an obstacle where the robot would turn")
         return command
@@ -143,7 +147,7 @@ class SamplingFollower(Follower):
         parameters = self.parameters
         candidates = self._candidates(situation)
         motions = predict_poses(
-            situation.pose, candidates, np.linspace(0.0, parameters.seconds, parameters.steps + 1)[1:]
+            situation.pose, candidates, np.linspace(0.0, parameters.simulated_seconds, parameters.step_count + 1)[1:]
         )
         costs = situation.costmap.cost_at(motions[..., :2]).astype(np.float64)
         costs[costs == UNKNOWN] = 0.0
@@ -152,7 +156,7 @@ class SamplingFollower(Follower):
         motion_costs = self._motion_costs(motions[free_indices], max_costs[free_indices] / INSCRIBED, situation)
         for index in free_indices[np.argsort(motion_costs)][:_MAX_FOOTPRINTS]:
             best = Velocity(*map(float, candidates[index]))
-            if max_costs[index] <= 0.0 or is_free(situation, best, parameters.seconds):
+            if max_costs[index] <= 0.0 or is_free(situation, best, parameters.simulated_seconds):
                 return self._reachable(best, situation)
         raise FollowingError("every sampled velocity leads to a collision")
 
@@ -161,8 +165,8 @@ class SamplingFollower(Follower):
         parameters, limits = self.parameters, self.parameters.limits
         max_velocity = (min(limits.max_velocity.x, self._max_speed), limits.max_velocity.y, limits.max_velocity.yaw)
         axes = []
-        for axis, count in enumerate(parameters.samples):
-            current, max_change = situation.velocity[axis], limits.acceleration[axis] * parameters.seconds
+        for axis, count in enumerate(parameters.sample_counts):
+            current, max_change = situation.velocity[axis], limits.acceleration[axis] * parameters.simulated_seconds
             low, high = (
                 max(limits.min_velocity[axis], current - max_change),
                 min(max_velocity[axis], current + max_change),
@@ -197,8 +201,8 @@ class SamplingFollower(Follower):
         """
         parameters = self.parameters
         path = situation.path
-        lengths = lengths_along(path)
-        checked_points = motions[:, [parameters.steps // 2, -1], :2]
+        lengths = distances_along(path)
+        checked_points = motions[:, [parameters.step_count // 2, -1], :2]
         squared = ((checked_points[:, :, None] - path[None, None, :, :2]) ** 2).sum(axis=-1)
         nearest = squared.argmin(axis=-1)
         path_distances = np.sqrt(np.take_along_axis(squared, nearest[..., None], axis=-1))[..., 0].sum(axis=1)
@@ -213,9 +217,9 @@ class SamplingFollower(Follower):
         heading_errors[np.hypot(directions[:, 0], directions[:, 1]) < _MIN_DIRECTION_DISTANCE] = 0.0
         total_costs: NDArray[np.float64] = (
             remaining
-            + parameters.off_path * path_distances
-            + parameters.off_heading * heading_errors
-            + parameters.near_obstacle * costs
+            + parameters.path_weight * path_distances
+            + parameters.heading_weight * heading_errors
+            + parameters.obstacle_weight * costs
         )
         return total_costs
 

@@ -78,11 +78,11 @@ class Grid:
         points: NDArray[np.float64] = np.stack((x + self.x, y + self.y), axis=-1)
         return points
 
-    def has(self, indices: NDArray[np.integer[Any]]) -> NDArray[np.bool_]:
+    def contains(self, indices: NDArray[np.integer[Any]]) -> NDArray[np.bool_]:
         """Return a mask of the cells that are inside the grid, of shape (...).
 
         `indices` are rows and columns, of shape (..., 2).
         """
         rows, columns = indices[..., 0], indices[..., 1]
-        inside: NDArray[np.bool_] = (rows >= 0) & (rows < self.rows) & (columns >= 0) & (columns < self.columns)
-        return inside
+        is_inside: NDArray[np.bool_] = (rows >= 0) & (rows < self.rows) & (columns >= 0) & (columns < self.columns)
+        return is_inside

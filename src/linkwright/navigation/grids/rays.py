@@ -40,7 +40,7 @@ def cells_on_lines(starts: NDArray[np.integer[Any]], ends: NDArray[np.integer[An
     return cells, line_indices
 
 
-def ranges(distances: Grid, points: NDArray[np.float64], angles: NDArray[np.float64], limit: float) -> Any:
+def cast_rays(distances: Grid, points: NDArray[np.float64], angles: NDArray[np.float64], limit: float) -> Any:
     """Return the distance to the first occupied cell along each ray.
 
     Each ray advances by the distance to the nearest occupied cell, from a distance field, until that distance is nearly

@@ -32,7 +32,7 @@ class Beams:
     range_max: float
 
     @property
-    def hits(self) -> NDArray[np.bool_]:
+    def is_hit(self) -> NDArray[np.bool_]:
         """A mask of the beams that hit an obstacle, of shape (n,)."""
         is_hit: NDArray[np.bool_] = self.ranges < self.range_max
         return is_hit

@@ -50,7 +50,7 @@ def wrap_angle(angle: float) -> float:
     return atan2(sin(angle), cos(angle))
 
 
-def differential(
+def move_differentially(
     particles: Poses,
     old_pose: Pose,
     new_pose: Pose,
@@ -81,7 +81,7 @@ def differential(
     particles[:, 2] = heading + second_rotation - random.normal(0.0, second_sigma, count)
 
 
-def omnidirectional(
+def move_omnidirectionally(
     particles: Poses,
     old_pose: Pose,
     new_pose: Pose,

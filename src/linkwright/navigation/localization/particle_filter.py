@@ -72,20 +72,20 @@ class ParticleFilter:
         self.random = np.random.default_rng(seed)
         self.particles: Poses = np.zeros((settings.max_particles, 3))
         self.weights: NDArray[np.float64] = np.full(settings.max_particles, 1.0 / settings.max_particles)
-        self._slow_average = self._fast = 0.0
+        self._slow_average = self._fast_average = 0.0
 
-    def begin(self, particles: Poses) -> None:
+    def set_particles(self, particles: Poses) -> None:
         """Replace the particles, and give all of them the same weight."""
         self.particles = particles
         self.weights = np.full(len(particles), 1.0 / len(particles))
-        self._slow_average = self._fast = 0.0
+        self._slow_average = self._fast_average = 0.0
 
     def draw_around(self, pose: tuple[float, float, float], covariance: NDArray[np.float64]) -> None:
         """Draw the maximum number of particles around a pose, with a covariance of shape (3, 3)."""
         count = self.settings.max_particles
         values, axes = np.linalg.eigh((covariance + covariance.T) / 2.0)
         deviations = self.random.normal(size=(count, 3)) * np.sqrt(np.maximum(values, 0.0))
-        self.begin(np.array(pose) + deviations @ axes.T)
+        self.set_particles(np.array(pose) + deviations @ axes.T)
 
     def update_weights(self, likelihoods: NDArray[np.float64]) -> None:
         """Multiply the weights by the likelihoods, normalise them, and update the recovery averages.
@@ -103,7 +103,9 @@ class ParticleFilter:
         self._slow_average = (
             total if self._slow_average == 0.0 else self._slow_average + slow_rate * (total - self._slow_average)
         )
-        self._fast = total if self._fast == 0.0 else self._fast + fast_rate * (total - self._fast)
+        self._fast_average = (
+            total if self._fast_average == 0.0 else self._fast_average + fast_rate * (total - self._fast_average)
+        )
         self.weights = weights / total
 
     def resample(self, random_particles: Callable[[int], Poses]) -> None:
@@ -116,7 +118,7 @@ class ParticleFilter:
                 worse than before.
         """
         settings, random = self.settings, self.random
-        random_share = max(0.0, 1.0 - self._fast / self._slow_average) if self._slow_average > 0.0 else 0.0
+        random_share = max(0.0, 1.0 - self._fast_average / self._slow_average) if self._slow_average > 0.0 else 0.0
         count = settings.max_particles
         sums = np.cumsum(self.weights)
         indices = np.minimum(np.searchsorted(sums, random.uniform(0.0, sums[-1], count), side="right"), len(sums) - 1)
@@ -124,10 +126,10 @@ class ParticleFilter:
         if random_share > 0.0:
             replaced = np.flatnonzero(random.uniform(size=count) < random_share)
             new_particles[replaced] = random_particles(len(replaced))
-            self._slow_average = self._fast = 0.0
-        slow_average, fast_average = self._slow_average, self._fast
-        self.begin(new_particles[: self._required_count(new_particles)].copy())
-        self._slow_average, self._fast = slow_average, fast_average
+            self._slow_average = self._fast_average = 0.0
+        slow_average, fast_average = self._slow_average, self._fast_average
+        self.set_particles(new_particles[: self._required_count(new_particles)].copy())
+        self._slow_average, self._fast_average = slow_average, fast_average
 
     def has_converged(self) -> bool:
         """Return whether all particles are near their mean position."""

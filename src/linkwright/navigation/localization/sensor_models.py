@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from linkwright.navigation.grids.distances import distance_field
 from linkwright.navigation.grids.grid import FREE, OCCUPIED, Grid
-from linkwright.navigation.grids.rays import ranges
+from linkwright.navigation.grids.rays import cast_rays
 from linkwright.navigation.localization.beams import Beams
 from linkwright.navigation.localization.motion_models import Poses
 
@@ -79,11 +79,11 @@ class MapLikelihoods:
         max_distance = settings.laser_likelihood_max_dist
         self._distances = np.pad(clipped_distances, 1, constant_values=max_distance).astype(np.float32)
         self._gaussian = settings.z_hit * np.exp(-0.5 * (self._distances / settings.sigma_hit) ** 2)
-        self._table: tuple[tuple[str, float], NDArray[np.float32]] | None = None
+        self._cached_table: tuple[tuple[str, float], NDArray[np.float32]] | None = None
         self._free_cells = np.argwhere(grid.cells == FREE)
 
     def likelihoods(
-        self, model: str, particles: Poses, beams: Beams, skipping: BeamSkipping | None = None
+        self, model: str, particles: Poses, beams: Beams, beam_skipping: BeamSkipping | None = None
     ) -> Likelihoods:
         """Return the likelihood of a scan from each pose by one of `MODELS`, of shape (particles,).
 
@@ -92,16 +92,16 @@ class MapLikelihoods:
         if model == "beam":
             return self._beam_likelihoods(particles, beams)
         is_product = model == "likelihood_field_prob"
-        hits = beams.end_points[beams.hits]
-        if not len(hits):
+        is_hit = beams.end_points[beams.is_hit]
+        if not len(is_hit):
             return np.ones(len(particles))
-        cells = self._end_cells(particles, hits)
-        values = self._values(model, beams.range_max).take(cells)
+        cells = self._end_cells(particles, is_hit)
+        values = self._contributions_by_cell(model, beams.range_max).take(cells)
         if not is_product:
             sums: Likelihoods = values.sum(axis=1, dtype=np.float64)
             return 1.0 + sums
-        if skipping is not None:
-            values = values[:, self._unskipped_beams(cells, skipping)]
+        if beam_skipping is not None:
+            values = values[:, self._unskipped_beams(cells, beam_skipping)]
         exponents = values.sum(axis=1, dtype=np.float64)
         # Likelihoods are relative to the best one because a product of so many factors would underflow to 0.
         likelihoods: Likelihoods = np.exp(exponents - exponents.max())
@@ -112,10 +112,10 @@ class MapLikelihoods:
 
         Returns None if no beam hit anything.
         """
-        hits = beams.end_points[beams.hits]
-        if not len(hits):
+        is_hit = beams.end_points[beams.is_hit]
+        if not len(is_hit):
             return None
-        distances = self._distances.take(self._end_cells(np.array([pose]), hits))
+        distances = self._distances.take(self._end_cells(np.array([pose]), is_hit))
         return float((distances <= _FIT_DISTANCE).mean())
 
     def random_poses(self, count: int, random: np.random.Generator) -> Poses:
@@ -130,14 +130,14 @@ class MapLikelihoods:
         points = self.grid.centres_of(cells) + random.uniform(-0.5, 0.5, (count, 2)) * self.grid.resolution
         return np.column_stack((points, random.uniform(-np.pi, np.pi, count)))
 
-    def _values(self, model: str, range_max: float) -> NDArray[np.float32]:
+    def _contributions_by_cell(self, model: str, range_max: float) -> NDArray[np.float32]:
         """Return a beam's contribution to the likelihood for each cell in which the beam can end."""
         key = (model, range_max)
-        if self._table is None or self._table[0] != key:
+        if self._cached_table is None or self._cached_table[0] != key:
             probability = self._gaussian + self._settings.z_rand / range_max
             table = np.log(np.maximum(probability, 1e-9)) if model == "likelihood_field_prob" else probability**3
-            self._table = (key, table.astype(np.float32))
-        return self._table[1]
+            self._cached_table = (key, table.astype(np.float32))
+        return self._cached_table[1]
 
     def _end_cells(self, particles: Poses, ends: NDArray[np.float64]) -> NDArray[np.int64]:
         """Return the cells in which beams end, of shape (particles, beams).
@@ -166,10 +166,10 @@ class MapLikelihoods:
         cells += columns.astype(np.int64)
         return cells
 
-    def _unskipped_beams(self, cells: NDArray[np.int64], skipping: BeamSkipping) -> NDArray[np.bool_]:
-        fits: NDArray[np.bool_] = self._distances.take(cells) < skipping.distance
-        is_kept: NDArray[np.bool_] = fits.mean(axis=0) > skipping.threshold
-        return is_kept if 1.0 - is_kept.mean() < skipping.error_threshold else np.ones_like(is_kept)
+    def _unskipped_beams(self, cells: NDArray[np.int64], beam_skipping: BeamSkipping) -> NDArray[np.bool_]:
+        fits: NDArray[np.bool_] = self._distances.take(cells) < beam_skipping.distance
+        is_kept: NDArray[np.bool_] = fits.mean(axis=0) > beam_skipping.threshold
+        return is_kept if 1.0 - is_kept.mean() < beam_skipping.error_threshold else np.ones_like(is_kept)
 
     def _beam_likelihoods(self, particles: Poses, beams: Beams) -> Likelihoods:
         settings, measured, max_range = self._settings, beams.ranges, beams.range_max
@@ -177,7 +177,7 @@ class MapLikelihoods:
         x, y = beams.origin
         lasers = np.column_stack((particles[:, 0] + cosine * x - sine * y, particles[:, 1] + sine * x + cosine * y))
         angles = particles[:, 2, None] + beams.angles
-        expected = ranges(self.distances, lasers[:, None, :], angles, max_range)
+        expected = cast_rays(self.distances, lasers[:, None, :], angles, max_range)
         errors = measured - expected
         probability = settings.z_hit * np.exp(-0.5 * (errors / settings.sigma_hit) ** 2)
         short_probability = settings.z_short * settings.lambda_short * np.exp(-settings.lambda_short * measured)

@@ -58,18 +58,18 @@ def read_image(path: Path) -> MapImage:
         message = phrase("the map image '{path}' does not exist", path=display_path(path))
         raise LinkwrightError(Diagnostic("NAV203", message, hint=missing_file_hint(path))) from None
     except OSError as error:
-        raise _unreadable(path, foreign(error.strerror or error)) from None
+        raise _unreadable_error(path, foreign(error.strerror or error)) from None
     header = _PGM.match(data)
     return _parse_pgm(path, data, header) if header else _read_with_pillow(path, data)
 
 
-def pgm_bytes(pixels: NDArray[np.uint8]) -> bytes:
+def encode_pgm(pixels: NDArray[np.uint8]) -> bytes:
     """Encode grey pixels of shape (rows, columns) as a binary PGM, in the form that nav2 writes."""
     rows, columns = pixels.shape
     return b"P5\n%d %d\n255\n" % (columns, rows) + np.ascontiguousarray(pixels).tobytes()
 
 
-def pillow_bytes(pixels: NDArray[np.uint8], kind: str) -> bytes:
+def encode_with_pillow(pixels: NDArray[np.uint8], kind: str) -> bytes:
     """Encode pixels as an image file in one of Pillow's formats.
 
     Args:
@@ -97,7 +97,7 @@ def _grey_with_opacity(pixels: NDArray[np.uint8]) -> Any:
 def _parse_pgm(path: Path, data: bytes, header: re.Match[bytes]) -> MapImage:
     columns, rows, max_value = (int(group) for group in header.groups()[1:])
     if not 0 < rows * columns <= MAX_PIXELS or not 0 < max_value < 1 << 16:
-        raise _unreadable(
+        raise _unreadable_error(
             path,
             phrase(
                 "the size or the maximum value in its header is not valid: {size}",
@@ -109,14 +109,14 @@ def _parse_pgm(path: Path, data: bytes, header: re.Match[bytes]) -> MapImage:
         try:
             values = np.array(pixel_bytes.split()[: rows * columns], np.float64)
         except ValueError:
-            raise _unreadable(path, phrase("its pixels are not numbers")) from None
+            raise _unreadable_error(path, phrase("its pixels are not numbers")) from None
     else:
         values = np.frombuffer(
             pixel_bytes, ">u2" if max_value > 255 else np.uint8, -1 if max_value < 256 else len(pixel_bytes) // 2
         )
     if values.size < rows * columns:
         reason = phrase("it has only {count} of {size} pixels", count=values.size, size=rows * columns)
-        raise _unreadable(path, reason)
+        raise _unreadable_error(path, reason)
     return MapImage(np.minimum(values[: rows * columns].reshape(rows, columns) / max_value, 1.0))
 
 
@@ -125,12 +125,12 @@ def _read_with_pillow(path: Path, data: bytes) -> MapImage:
     try:
         with pillow.open(BytesIO(data)) as file:
             if file.width * file.height > MAX_PIXELS:
-                raise _unreadable(path, phrase("it has more than {most} pixels", most=MAX_PIXELS))
+                raise _unreadable_error(path, phrase("it has more than {most} pixels", most=MAX_PIXELS))
             has_16_bits = file.mode.startswith("I")
             has_opacity = file.mode in ("LA", "PA", "RGBA", "La", "RGBa") or "transparency" in file.info
             values = np.asarray(file if has_16_bits else file.convert("RGBA" if has_opacity else "RGB"), np.float64)
     except (OSError, ValueError, SyntaxError, pillow.DecompressionBombError) as error:
-        raise _unreadable(path, foreign(str(error).replace(repr(BytesIO), "it"))) from None
+        raise _unreadable_error(path, foreign(str(error).replace(repr(BytesIO), "it"))) from None
     if has_16_bits:
         return MapImage(values / 65535.0)
     values = values / 255.0
@@ -145,6 +145,6 @@ def _pillow() -> Any:
     return Image
 
 
-def _unreadable(path: Path, reason: Phrase) -> LinkwrightError:
+def _unreadable_error(path: Path, reason: Phrase) -> LinkwrightError:
     message = phrase("the map image '{path}' cannot be read: {reason}", path=display_path(path), reason=reason)
     return LinkwrightError(Diagnostic("NAV203", message))

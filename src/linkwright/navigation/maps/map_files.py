@@ -10,7 +10,7 @@ from pathlib import Path
 from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, display_path, foreign, phrase
 from linkwright.files.whole_files import write_whole_file
 from linkwright.navigation.grids.grid import Grid
-from linkwright.navigation.maps.images import pgm_bytes, pillow_bytes, read_image
+from linkwright.navigation.maps.images import encode_pgm, encode_with_pillow, read_image
 from linkwright.navigation.maps.map_yaml import MapMode, read_map_yaml
 from linkwright.navigation.maps.pixels import UNKNOWN_DARKNESS, cells_of_image, pixels_of_cells
 
@@ -95,10 +95,10 @@ def save_map(
     if extension in _WITHOUT_OPACITY and pixels.ndim == 3:
         pixels = pixels[..., 0]
     try:
-        data = pgm_bytes(pixels) if extension == "pgm" else pillow_bytes(pixels, extension)
+        data = encode_pgm(pixels) if extension == "pgm" else encode_with_pillow(pixels, extension)
     except ValueError as error:
         warn(f"Format '{extension}' is not usable. Using 'png' instead: {error}")
-        extension, data = "png", pillow_bytes(pixels, "png")
+        extension, data = "png", encode_with_pillow(pixels, "png")
     image_path, yaml_path = Path(f"{settings.name}.{extension}"), Path(f"{settings.name}.yaml")
     _write(image_path, data)
     _write(yaml_path, _yaml_text(grid, settings, image_path.name).encode())

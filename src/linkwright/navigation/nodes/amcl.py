@@ -48,7 +48,7 @@ class AmclNode(ManagedNode):
         self._pose: Pose | None = None
         self._covariance: NDArray[np.float64] = _UNKNOWN_COVARIANCE
         self._map: MapLikelihoods | None = None
-        self._active = self._begun = self._update_requested = False
+        self._is_localizing = self._has_begun = self._is_update_requested = False
         self._update_count = self._misfit_count = 0
         self._odometry: Pose = (0.0, 0.0, 0.0)
         self.add_post_set_parameters_callback(lambda _: self._apply_parameters())
@@ -64,12 +64,12 @@ class AmclNode(ManagedNode):
             self._pose = None
         self._map = None
         self._filter = ParticleFilter(self._settings.filter)
-        self._waiting: deque[Any] = deque(maxlen=_MAX_QUEUED_SCANS)
+        self._queued_scans: deque[Any] = deque(maxlen=_MAX_QUEUED_SCANS)
         self._map_to_odom: Transform | None = None
         self._initialize_particles(self._pose, self._covariance)
-        self._join()
+        self._create_interfaces()
 
-    def _join(self) -> None:
+    def _create_interfaces(self) -> None:
         settings, register = self._settings, self.register
         self._buffer = BufferCore(logger=self.get_logger().get_child("tf2"))
         listener = TransformListener(self, self)
@@ -96,26 +96,26 @@ class AmclNode(ManagedNode):
         self._scan_timer = self.create_timer(_SCAN_TIMEOUT, self._check_scan_timeout)
         if self._settings.initial_pose is not None:
             self._set_pose(self._settings.initial_pose, np.zeros((3, 3)))
-        self._active = True
+        self._is_localizing = True
 
     def deactivate(self) -> None:
         """Stop localizing, and keep the estimated pose."""
-        self._active = False
+        self._is_localizing = False
         self._scan_timer.destroy()
-        self._waiting.clear()
+        self._queued_scans.clear()
 
     def cleanup(self) -> None:
         """Drop the map."""
         self._map = None
-        self._active = False
+        self._is_localizing = False
 
     # --- input -------------------------------------------------------------------------------------------------------
 
     def update(self, message: TFMessage, *, static: bool, now_ns: int) -> None:
         """Add transforms to the buffer, and process queued scans."""
         self._buffer.update(message, static=static, now_ns=now_ns)
-        if self._waiting:
-            self._work()
+        if self._queued_scans:
+            self._process_scans()
 
     def _on_map(self, message: Any) -> None:
         if self._map is not None and self._settings.parameters.first_map_only:
@@ -126,15 +126,16 @@ class AmclNode(ManagedNode):
             self.get_logger().error(f"the message on '{self._settings.parameters.map_topic}' is not a map: {error}")
             return
         self.get_logger().info(f"Received a {grid.columns} X {grid.rows} map @ {grid.resolution:.3f} m/pix")
-        if message.header.frame_id != self._settings.world:
+        if message.header.frame_id != self._settings.global_frame:
             self.get_logger().warning(
                 f"Frame_id of map received:'{message.header.frame_id}' doesn't match "
-                f"global_frame_id:'{self._settings.world}'. This could cause issues with reading published topics"
+                f"global_frame_id:'{self._settings.global_frame}'. "
+                "This could cause issues with reading published topics"
             )
         self._map = MapLikelihoods(grid, self._settings.laser)
 
     def _on_scan(self, message: Any) -> None:
-        if not self._active:
+        if not self._is_localizing:
             return
         self._last_scan_ns = self.get_clock().now().nanoseconds
         if self._map is None:
@@ -142,8 +143,8 @@ class AmclNode(ManagedNode):
             hint = "" if self.count_publishers(topic) else f" No node publishes on '{topic}'."
             self.get_logger().warning(f"Waiting for map....{hint}", throttle_duration_sec=_WARNING_PERIOD)
             return
-        self._waiting.append(message)
-        self._work()
+        self._queued_scans.append(message)
+        self._process_scans()
 
     def _check_scan_timeout(self) -> None:
         silent_seconds = (self.get_clock().now().nanoseconds - self._last_scan_ns) / 1e9
@@ -154,30 +155,32 @@ class AmclNode(ManagedNode):
                 f"Verify that data is being published on the {self._settings.parameters.scan_topic} topic."
             )
 
-    def _work(self) -> None:
+    def _process_scans(self) -> None:
         """Process the queued scans whose transforms are available.
 
         Other scans stay queued until the transform tolerance has passed.
         """
-        while self._waiting:
-            scan = self._waiting[0]
+        while self._queued_scans:
+            scan = self._queued_scans[0]
             stamp_ns = scan.header.stamp.nanoseconds
             try:
-                robot_in_odom, _ = self._buffer.lookup(self._settings.odom, self._settings.base, stamp_ns)
-                laser, _ = self._buffer.lookup(self._settings.base, scan.header.frame_id.removeprefix("/"), stamp_ns)
+                robot_in_odom, _ = self._buffer.lookup(self._settings.odom_frame, self._settings.base_frame, stamp_ns)
+                laser, _ = self._buffer.lookup(
+                    self._settings.base_frame, scan.header.frame_id.removeprefix("/"), stamp_ns
+                )
             except TransformException as error:
                 is_late = (
                     self.get_clock().now().nanoseconds - stamp_ns > self._settings.parameters.transform_tolerance * 1e9
                 )
-                if not is_late and len(self._waiting) < _MAX_QUEUED_SCANS:
+                if not is_late and len(self._queued_scans) < _MAX_QUEUED_SCANS:
                     return
-                self._waiting.popleft()
+                self._queued_scans.popleft()
                 self.get_logger().error(
                     f"Couldn't determine robot's pose associated with laser scan: {error}",
                     throttle_duration_sec=_WARNING_PERIOD,
                 )
                 continue
-            self._waiting.popleft()
+            self._queued_scans.popleft()
             settings = self._settings
             beams = beams_of_scan(
                 scan,
@@ -193,16 +196,18 @@ class AmclNode(ManagedNode):
     def _update(self, beams: Beams, robot_in_odom: Transform, stamp_ns: int) -> None:
         assert self._map is not None, "scans wait for the map"
         settings, odometry = self._settings, _planar_pose(robot_in_odom)
-        must_update = not self._begun or self._update_requested or self._has_moved(odometry)
-        if self._begun and must_update:
-            settings.motion(self._filter.particles, self._odometry, odometry, settings.noise, self._filter.random)
-        must_publish = not self._begun
-        self._begun, self._update_requested = True, False
+        must_update = not self._has_begun or self._is_update_requested or self._has_moved(odometry)
+        if self._has_begun and must_update:
+            settings.motion_model(self._filter.particles, self._odometry, odometry, settings.noise, self._filter.random)
+        must_publish = not self._has_begun
+        self._has_begun, self._is_update_requested = True, False
         if must_update:
             self._odometry = odometry
-            skipping = settings.skipping if self._filter.has_converged() else None
+            beam_skipping = settings.beam_skipping if self._filter.has_converged() else None
             self._filter.update_weights(
-                self._map.likelihoods(settings.parameters.laser_model_type, self._filter.particles, beams, skipping)
+                self._map.likelihoods(
+                    settings.parameters.laser_model_type, self._filter.particles, beams, beam_skipping
+                )
             )
             self._update_count += 1
             if self._update_count % settings.parameters.resample_interval == 0:
@@ -229,7 +234,7 @@ class AmclNode(ManagedNode):
         self._reset()
 
     def _reset(self) -> None:
-        self._begun = self._update_requested = False
+        self._has_begun = self._is_update_requested = False
         self._update_count = self._misfit_count = 0
 
     def _apply_parameters(self) -> None:
@@ -256,7 +261,7 @@ class AmclNode(ManagedNode):
         self._pose, self._covariance = estimate.pose, estimate.covariance
         self._map_to_odom = compose(_spatial_pose(estimate.pose), invert(robot_in_odom))
         message = get_message(_POSE_TYPE)()
-        message.header.frame_id = self._settings.world
+        message.header.frame_id = self._settings.global_frame
         message.header.stamp = _stamp(stamp_ns)
         _write_pose(message.pose.pose, estimate.pose)
         covariance = np.zeros((6, 6))
@@ -284,7 +289,7 @@ class AmclNode(ManagedNode):
         if self._pose is None or not self._cloud_publisher.get_subscription_count():
             return
         message = get_message("nav2_msgs/msg/ParticleCloud")()
-        message.header.frame_id = self._settings.world
+        message.header.frame_id = self._settings.global_frame
         message.header.stamp = _stamp(stamp_ns)
         kind = get_message("nav2_msgs/msg/Particle")
         for (x, y, yaw), weight in zip(self._filter.particles.tolist(), self._filter.weights.tolist(), strict=True):
@@ -297,7 +302,7 @@ class AmclNode(ManagedNode):
         if self._map_to_odom is None or not self._settings.parameters.tf_broadcast:
             return
         valid_until_ns = stamp_ns + round(self._settings.parameters.transform_tolerance * 1e9)
-        frames = (self._settings.world,), (self._settings.odom,)
+        frames = (self._settings.global_frame,), (self._settings.odom_frame,)
         self._transforms.publish(
             TFMessage(batch=TransformBatch(*frames, valid_until_ns, np.array([self._map_to_odom])))
         )
@@ -310,10 +315,10 @@ class AmclNode(ManagedNode):
         if not frame:
             logger.warning("Received initial pose with empty frame_id. You should always supply a frame_id.")
             return
-        if frame != self._settings.world:
+        if frame != self._settings.global_frame:
             logger.warning(
                 f'Ignoring initial pose in frame "{frame}"; initial poses must be in the global frame, '
-                f'"{self._settings.world}"'
+                f'"{self._settings.global_frame}"'
             )
             return
         position, orientation = message.pose.pose.position, message.pose.pose.orientation
@@ -328,7 +333,7 @@ class AmclNode(ManagedNode):
             return
         covariance[2, :2] = covariance[:2, 2] = 0.0  # nav2 ignores these covariances, too.
         self._set_pose(self._moved_by_odometry(pose, message.header.stamp.nanoseconds), covariance)
-        if not self._active:
+        if not self._is_localizing:
             logger.warning("Received initial pose request, but AMCL is not yet in the active state")
 
     def _moved_by_odometry(self, pose: Pose, stamp_ns: int) -> Pose:
@@ -339,8 +344,8 @@ class AmclNode(ManagedNode):
         if not stamp_ns:
             return pose
         try:
-            old_pose, _ = self._buffer.lookup(self._settings.odom, self._settings.base, stamp_ns)
-            new_pose, _ = self._buffer.lookup(self._settings.odom, self._settings.base, 0)
+            old_pose, _ = self._buffer.lookup(self._settings.odom_frame, self._settings.base_frame, stamp_ns)
+            new_pose, _ = self._buffer.lookup(self._settings.odom_frame, self._settings.base_frame, 0)
         except TransformException:
             return pose
         return _planar_pose(compose(_spatial_pose(pose), compose(invert(old_pose), new_pose)))
@@ -359,7 +364,7 @@ class AmclNode(ManagedNode):
             self.get_logger().error("There is no map yet, so the robot cannot be placed on it")
             return response
         self.get_logger().info("Initializing with uniform distribution")
-        self._filter.begin(self._map.random_poses(self._settings.filter.max_particles, self._filter.random))
+        self._filter.set_particles(self._map.random_poses(self._settings.filter.max_particles, self._filter.random))
         self._reset()
         self._pose = self._pose or (0.0, 0.0, 0.0)
         self.get_logger().info("Global initialisation done!")
@@ -367,7 +372,7 @@ class AmclNode(ManagedNode):
 
     def _on_no_motion(self, _request: Any, response: Any) -> Any:
         self.get_logger().info("Requesting no-motion update")
-        self._update_requested = True
+        self._is_update_requested = True
         return response
 
 

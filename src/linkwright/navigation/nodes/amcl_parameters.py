@@ -6,17 +6,23 @@ from dataclasses import dataclass
 from typing import Any
 
 from linkwright.graph import Node
-from linkwright.navigation.localization.motion_models import MotionModel, Noise, Pose, differential, omnidirectional
+from linkwright.navigation.localization.motion_models import (
+    MotionModel,
+    Noise,
+    Pose,
+    move_differentially,
+    move_omnidirectionally,
+)
 from linkwright.navigation.localization.particle_filter import FilterSettings
 from linkwright.navigation.localization.sensor_models import MODELS, BeamSkipping, LaserSettings
 from linkwright.nodes.parameter_tables import declare_table
 from linkwright.nodes.settings import bad_value
 
 _MOTION_MODELS: dict[str, MotionModel] = {
-    "differential": differential,
-    "nav2_amcl::DifferentialMotionModel": differential,
-    "omnidirectional": omnidirectional,
-    "nav2_amcl::OmniMotionModel": omnidirectional,
+    "differential": move_differentially,
+    "nav2_amcl::DifferentialMotionModel": move_differentially,
+    "omnidirectional": move_omnidirectionally,
+    "nav2_amcl::OmniMotionModel": move_omnidirectionally,
 }
 _POSITIVE = ("max_particles", "min_particles", "max_beams", "resample_interval", "sigma_hit", "pf_err")
 _NON_NEGATIVE = ("laser_likelihood_max_dist", *(f"alpha{number}" for number in range(1, 6)))
@@ -77,25 +83,25 @@ class AmclSettings:
 
     Attributes:
         parameters: the values of `AmclParameters`.
-        base: the frame of the robot.
-        odom: the frame of odometry.
-        world: the frame of the map.
-        motion: the motion model.
+        base_frame: the frame of the robot.
+        odom_frame: the frame of odometry.
+        global_frame: the frame of the map.
+        motion_model: the motion model.
         noise: the noise of odometry.
         laser: the settings of the laser model.
-        skipping: the settings of beam skipping; None to skip no beams.
+        beam_skipping: the settings of beam skipping; None to skip no beams.
         filter: the settings of the particle filter.
         initial_pose: the initial pose of the robot; None to wait for one.
     """
 
     parameters: AmclParameters
-    base: str
-    odom: str
-    world: str
-    motion: MotionModel
+    base_frame: str
+    odom_frame: str
+    global_frame: str
+    motion_model: MotionModel
     noise: Noise
     laser: LaserSettings
-    skipping: BeamSkipping | None
+    beam_skipping: BeamSkipping | None
     filter: FilterSettings
     initial_pose: Pose | None
 
@@ -120,23 +126,23 @@ def read_parameters(node: Node) -> AmclSettings:
         raise bad_value("laser_model_type", parameters.laser_model_type, node.get_name(), MODELS)
     if particles.min_particles > particles.max_particles:
         raise bad_value("min_particles", particles.min_particles, node.get_name())
-    skipping = None
+    beam_skipping = None
     if parameters.do_beamskip and parameters.laser_model_type == "likelihood_field_prob":
-        skipping = BeamSkipping(
+        beam_skipping = BeamSkipping(
             parameters.beam_skip_distance, parameters.beam_skip_threshold, parameters.beam_skip_error_threshold
         )
     pose = parameters.initial_pose
     return AmclSettings(
         parameters=parameters,
-        base=parameters.base_frame_id.removeprefix("/"),
-        odom=parameters.odom_frame_id.removeprefix("/"),
-        world=parameters.global_frame_id.removeprefix("/"),
-        motion=_motion_model(node, parameters.robot_model_type),
+        base_frame=parameters.base_frame_id.removeprefix("/"),
+        odom_frame=parameters.odom_frame_id.removeprefix("/"),
+        global_frame=parameters.global_frame_id.removeprefix("/"),
+        motion_model=_motion_model(node, parameters.robot_model_type),
         # alpha1: rotation from rotation, alpha2: rotation from translation, alpha3: translation from translation,
         # alpha4: translation from rotation.
         noise=Noise(parameters.alpha1, parameters.alpha2, parameters.alpha3, parameters.alpha4, parameters.alpha5),
         laser=laser,
-        skipping=skipping,
+        beam_skipping=beam_skipping,
         filter=particles,
         initial_pose=(pose.x, pose.y, pose.yaw) if parameters.set_initial_pose else None,
     )
@@ -149,5 +155,5 @@ def _motion_model(node: Node, name: str) -> MotionModel:
             f"robot_model_type '{name}' is not one of {', '.join(_MOTION_MODELS)}; particles move as for "
             "a differential drive"
         )
-        return differential
+        return move_differentially
     return motion

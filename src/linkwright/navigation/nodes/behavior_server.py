@@ -31,11 +31,11 @@ from linkwright.navigation.behaviors.behaviors import (
 )
 from linkwright.navigation.costmaps.costmap import LETHAL, Costmap
 from linkwright.navigation.costmaps.footprints import Footprint
-from linkwright.navigation.following.follower import STILL, Pose, Velocity
+from linkwright.navigation.following.follower import ZERO_VELOCITY, Pose, Velocity
 from linkwright.navigation.nodes.costmap_reading import costmap_from_message
 from linkwright.navigation.nodes.goals import GoalServer
 from linkwright.navigation.nodes.managed import ManagedNode, ManagedServer
-from linkwright.navigation.nodes.plugins import string_list, type_of
+from linkwright.navigation.nodes.plugins import get_plugin_type, get_string_list
 from linkwright.nodes.frame_poses import FramePoses
 from linkwright.nodes.settings import bad_value, positive
 from linkwright.nodes.velocity_topic import VelocityTopic, velocity_types
@@ -108,7 +108,7 @@ class BehaviorNode(ManagedNode):
         self._costmap_received_ns = 0
         self._costmap_frame = ""
         self._footprint: Footprint | None = None
-        self._requested_velocity = STILL
+        self._requested_velocity = ZERO_VELOCITY
 
     def configure(self) -> None:
         """Create the topics and the action servers.
@@ -117,21 +117,25 @@ class BehaviorNode(ManagedNode):
             LinkwrightError: a parameter is missing or has an invalid value.
         """
         self._period = 1.0 / positive(self, "cycle_frequency", self._value("cycle_frequency"))
-        raw, polygon = get_message("nav2_msgs/msg/Costmap"), get_message("geometry_msgs/msg/PolygonStamped")
-        self.register(self.create_subscription(raw, self._topic("costmap"), self._on_costmap, LATCHED_QOS))
-        self.register(self.create_subscription(polygon, self._topic("footprint"), self._on_footprint, _DEPTH))
+        costmap_type, polygon = get_message("nav2_msgs/msg/Costmap"), get_message("geometry_msgs/msg/PolygonStamped")
+        self.register(
+            self.create_subscription(costmap_type, self._topic_name("costmap"), self._on_costmap, LATCHED_QOS)
+        )
+        self.register(self.create_subscription(polygon, self._topic_name("footprint"), self._on_footprint, _DEPTH))
         teleop_topic = self._value("cmd_vel_teleop")
         for kind in velocity_types(self, teleop_topic, self._publishes_stamped):
             self.register(self.create_subscription(kind, teleop_topic, self._on_teleop_velocity, _DEPTH))
         self._output = VelocityTopic(self, "cmd_vel", self._publishes_stamped)
-        for plugin in string_list(self, "behavior_plugins", list(_BEHAVIOR_TYPES)):
-            kind = type_of(self, plugin, {name: class_name for name, (class_name, _) in _BEHAVIOR_TYPES.items()})
+        for plugin in get_string_list(self, "behavior_plugins", list(_BEHAVIOR_TYPES)):
+            kind = get_plugin_type(
+                self, plugin, {name: class_name for name, (class_name, _) in _BEHAVIOR_TYPES.items()}
+            )
             behavior_by_class = {class_name: (name, action) for name, (class_name, action) in _BEHAVIOR_TYPES.items()}
             if kind not in behavior_by_class:
                 raise bad_value(f"{plugin}.plugin", kind, self.get_name(), list(behavior_by_class))
             name, action = behavior_by_class[kind]
             self.get_logger().info(f"Creating behavior plugin {plugin} of type {kind}")
-            self._servers[plugin] = self.register(self._server(plugin, name, action))
+            self._servers[plugin] = self.register(self._create_server(plugin, name, action))
 
     def deactivate(self) -> None:
         """Stop the robot and abort the current goal."""
@@ -150,7 +154,7 @@ class BehaviorNode(ManagedNode):
 
     # --- goals --------------------------------------------------------------------------------------------------------
 
-    def _server(self, plugin: str, name: str, action: str) -> GoalServer:
+    def _create_server(self, plugin: str, name: str, action: str) -> GoalServer:
         def begin(goal: ServerGoalHandle) -> None:
             self._start(self._servers[plugin], name, goal.request)
 
@@ -172,9 +176,9 @@ class BehaviorNode(ManagedNode):
             return
         self._running = (server, behavior, name)
         self._started_ns = self.now_ns()
-        self._requested_velocity = STILL
+        self._requested_velocity = ZERO_VELOCITY
         self._output.update_type()
-        self.begin_cycles(self._period, self._cycle)
+        self.begin_cycles(self._period, self._run_cycle)
 
     def _create_behavior(self, name: str, goal: Any, start: Pose) -> Behavior | str:
         """Return the behaviour for a goal, or the reason why the goal is aborted."""
@@ -202,7 +206,7 @@ class BehaviorNode(ManagedNode):
             return f"{name} needs a speed other than 0"
         return DriveStraight(distance, speed, allowance, self._value("simulate_ahead_time"), start)
 
-    def _cycle(self) -> None:
+    def _run_cycle(self) -> None:
         if self._running is None:
             self.end_cycles()
             return
@@ -211,7 +215,7 @@ class BehaviorNode(ManagedNode):
         if server.is_canceled:
             self.get_logger().info(f"Canceling {name}")
             self._halt()
-            server.canceled(total_elapsed_time=_duration(elapsed))
+            server.end_canceled(total_elapsed_time=_duration(elapsed))
             return
         pose = self._pose() if name != "wait" else (0.0, 0.0, 0.0)
         if pose is None:
@@ -224,7 +228,7 @@ class BehaviorNode(ManagedNode):
         if step.outcome is Outcome.RUNNING:
             if name != "wait":
                 self._output.publish((step.velocity.x, step.velocity.y, 0.0), (0.0, 0.0, step.velocity.yaw))
-            server.feedback(**_feedback(name, step, elapsed, server.goal))
+            server.publish_feedback(**_feedback(name, step, elapsed, server.goal))
         elif step.outcome is Outcome.DONE:
             self.get_logger().info(f"{name} completed successfully")
             self._halt()
@@ -289,7 +293,7 @@ class BehaviorNode(ManagedNode):
         twist = message.twist if hasattr(message, "twist") else message
         self._requested_velocity = Velocity(twist.linear.x, twist.linear.y, twist.angular.z)
 
-    def _topic(self, kind: str) -> str:
+    def _topic_name(self, kind: str) -> str:
         """Return the name of the costmap or footprint topic.
 
         Humble's parameter is used if it is set, and Jazzy's parameter otherwise.

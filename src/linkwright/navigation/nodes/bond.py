@@ -57,48 +57,49 @@ class Bond:
         self._max_missed = max(1, round(timeout / period))
         self._missed_count = 0
         self._clock = Clock(clock_type=ClockType.STEADY_TIME, timebase=node.get_clock().timebase)
-        self.formed = False
-        self.broken = False
+        self.is_formed = False
+        self.is_broken = False
         self._publisher = node.create_publisher(status, TOPIC, _DEPTH)
         self._subscription = node.create_subscription(status, TOPIC, self._receive, _DEPTH)
         self._subscription.deliver_in_batches()  # The heartbeats of all bonds in the system arrive on this topic.
         self._timer = node.create_timer(period, self._on_timer, clock=self._clock)
-        self._send(active=True)
+        self._send(is_active=True)
 
     def end(self) -> None:
         """Break the bond and notify the other end."""
-        if not self.broken:
-            self.broken = True
-            self._send(active=False)
+        if not self.is_broken:
+            self.is_broken = True
+            self._send(is_active=False)
         for endpoint in (self._timer, self._subscription, self._publisher):
             endpoint.destroy()
 
     def _on_timer(self) -> None:
-        if self.broken:
+        if self.is_broken:
             return
-        self._send(active=True)
+        self._send(is_active=True)
         self._missed_count += 1
-        if self.formed and self._missed_count > self._max_missed:
+        if self.is_formed and self._missed_count > self._max_missed:
             self._break()
 
     def _receive(self, message: Any) -> None:
-        if message.id != self._heartbeat.id or message.instance_id == self._heartbeat.instance_id or self.broken:
+        if message.id != self._heartbeat.id or message.instance_id == self._heartbeat.instance_id or self.is_broken:
             return
         self._missed_count = 0
         if not message.active:
-            if self.formed:
-                self._send(active=False)
+            if self.is_formed:
+                self._send(is_active=False)
                 self._break()
-        elif not self.formed:
-            self.formed = True
-            self._send(active=True)  # Answer immediately, so that the other end need not wait for the next heartbeat.
+        elif not self.is_formed:
+            self.is_formed = True
+            # Answer immediately, so that the other end need not wait for the next heartbeat.
+            self._send(is_active=True)
             self._on_formed()
 
     def _break(self) -> None:
-        self.broken = True
+        self.is_broken = True
         self._on_broken()
 
-    def _send(self, *, active: bool) -> None:
-        self._heartbeat.active = active
+    def _send(self, *, is_active: bool) -> None:
+        self._heartbeat.active = is_active
         self._heartbeat.header.stamp = self._clock.now().to_msg()
         self._publisher.publish(self._heartbeat)

@@ -26,7 +26,7 @@ from linkwright.navigation.costmaps.costmap import INSCRIBED, LETHAL, Costmap
 from linkwright.navigation.nodes.costmap_reading import costmap_from_message
 from linkwright.navigation.nodes.goals import GoalServer
 from linkwright.navigation.nodes.managed import ManagedServer
-from linkwright.navigation.nodes.plugins import string_list
+from linkwright.navigation.nodes.plugins import get_string_list
 from linkwright.navigation.nodes.steps import SentGoal, Step, StepError, StepNode
 
 _DEPTH = 10
@@ -52,7 +52,7 @@ class NavigatorNode(StepNode):
         for name, value in _PARAMETERS.items():
             declare(name, value)
         for name in _STRING_LISTS:
-            string_list(self, name, [])
+            get_string_list(self, name, [])
         self._buffer = BufferCore(logger=self.get_logger().get_child("tf2"))
         TransformListener(self._buffer, self)
         self._costmap: Costmap | None = None
@@ -66,14 +66,16 @@ class NavigatorNode(StepNode):
         pose, odometry = get_message("geometry_msgs/msg/PoseStamped"), get_message("nav_msgs/msg/Odometry")
         self.register(self.create_subscription(pose, "goal_pose", self._on_goal_pose, _DEPTH))
         self.register(self.create_subscription(odometry, self._value("odom_topic"), self._on_odometry, _DEPTH))
-        raw = get_message("nav2_msgs/msg/Costmap")
-        self.register(self.create_subscription(raw, _COSTMAP_TOPIC, self._on_costmap, LATCHED_QOS))
+        costmap_type = get_message("nav2_msgs/msg/Costmap")
+        self.register(self.create_subscription(costmap_type, _COSTMAP_TOPIC, self._on_costmap, LATCHED_QOS))
         self._clients = {
             name: self.register(ActionClient(self, f"nav2_msgs/action/{kind}", name)) for name, kind in _ACTIONS.items()
         }
-        clear = get_service("nav2_msgs/srv/ClearEntireCostmap")
+        clear_type = get_service("nav2_msgs/srv/ClearEntireCostmap")
         self._clear_clients = {
-            variant: self.register(self.create_client(clear, f"{variant}_costmap/clear_entirely_{variant}_costmap"))
+            variant: self.register(
+                self.create_client(clear_type, f"{variant}_costmap/clear_entirely_{variant}_costmap")
+            )
             for variant in ("global", "local")
         }
         self._goal_client = self.register(ActionClient(self, "nav2_msgs/action/NavigateToPose", "navigate_to_pose"))
@@ -81,8 +83,8 @@ class NavigatorNode(StepNode):
             "pose": self._create_server("NavigateToPose", "navigate_to_pose", "pose"),
             "poses": self._create_server("NavigateThroughPoses", "navigate_through_poses", "poses"),
         }
-        for which in ("pose", "poses"):
-            tree = self._value(f"default_nav_{'to_pose' if which == 'pose' else 'through_poses'}_bt_xml")
+        for variant in ("pose", "poses"):
+            tree = self._value(f"default_nav_{'to_pose' if variant == 'pose' else 'through_poses'}_bt_xml")
             if tree and not _is_default_tree(tree):
                 self._log_ignored_tree(tree)
 
@@ -97,7 +99,11 @@ class NavigatorNode(StepNode):
 
         return self.register(
             GoalServer(
-                self, f"nav2_msgs/action/{kind}", name, begin, may_begin=lambda goal: self._accepts_goal(variant, goal)
+                self,
+                f"nav2_msgs/action/{kind}",
+                name,
+                begin,
+                accepts_goal=lambda goal: self._accepts_goal(variant, goal),
             )
         )
 
@@ -123,7 +129,7 @@ class NavigatorNode(StepNode):
             f"{goal_position.y:.2f})"
         )
         self._poses = poses
-        self._recoveries = 0
+        self._recovery_count = 0
         self._path, self._remaining_distance = None, 0.0
         self._started_ns = self.now_ns()
         self.work_on(self._servers[variant], self._navigate(variant))
@@ -131,7 +137,7 @@ class NavigatorNode(StepNode):
     def publish_feedback(self, server: GoalServer) -> None:
         """Publish the robot's pose and the remaining distance and time as feedback for the goal."""
         pose = get_message("geometry_msgs/msg/PoseStamped")()
-        robot_pose = self._transform()
+        robot_pose = self._robot_transform()
         if robot_pose is not None:
             pose.header.frame_id, pose.header.stamp = self._value("global_frame"), self.get_clock().now().to_msg()
             pose.pose.position.x, pose.pose.position.y, pose.pose.position.z = robot_pose[:3]
@@ -141,13 +147,13 @@ class NavigatorNode(StepNode):
         feedback: dict[str, Any] = {
             "current_pose": pose,
             "distance_remaining": remaining_distance,
-            "number_of_recoveries": self._recoveries,
+            "number_of_recoveries": self._recovery_count,
             "navigation_time": Duration(nanoseconds=self.now_ns() - self._started_ns).to_msg(),
             "estimated_time_remaining": Duration(seconds=remaining_distance / max(self._speed, _MIN_SPEED)).to_msg(),
         }
         if server is self._servers["poses"]:
             feedback["number_of_poses_remaining"] = len(self._poses)
-        server.feedback(**feedback)
+        server.publish_feedback(**feedback)
 
     # --- navigation ---------------------------------------------------------------------------------------------------
 
@@ -158,9 +164,9 @@ class NavigatorNode(StepNode):
             try:
                 yield from self._plan_and_drive(variant)
             except StepError as failure:
-                if failure.is_final or self._recoveries >= _MAX_RECOVERIES:
+                if failure.is_final or self._recovery_count >= _MAX_RECOVERIES:
                     raise
-                self.get_logger().warning(f"{failure}: recovery {self._recoveries + 1} of {_MAX_RECOVERIES}")
+                self.get_logger().warning(f"{failure}: recovery {self._recovery_count + 1} of {_MAX_RECOVERIES}")
             else:
                 return
             yield from self._recover(recoveries)
@@ -168,9 +174,9 @@ class NavigatorNode(StepNode):
     def _recover(self, recoveries: Sequence[Any]) -> Step:
         """Run the recoveries in turn until one succeeds, as nav2's RoundRobin does."""
         for _ in recoveries:
-            recovery = recoveries[self._turn % len(recoveries)]
-            self._turn += 1
-            self._recoveries += 1
+            recovery = recoveries[self._next_recovery % len(recoveries)]
+            self._next_recovery += 1
+            self._recovery_count += 1
             try:
                 yield from recovery()
             except StepError as failure:
@@ -178,7 +184,7 @@ class NavigatorNode(StepNode):
             else:
                 return
 
-    _turn = 0
+    _next_recovery = 0
 
     def _plan_and_drive(self, variant: str) -> Step:
         """Plan a path and follow it, with periodic replanning."""
@@ -245,7 +251,7 @@ class NavigatorNode(StepNode):
         goal_position, frame = self._poses[-1].pose.position, self._poses[-1].header.frame_id
         if self._costmap is None or (frame and frame != self._costmap_frame):
             return ""
-        cost = int(self._costmap.cost_at(np.array([goal_position.x, goal_position.y]), outside=_UNKNOWN_COST))
+        cost = int(self._costmap.cost_at(np.array([goal_position.x, goal_position.y]), outside_cost=_UNKNOWN_COST))
         if cost == _UNKNOWN_COST:
             return f"the goal ({goal_position.x:.2f}, {goal_position.y:.2f}) is outside of the map or in unknown space"
         if cost == LETHAL:
@@ -276,7 +282,7 @@ class NavigatorNode(StepNode):
             self.get_logger().warning(f"the {scope} costmap is not cleared: no node offers {client.service_name}")
             return
         future = client.call_async(get_service("nav2_msgs/srv/ClearEntireCostmap").Request())
-        yield from self.until(future.done, client.service_name)
+        yield from self.wait_until(future.done, client.service_name)
 
     def _spin(self) -> Step:
         goal = get_action("nav2_msgs/action/Spin").Goal(target_yaw=_SPIN_ANGLE)
@@ -313,7 +319,7 @@ class NavigatorNode(StepNode):
         if robot_position is not None:
             self._remaining_distance = _remaining_distance(self._path, *robot_position)
 
-    def _transform(self) -> Any:
+    def _robot_transform(self) -> Any:
         """Return the robot's pose in the global frame, or None if it is unknown."""
         try:
             return self._buffer.lookup(self._value("global_frame"), self._value("robot_base_frame"), 0)[0]
@@ -321,7 +327,7 @@ class NavigatorNode(StepNode):
             return None
 
     def _robot_position(self) -> tuple[float, float] | None:
-        robot_pose = self._transform()
+        robot_pose = self._robot_transform()
         return None if robot_pose is None else (robot_pose[0], robot_pose[1])
 
     def _value(self, name: str) -> Any:

@@ -20,12 +20,12 @@ from linkwright.graph.endpoints.drivers import DriverWatch
 from linkwright.graph.transforms.core import BufferCore
 from linkwright.graph.transforms.listener import TransformListener
 from linkwright.messages import get_message
-from linkwright.navigation.behaviors.zones import Action, Verdict, limit_by_zones
-from linkwright.navigation.following.follower import STILL, Velocity
+from linkwright.navigation.behaviors.zones import Verdict, ZoneAction, limit_by_zones
+from linkwright.navigation.following.follower import ZERO_VELOCITY, Velocity
 from linkwright.navigation.nodes.collision_sources import Source
 from linkwright.navigation.nodes.collision_zones import Zone
 from linkwright.navigation.nodes.managed import ManagedNode, ManagedServer
-from linkwright.navigation.nodes.plugins import string_list
+from linkwright.navigation.nodes.plugins import get_string_list
 from linkwright.nodes.parameter_tables import ParameterTable
 from linkwright.nodes.velocity_topic import VelocityTopic, velocity_types
 
@@ -33,11 +33,11 @@ _DEPTH = 10
 _SILENT_SENSOR_ZONE = "invalid source"
 """The name that nav2 reports as the zone when a sensor publishes nothing."""
 _ACTION_MESSAGES = {
-    Action.STOP: "Robot to stop due to {}",
-    Action.SLOWDOWN: "Robot to slow down due to {}",
-    Action.APPROACH: "Robot to slow down while it approaches an obstacle near {}",
-    Action.LIMIT: "Robot to limit its speed due to {}",
-    Action.NOTHING: "Robot to continue normal operation",
+    ZoneAction.STOP: "Robot to stop due to {}",
+    ZoneAction.SLOWDOWN: "Robot to slow down due to {}",
+    ZoneAction.APPROACH: "Robot to slow down while it approaches an obstacle near {}",
+    ZoneAction.LIMIT: "Robot to limit its speed due to {}",
+    ZoneAction.NOTHING: "Robot to continue normal operation",
 }
 
 
@@ -71,7 +71,7 @@ class MonitorNode(ManagedNode):
         self._sources: list[Source] = []
         self._output: VelocityTopic | None = None
         self._state: Any = None
-        self._last_verdict = Verdict(STILL)
+        self._last_verdict = Verdict(ZERO_VELOCITY)
         self._stopped_ns: int | None = None
         self._table = ParameterTable(self, MonitorParameters)
         self._is_stamped = self._table.values.enable_stamped_cmd_vel
@@ -87,9 +87,9 @@ class MonitorNode(ManagedNode):
             parameters.base_frame_id,
             parameters.odom_frame_id if parameters.base_shift_correction else None,
         )
-        for name in string_list(self, "observation_sources", []):
+        for name in get_string_list(self, "observation_sources", []):
             self._sources.append(self.register(Source(self, name, self._transforms, base_frame, fixed_frame)))
-        for name in string_list(self, "polygons", []):
+        for name in get_string_list(self, "polygons", []):
             self._zones.append(self.register(Zone(self, name, self._transforms, base_frame)))
         topic = parameters.state_topic
         if topic:
@@ -109,9 +109,9 @@ class MonitorNode(ManagedNode):
 
     def deactivate(self) -> None:
         """Stop the robot, and stop forwarding velocities."""
-        if self._output is not None and self._last_verdict.velocity != STILL:
+        if self._output is not None and self._last_verdict.velocity != ZERO_VELOCITY:
             self._output.stop()
-        self._last_verdict = Verdict(STILL)
+        self._last_verdict = Verdict(ZERO_VELOCITY)
 
     def cleanup(self) -> None:
         """Drop the zones and sensors, and close the output topic."""
@@ -128,7 +128,7 @@ class MonitorNode(ManagedNode):
         if not all(map(isfinite, velocity)):
             self.get_logger().error("Velocity message contains NaNs or Infs! Ignoring as invalid!")
             return
-        if self._last_verdict.velocity == STILL:
+        if self._last_verdict.velocity == ZERO_VELOCITY:
             self._output.update_type()
         self._output.frame_id = message.header.frame_id if stamped else ""
         verdict = self._limit(velocity)
@@ -145,7 +145,7 @@ class MonitorNode(ManagedNode):
         for source in self._sources:
             points = source.points(now_ns, self._table.values.source_timeout)
             if points is None:
-                return Verdict(STILL, Action.STOP, _SILENT_SENSOR_ZONE)
+                return Verdict(ZERO_VELOCITY, ZoneAction.STOP, _SILENT_SENSOR_ZONE)
             points_by_sensor[source.name] = points
         zones = [zone.input_at_velocity(velocity, points_by_sensor) for zone in self._zones]
         return limit_by_zones(velocity, [zone for zone in zones if zone is not None])
@@ -157,7 +157,7 @@ class MonitorNode(ManagedNode):
         """
         assert self._output is not None, "it is configured"
         now_ns = self.get_clock().now().nanoseconds
-        if velocity != STILL:
+        if velocity != ZERO_VELOCITY:
             self._stopped_ns = None
         elif self._stopped_ns is None:
             self._stopped_ns = now_ns
@@ -166,12 +166,12 @@ class MonitorNode(ManagedNode):
         self._output.publish((velocity.x, velocity.y, 0.0), (0.0, 0.0, velocity.yaw))
 
     def _on_publisher_lost(self, publisher: EndpointInfo) -> None:
-        if self._output is not None and self._last_verdict.velocity != STILL:
+        if self._output is not None and self._last_verdict.velocity != ZERO_VELOCITY:
             self.get_logger().warning(
                 str(phrase("{who}; the robot is stopped", who=describe_lost_publisher(publisher)))
             )
             self._output.stop()
-            self._last_verdict = Verdict(STILL)
+            self._last_verdict = Verdict(ZERO_VELOCITY)
 
     def _publish_state(self, verdict: Verdict) -> None:
         self.get_logger().info(_ACTION_MESSAGES[verdict.action].format(verdict.zone))

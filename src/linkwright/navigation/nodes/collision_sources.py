@@ -16,7 +16,7 @@ from linkwright.graph import SENSOR_DATA_QOS, Node, TransformException
 from linkwright.graph.transforms.core import BufferCore
 from linkwright.messages import get_message
 from linkwright.navigation.behaviors.zones import Points
-from linkwright.navigation.nodes.plugins import value_of
+from linkwright.navigation.nodes.plugins import get_or_declare
 from linkwright.nodes.settings import bad_value
 from linkwright.perception.nodes.laser_filters import to_scan
 from linkwright.perception.nodes.pointcloud_to_laserscan import read_points
@@ -41,8 +41,8 @@ class Source:
 
     def __init__(self, node: Node, name: str, transforms: BufferCore, base_frame: str, fixed_frame: str | None) -> None:
         self.name = name
-        self._node, self._transforms, self._base, self._fixed = node, transforms, base_frame, fixed_frame
-        self._waiting: deque[Any] = deque(maxlen=_MAX_QUEUED)
+        self._node, self._transforms, self._base_frame, self._fixed_frame = node, transforms, base_frame, fixed_frame
+        self._queued_messages: deque[Any] = deque(maxlen=_MAX_QUEUED)
         readers: dict[str, tuple[str, Callable[[Any], NDArray[np.float64] | None]]] = {
             "scan": ("LaserScan", _points_from_scan),
             "pointcloud": ("PointCloud2", self._points_from_cloud),
@@ -101,11 +101,11 @@ class Source:
 
         Returns None if there is no such message. Transforms often arrive later than the messages.
         """
-        for message in reversed(self._waiting):
+        for message in reversed(self._queued_messages):
             pose = self._pose(message.header.frame_id, message.header.stamp.nanoseconds)
             if pose is not None:
-                while self._waiting[0] is not message:
-                    self._waiting.popleft()
+                while self._queued_messages[0] is not message:
+                    self._queued_messages.popleft()
                 return message, pose
         return None
 
@@ -115,18 +115,18 @@ class Source:
         Returns None if a transform is not available.
         """
         try:
-            if self._fixed is None:
-                return self._transforms.lookup(self._base, frame, 0)[0]
-            fixed_pose = self._transforms.lookup(self._fixed, frame, stamp_ns)[0]
-            return compose(self._transforms.lookup(self._base, self._fixed, 0)[0], fixed_pose)
+            if self._fixed_frame is None:
+                return self._transforms.lookup(self._base_frame, frame, 0)[0]
+            fixed_pose = self._transforms.lookup(self._fixed_frame, frame, stamp_ns)[0]
+            return compose(self._transforms.lookup(self._base_frame, self._fixed_frame, 0)[0], fixed_pose)
         except TransformException:
             return None
 
     def _value(self, name: str, default: Any) -> Any:
-        return value_of(self._node, f"{self.name}.{name}", default)
+        return get_or_declare(self._node, f"{self.name}.{name}", default)
 
     def _receive(self, message: Any) -> None:
-        self._waiting.append(message)
+        self._queued_messages.append(message)
 
     def _points_from_cloud(self, message: Any) -> NDArray[np.float64] | None:
         points = read_points(message)

@@ -11,18 +11,18 @@ from linkwright.geometry.arrays import rotation_matrix
 from linkwright.graph import Node, ParameterDescriptor, TransformException
 from linkwright.graph.transforms.core import BufferCore
 from linkwright.messages import get_message
-from linkwright.navigation.behaviors.zones import Action, Circle, Outline, Points, Rule, Shape, SpeedRange
+from linkwright.navigation.behaviors.zones import Circle, Points, Polygon, Shape, SpeedRange, ZoneAction, ZoneRule
 from linkwright.navigation.costmaps.footprints import BadFootprintError, Footprint, parse_footprint
 from linkwright.navigation.following.follower import Velocity
-from linkwright.navigation.nodes.plugins import string_list, value_of
+from linkwright.navigation.nodes.plugins import get_or_declare, get_string_list
 from linkwright.nodes.settings import bad_value
 
 _ACTIONS = {
-    "stop": Action.STOP,
-    "slowdown": Action.SLOWDOWN,
-    "approach": Action.APPROACH,
-    "limit": Action.LIMIT,
-    "none": Action.NOTHING,
+    "stop": ZoneAction.STOP,
+    "slowdown": ZoneAction.SLOWDOWN,
+    "approach": ZoneAction.APPROACH,
+    "limit": ZoneAction.LIMIT,
+    "none": ZoneAction.NOTHING,
 }
 _TYPES = ("polygon", "circle", "velocity_polygon")
 _POLYGON = "geometry_msgs/msg/PolygonStamped"
@@ -44,19 +44,21 @@ class Zone:
 
     def __init__(self, node: Node, name: str, transforms: BufferCore, base_frame: str) -> None:
         self.name = name
-        self._node, self._transforms, self._base = node, transforms, base_frame
+        self._node, self._transforms, self._base_frame = node, transforms, base_frame
         self._endpoints: list[Any] = []
         self._shape: Shape | None = None
         self._polygon: Any = None
         self._ranges: list[SpeedRange] = []
         self._value("enabled", True)
         self.rule = self._read_rule()
-        self._sources = string_list(node, f"{name}.sources_names", [])
+        self._sources = get_string_list(node, f"{name}.sources_names", [])
         kind = str(self._value("type", "polygon"))
         if kind not in _TYPES:
             raise bad_value(f"{name}.type", kind, node.get_name(), _TYPES)
         if kind == "velocity_polygon":
-            self._ranges = [self._read_range(polygon) for polygon in string_list(node, f"{name}.velocity_polygons", [])]
+            self._ranges = [
+                self._read_range(polygon) for polygon in get_string_list(node, f"{name}.velocity_polygons", [])
+            ]
         else:
             self._read_shape(kind)
         self._publisher: Any = None
@@ -71,7 +73,7 @@ class Zone:
 
     def input_at_velocity(
         self, velocity: Velocity, points_by_sensor: Mapping[str, Points]
-    ) -> tuple[str, Rule, Shape, Points] | None:
+    ) -> tuple[str, ZoneRule, Shape, Points] | None:
         """Return the zone's name, its rule, its shape at a velocity, and the points of its sensors.
 
         Returns None if the zone is disabled or has no shape yet.
@@ -93,12 +95,12 @@ class Zone:
         """Publish the zone's polygon for displays, if there are subscribers."""
         if (
             self._publisher is None
-            or not isinstance(self._shape, Outline)
+            or not isinstance(self._shape, Polygon)
             or not self._publisher.get_subscription_count()
         ):
             return
         message, point = get_message(_POLYGON)(), get_message("geometry_msgs/msg/Point32")
-        message.header.frame_id = self._base
+        message.header.frame_id = self._base_frame
         message.header.stamp = self._node.get_clock().now().to_msg()
         message.polygon.points = [point(x=float(x), y=float(y)) for x, y in self._shape.corners]
         self._publisher.publish(message)
@@ -106,26 +108,26 @@ class Zone:
     # --- parameters --------------------------------------------------------------------------------------------------
 
     def _value(self, name: str, default: Any) -> Any:
-        return value_of(self._node, f"{self.name}.{name}", default)
+        return get_or_declare(self._node, f"{self.name}.{name}", default)
 
-    def _read_rule(self) -> Rule:
+    def _read_rule(self) -> ZoneRule:
         action_name = str(self._value("action_type", ""))
         if action_name not in _ACTIONS:
             raise bad_value(f"{self.name}.action_type", action_name, self._node.get_name(), list(_ACTIONS))
         min_points = int(self._value("min_points", 4))
         if f"{self.name}.max_points" in self._node.undeclared_overrides():  # Humble's parameter.
             min_points = int(self._value("max_points", 3)) + 1
-        default_rule = Rule(_ACTIONS[action_name])
+        default_rule = ZoneRule(_ACTIONS[action_name])
         names = [
-            *(("slowdown_ratio",) if default_rule.action is Action.SLOWDOWN else ()),
-            *(("linear_limit", "angular_limit") if default_rule.action is Action.LIMIT else ()),
-            *(("time_before_collision", "simulation_time_step") if default_rule.action is Action.APPROACH else ()),
+            *(("slowdown_ratio",) if default_rule.action is ZoneAction.SLOWDOWN else ()),
+            *(("linear_limit", "angular_limit") if default_rule.action is ZoneAction.LIMIT else ()),
+            *(("time_before_collision", "simulation_time_step") if default_rule.action is ZoneAction.APPROACH else ()),
         ]
         values = {name: float(self._value(name, getattr(default_rule, name))) for name in names}
         for name in ("time_before_collision", "simulation_time_step"):
             if values.get(name, 1.0) <= 0.0:
                 raise bad_value(f"{self.name}.{name}", values[name], self._node.get_name())
-        return Rule(default_rule.action, min_points, **values)
+        return ZoneRule(default_rule.action, min_points, **values)
 
     def _read_range(self, polygon: str) -> SpeedRange:
         corners = self._corners(f"{polygon}.points")
@@ -138,7 +140,7 @@ class Zone:
                 float(self._value(f"{polygon}.direction_start_angle", -np.pi)),
                 float(self._value(f"{polygon}.direction_end_angle", np.pi)),
             )
-        return SpeedRange(Outline(corners), (bounds[0], bounds[1]), (bounds[2], bounds[3]), direction)
+        return SpeedRange(Polygon(corners), (bounds[0], bounds[1]), (bounds[2], bounds[3]), direction)
 
     def _read_shape(self, kind: str) -> None:
         """Read the shape from parameters, or subscribe to the topic that provides it."""
@@ -156,8 +158,8 @@ class Zone:
             return
         corners = self._corners("points")
         if corners is not None:
-            self._shape = Outline(corners)
-        elif self.rule.action is Action.APPROACH:
+            self._shape = Polygon(corners)
+        elif self.rule.action is ZoneAction.APPROACH:
             topic = str(self._value("footprint_topic", "local_costmap/published_footprint"))
             self._register(self._node.create_subscription(polygon, topic, self._on_polygon, _DEPTH))
         else:
@@ -206,14 +208,14 @@ class Zone:
         if self._polygon is None:
             return
         header = self._polygon.header
-        stamp_ns = header.stamp.nanoseconds if self.rule.action is Action.APPROACH else 0
+        stamp_ns = header.stamp.nanoseconds if self.rule.action is ZoneAction.APPROACH else 0
         try:
-            pose = self._transforms.lookup(self._base, header.frame_id or self._base, stamp_ns)[0]
+            pose = self._transforms.lookup(self._base_frame, header.frame_id or self._base_frame, stamp_ns)[0]
         except TransformException:
             return
         corners = np.array([(point.x, point.y, 0.0) for point in self._polygon.polygon.points])
-        self._shape = Outline((corners @ rotation_matrix(pose[3:]).T + np.array(pose[:3]))[:, :2])
-        if header.frame_id in ("", self._base) or stamp_ns:
+        self._shape = Polygon((corners @ rotation_matrix(pose[3:]).T + np.array(pose[:3]))[:, :2])
+        if header.frame_id in ("", self._base_frame) or stamp_ns:
             self._polygon = None
 
 

@@ -18,14 +18,14 @@ from linkwright.graph import Graph, ParameterType, TransformException
 from linkwright.graph.actions.goal import ServerGoalHandle
 from linkwright.graph.lifecycle.states import INACTIVE
 from linkwright.messages import get_message
-from linkwright.navigation.following.follower import STILL, Follower, FollowingError, Pose, Situation, Velocity
+from linkwright.navigation.following.follower import ZERO_VELOCITY, Follower, FollowingError, Pose, Situation, Velocity
 from linkwright.navigation.following.path import FollowedPath
 from linkwright.navigation.nodes.costmap import CostmapNode, make_costmap
 from linkwright.navigation.nodes.followers import make_follower, make_goal_checker, make_progress_checker
 from linkwright.navigation.nodes.goals import GoalError, GoalServer
 from linkwright.navigation.nodes.managed import ManagedNode, ManagedServer
 from linkwright.navigation.nodes.paths import poses_from_messages
-from linkwright.navigation.nodes.plugins import string_list
+from linkwright.navigation.nodes.plugins import get_string_list
 from linkwright.nodes.options import NodeOptions
 from linkwright.nodes.settings import positive
 from linkwright.nodes.velocity_topic import VelocityTopic
@@ -72,7 +72,7 @@ class ControllerNode(ManagedNode):
         self._humble_progress_checker: str = declare("progress_checker_plugin", "").value  # Humble's parameter.
         self._followers: dict[str, Follower] = {}
         self._goals: GoalServer | None = None
-        self._measured_velocity = STILL
+        self._measured_velocity = ZERO_VELOCITY
         self._command: Velocity | None = None
 
     def configure(self) -> None:
@@ -85,11 +85,11 @@ class ControllerNode(ManagedNode):
         humble_checkers = [self._humble_progress_checker] if self._humble_progress_checker else None
         self._progress = {
             checker: make_progress_checker(self, checker)
-            for checker in humble_checkers or string_list(self, "progress_checker_plugins", ["progress_checker"])
+            for checker in humble_checkers or get_string_list(self, "progress_checker_plugins", ["progress_checker"])
         }
-        names = string_list(self, "goal_checker_plugins", ["goal_checker"])
+        names = get_string_list(self, "goal_checker_plugins", ["goal_checker"])
         self._goal_checkers = {name: make_goal_checker(self, name) for name in names}
-        names = string_list(self, "controller_plugins", ["FollowPath"])
+        names = get_string_list(self, "controller_plugins", ["FollowPath"])
         self._followers = {name: make_follower(self, name) for name in names}
         self.costmap.trigger_configure()
         odometry, limit = get_message("nav_msgs/msg/Odometry"), get_message("nav2_msgs/msg/SpeedLimit")
@@ -104,7 +104,7 @@ class ControllerNode(ManagedNode):
 
     def deactivate(self) -> None:
         """Stop the robot, abort the current goal, and deactivate the costmap."""
-        if self._goals is not None and self._goals.current is not None:
+        if self._goals is not None and self._goals.active_goal is not None:
             self._halt()
             self._goals.abort("UNKNOWN", "the server was deactivated")
         if self.costmap.is_active:
@@ -143,10 +143,10 @@ class ControllerNode(ManagedNode):
             return
         if not is_driving:
             self._progress_checker = checker
-            self._progress_checker.begin()
+            self._progress_checker.reset()
             self._last_valid_ns = self.now_ns()
             self._output.update_type()
-            self.begin_cycles(1.0 / self._frequency, self._cycle)
+            self.begin_cycles(1.0 / self._frequency, self._run_cycle)
 
     def _accept_path(self, message: Any) -> None:
         poses = poses_from_messages(message.poses)
@@ -154,24 +154,24 @@ class ControllerNode(ManagedNode):
             raise GoalError("INVALID_PATH", "Path is empty.")
         goal = tuple(poses[-1])
         if not self.is_cycling or getattr(self, "_goal_in_path", None) != goal:
-            self._goal_checker.begin()
+            self._goal_checker.reset()
         self._goal_in_path: Pose = goal
         self._path_frame = message.header.frame_id or message.poses[0].header.frame_id
         grid = self.costmap.costmap.grid
         self._local_radius = max(grid.rows, grid.columns) * grid.resolution / 2.0
         self._path = FollowedPath(poses if len(poses) > 1 else np.repeat(poses, 2, axis=0), self._local_radius)
-        self._follower.begin()
+        self._follower.reset()
 
-    def _cycle(self) -> None:
+    def _run_cycle(self) -> None:
         """Run one control cycle: drive, or stop if there is no goal or it was canceled."""
         goals = self._goals
-        if goals is None or goals.current is None:
+        if goals is None or goals.active_goal is None:
             self._halt()
             return
         if goals.is_canceled:
             self.get_logger().info("Goal was canceled. Stopping the robot.")
             self._halt()
-            goals.canceled()
+            goals.end_canceled()
             return
         try:
             self._drive(goals)
@@ -182,7 +182,7 @@ class ControllerNode(ManagedNode):
 
     def _wait(self, problem: _TemporarilyUnavailableError) -> None:
         """Stop the robot until missing data arrive, or abort the goal after a timeout."""
-        self._publish(STILL)
+        self._publish(ZERO_VELOCITY)
         waited_seconds = (self.now_ns() - self._last_valid_ns) / 1e9
         if waited_seconds > max(self._value("costmap_update_timeout"), _MIN_WAIT):
             self._fail(GoalError(problem.code, f"{problem}; the goal is aborted"))
@@ -202,7 +202,7 @@ class ControllerNode(ManagedNode):
         if not self.costmap.is_current:
             raise _TemporarilyUnavailableError("CONTROLLER_TIMED_OUT", "the costmap is not current")
         x, y, yaw = _relative_pose(frame, pose)
-        self._path.progress(x, y)
+        self._path.update_progress(x, y)
         velocity = self._velocity()
         if self._goal_checker.is_reached((x, y, yaw), self._goal_in_path, self._measured_velocity):
             self.get_logger().info("Reached the goal!")
@@ -227,7 +227,7 @@ class ControllerNode(ManagedNode):
             return
         self._last_valid_ns = now_ns
         self._publish(command)
-        goals.feedback(
+        goals.publish_feedback(
             distance_to_goal=self._path.remaining_distance(x, y),
             speed=hypot(self._measured_velocity.x, self._measured_velocity.y),
         )
@@ -242,7 +242,7 @@ class ControllerNode(ManagedNode):
         if not tolerance:
             raise GoalError("NO_VALID_CONTROL", reason)
         self.get_logger().warning(reason, throttle_duration_sec=_WARNING_PERIOD)
-        self._publish(STILL)
+        self._publish(ZERO_VELOCITY)
         if 0.0 < tolerance < (now_ns - self._last_valid_ns) / 1e9:
             raise GoalError("PATIENCE_EXCEEDED", "Controller patience exceeded")
 

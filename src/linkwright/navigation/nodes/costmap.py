@@ -36,13 +36,13 @@ from linkwright.navigation.grids.grid import Grid
 from linkwright.navigation.grids.library import load_scipy
 from linkwright.navigation.nodes.costmap_layers import (
     DEFAULT_LAYERS,
-    Surroundings,
+    LayerContext,
     apply_parameters,
     make_layers,
 )
 from linkwright.navigation.nodes.costmap_messages import CostmapPublisher, raw_message
 from linkwright.navigation.nodes.managed import ManagedNode
-from linkwright.navigation.nodes.plugins import declare_unused, string_list
+from linkwright.navigation.nodes.plugins import declare_unused, get_string_list
 from linkwright.nodes.options import NodeOptions
 from linkwright.nodes.parameter_tables import ParameterTable
 from linkwright.nodes.settings import bad_value
@@ -94,17 +94,17 @@ class CostmapNode(ManagedNode):
 
     def __init__(self, *arguments: Any, **keywords: Any) -> None:
         super().__init__(*arguments, **keywords)
-        self._beats = 0.0  # A costmap needs no bond because its server has one.
+        self._heartbeat_period = 0.0  # A costmap needs no bond because its server has one.
 
     def declare(self) -> None:
         """Declare the parameters that do not belong to a layer."""
-        self._surroundings: Surroundings | None = None
+        self._layer_context: LayerContext | None = None
         self._layered: LayeredCostmap | None = None
         self._publisher: CostmapPublisher | None = None
         self._last_published_ns: int | None = None
         self.add_post_set_parameters_callback(self._apply_parameters)
         self._table = ParameterTable(self, CostmapParameters)  # Added last, so that its callback runs first.
-        self._filters: list[str] = string_list(self, "filters", [])
+        self._filters: list[str] = get_string_list(self, "filters", [])
         self.transforms = BufferCore(logger=self.get_logger().get_child("tf2"))
         TransformListener(self.transforms, self)
 
@@ -113,12 +113,12 @@ class CostmapNode(ManagedNode):
     @property
     def global_frame(self) -> str:
         """The frame of the costmap."""
-        return self._values.global_frame
+        return self._parameter_values.global_frame
 
     @property
     def robot_base_frame(self) -> str:
         """The frame of the robot."""
-        return self._values.robot_base_frame
+        return self._parameter_values.robot_base_frame
 
     @property
     def layered(self) -> LayeredCostmap:
@@ -147,7 +147,7 @@ class CostmapNode(ManagedNode):
     @property
     def uses_radius(self) -> bool:
         """Whether the robot is round, because the parameter ``footprint`` is empty."""
-        return self._values.footprint.replace(" ", "") in {"", "[]"}
+        return self._parameter_values.footprint.replace(" ", "") in {"", "[]"}
 
     @property
     def is_current(self) -> bool:
@@ -159,9 +159,9 @@ class CostmapNode(ManagedNode):
 
         Returns None if the transform is not available.
         """
-        return self.pose_of((0.0, 0.0, 0.0), self.robot_base_frame)
+        return self.transform_pose((0.0, 0.0, 0.0), self.robot_base_frame)
 
-    def pose_of(self, pose: Pose, frame: str, time_ns: int = 0) -> Pose | None:
+    def transform_pose(self, pose: Pose, frame: str, time_ns: int = 0) -> Pose | None:
         """Transform a pose to the frame of the costmap, or return None if no transform is available.
 
         Args:
@@ -191,22 +191,24 @@ class CostmapNode(ManagedNode):
         """
         load_scipy("ndimage")
         footprint = self._read_footprint()
-        self._surroundings = Surroundings(self, self.transforms, self.global_frame, self._on_map)
+        self._layer_context = LayerContext(self, self.transforms, self.global_frame, self._on_map)
         self._ignore_filters()
-        make_layers(self._surroundings, string_list(self, "plugins", list(DEFAULT_LAYERS)))
+        make_layers(self._layer_context, get_string_list(self, "plugins", list(DEFAULT_LAYERS)))
         resolution = self._positive_value("resolution")
         rows, columns = (max(1, int(self._positive_value(name) / resolution)) for name in ("height", "width"))
         cells = np.zeros((rows, columns), np.uint8)
-        grid = Grid(cells=cells, resolution=resolution, x=self._values.origin_x, y=self._values.origin_y)
+        grid = Grid(
+            cells=cells, resolution=resolution, x=self._parameter_values.origin_x, y=self._parameter_values.origin_y
+        )
         self._layered = LayeredCostmap(
             grid,
-            list(self._surroundings.layers.values()),
+            list(self._layer_context.layers.values()),
             footprint,
-            rolling=self._values.rolling_window,
-            track_unknown=self._values.track_unknown_space,
-            footprint_padding=self._values.footprint_padding,
+            is_rolling=self._parameter_values.rolling_window,
+            track_unknown=self._parameter_values.track_unknown_space,
+            footprint_padding=self._parameter_values.footprint_padding,
         )
-        always_full = self._values.always_send_full_costmap
+        always_full = self._parameter_values.always_send_full_costmap
         self._publisher = self.register(
             CostmapPublisher(self, self._layered, self.global_frame, always_full=always_full)
         )
@@ -228,41 +230,41 @@ class CostmapNode(ManagedNode):
     def cleanup(self) -> None:
         """Drop the layers, and remove their subscriptions."""
         self.end_cycles()
-        for topic in self._surroundings.topics if self._surroundings is not None else []:
+        for topic in self._layer_context.topics if self._layer_context is not None else []:
             topic.destroy()
-        self._surroundings = self._layered = self._publisher = None
+        self._layer_context = self._layered = self._publisher = None
 
     def update(self) -> bool:
         """Process queued sensor data, update the costmap, and publish the footprint.
 
         Returns False, without an update, if the robot's pose is unknown.
         """
-        assert self._surroundings is not None, "it is configured"
+        assert self._layer_context is not None, "it is configured"
         pose = self.robot_pose()
         if pose is None:
             return False
-        for sensor in self._surroundings.sensors:
-            sensor.process()
+        for sensor in self._layer_context.sensors:
+            sensor.process_queue()
         layered = self.layered
         if layered.update(pose, self.now_ns()) and self._publisher is not None:
-            self._publisher.add_change(layered.changed)
+            self._publisher.add_change(layered.changed_window)
         self._publish_footprint(pose)
         return True
 
     # --- updates ------------------------------------------------------------------------------------------------------
 
     @property
-    def _values(self) -> CostmapParameters:
+    def _parameter_values(self) -> CostmapParameters:
         return self._table.values
 
     def _positive_value(self, name: str) -> float:
-        value: float = getattr(self._values, name)
+        value: float = getattr(self._parameter_values, name)
         if not value > 0:
             raise bad_value(name, value, self.get_name())
         return float(value)
 
     def _read_footprint(self) -> Footprint:
-        text = self._values.footprint
+        text = self._parameter_values.footprint
         if self.uses_radius:
             return circle(self._positive_value("robot_radius"))
         try:
@@ -280,14 +282,14 @@ class CostmapNode(ManagedNode):
 
     def _begin_updates(self) -> None:
         self.end_cycles()
-        frequency = self._values.update_frequency
+        frequency = self._parameter_values.update_frequency
         if frequency > 0.0:
-            self.begin_cycles(1.0 / frequency, self._cycle)
+            self.begin_cycles(1.0 / frequency, self._run_cycle)
 
-    def _cycle(self) -> None:
+    def _run_cycle(self) -> None:
         if not self.update() or self._publisher is None:
             return
-        frequency, now_ns = self._values.publish_frequency, self.now_ns()
+        frequency, now_ns = self._parameter_values.publish_frequency, self.now_ns()
         if frequency <= 0.0:
             return
         if self._last_published_ns is None or not 0 <= now_ns - self._last_published_ns < 1e9 / frequency:
@@ -308,7 +310,7 @@ class CostmapNode(ManagedNode):
             f"StaticLayer: Resizing costmap to {grid.columns} X {grid.rows} at {grid.resolution:g} m/pix"
         )
         layered = self._layered
-        if layered is None or layered.rolling:
+        if layered is None or layered.is_rolling:
             return
         old_grid = layered.costmap.grid
         new_grid = _axis_aligned_grid(grid) if frame == self.global_frame else grid
@@ -333,16 +335,16 @@ class CostmapNode(ManagedNode):
     def _apply_parameters(self, changed: list[Parameter]) -> None:
         """Apply changed parameters to the configured node."""
         layered = self._layered
-        if layered is None or self._surroundings is None:
+        if layered is None or self._layer_context is None:
             return
         names = {parameter.name for parameter in changed}
         if names & {"footprint", "robot_radius", "footprint_padding"}:
             try:
-                layered.padding = self._values.footprint_padding
+                layered.padding = self._parameter_values.footprint_padding
                 layered.footprint = self._read_footprint()
             except LinkwrightError as error:
                 self.log_error(error)
-        if apply_parameters(self._surroundings, changed):
+        if apply_parameters(self._layer_context, changed):
             layered.invalidate()
         if "update_frequency" in names and self.is_cycling:
             self._begin_updates()
@@ -369,17 +371,17 @@ class CostmapNode(ManagedNode):
         return response
 
     def _clear_around(self, request: Any, response: Any) -> Any:
-        return self._clear(request, response, except_it=False)
+        return self._clear(request, response, clear_outside=False)
 
     def _clear_except(self, request: Any, response: Any) -> Any:
-        return self._clear(request, response, except_it=True)
+        return self._clear(request, response, clear_outside=True)
 
-    def _clear(self, request: Any, response: Any, *, except_it: bool) -> Any:
+    def _clear(self, request: Any, response: Any, *, clear_outside: bool) -> Any:
         pose = self.robot_pose()
         if pose is None:
             self.get_logger().error("Cannot clear map because robot pose cannot be retrieved.")
             return response
-        self.layered.clear_around(pose, request.reset_distance, outside=except_it)
+        self.layered.clear_around(pose, request.reset_distance, clear_outside=clear_outside)
         self.update()
         return response
 

@@ -18,13 +18,13 @@ from linkwright.navigation.costmaps.denoise_layer import DenoiseLayer
 from linkwright.navigation.costmaps.inflation_layer import Inflation, InflationLayer
 from linkwright.navigation.costmaps.layer import Layer
 from linkwright.navigation.costmaps.observations import ObservationBuffer, Source
-from linkwright.navigation.costmaps.obstacle_layer import Heights, ObstacleLayer
+from linkwright.navigation.costmaps.obstacle_layer import HeightRange, ObstacleLayer
 from linkwright.navigation.costmaps.range_layer import RangeLayer, RangeSettings
 from linkwright.navigation.costmaps.static_layer import Interpretation, MapPose, StaticLayer
 from linkwright.navigation.costmaps.voxel_layer import MAX_LEVELS, VoxelLayer, Voxels
 from linkwright.navigation.grids.grid import Grid
 from linkwright.navigation.nodes.costmap_sources import MapTopic, PointsTopic, RangeTopic, SensorTopic
-from linkwright.navigation.nodes.plugins import declare_unused, string_list, value_of
+from linkwright.navigation.nodes.plugins import declare_unused, get_or_declare, get_string_list
 from linkwright.nodes.parameter_tables import declare_table
 from linkwright.nodes.settings import bad_value
 
@@ -37,7 +37,7 @@ _DATA_TYPES: Final = ("LaserScan", "PointCloud2")
 
 
 @dataclass(slots=True)
-class Surroundings:
+class LayerContext:
     """The node and data that the layers of a costmap share.
 
     Attributes:
@@ -60,28 +60,28 @@ class Surroundings:
 
     def value(self, name: str, default: Any) -> Any:
         """Return the value of a parameter, declaring it first if necessary."""
-        return value_of(self.node, name, default)
+        return get_or_declare(self.node, name, default)
 
 
-def make_layers(shared: Surroundings, names: list[str]) -> None:
-    """Create the layers named by the parameter ``plugins``, and add them to `shared`.
+def make_layers(context: LayerContext, names: list[str]) -> None:
+    """Create the layers named by the parameter ``plugins``, and add them to `context`.
 
     Layers of unsupported types are skipped with a warning.
 
     Raises:
         LinkwrightError: NODE431, a layer has no type; NODE433, a parameter has an invalid value.
     """
-    factories: dict[str, Callable[[Surroundings, str], Layer]] = {
-        "StaticLayer": _static,
+    factories: dict[str, Callable[[LayerContext, str], Layer]] = {
+        "StaticLayer": _make_static_layer,
         "ObstacleLayer": _make_obstacle_layer,
         "VoxelLayer": _make_voxel_layer,
         "InflationLayer": _make_inflation_layer,
         "DenoiseLayer": _make_denoise_layer,
         "RangeSensorLayer": _make_range_layer,
     }
-    node = shared.node
+    node = context.node
     for name in names:
-        kind = shared.value(f"{name}.plugin", DEFAULT_LAYERS.get(name, ""))
+        kind = context.value(f"{name}.plugin", DEFAULT_LAYERS.get(name, ""))
         if not kind:
             message = phrase("parameter '{name}' of '{node}' is not set", name=f"{name}.plugin", node=node.get_name())
             raise LinkwrightError(Diagnostic("NODE431", message))
@@ -91,9 +91,9 @@ def make_layers(shared: Surroundings, names: list[str]) -> None:
             node.get_logger().warning(f"layers of type {kind} are not supported: the costmap ignores '{name}'")
             continue
         node.get_logger().info(f'Using plugin "{name}"')
-        layer = factory(shared, name)
-        layer.enabled = shared.value(f"{name}.enabled", True)
-        shared.layers[name] = layer
+        layer = factory(context, name)
+        layer.enabled = context.value(f"{name}.enabled", True)
+        context.layers[name] = layer
     ignored_layers = [
         undeclared_override.removesuffix(".plugin")
         for undeclared_override in node.undeclared_overrides()
@@ -105,12 +105,12 @@ def make_layers(shared: Surroundings, names: list[str]) -> None:
         node.get_logger().info(f"layers that 'plugins' does not name are ignored: {', '.join(ignored_layers)}")
 
 
-def apply_parameters(shared: Surroundings, changed: list[Parameter]) -> bool:
+def apply_parameters(context: LayerContext, changed: list[Parameter]) -> bool:
     """Apply changed parameters to the layers, and return whether any of them belongs to a layer."""
     is_layer_changed = False
     for changed_parameter in changed:
         name, _, parameter = changed_parameter.name.partition(".")
-        layer = shared.layers.get(name)
+        layer = context.layers.get(name)
         if layer is None:
             continue
         is_layer_changed = True
@@ -125,117 +125,117 @@ def apply_parameters(shared: Surroundings, changed: list[Parameter]) -> bool:
     return is_layer_changed
 
 
-def _static(shared: Surroundings, name: str) -> Layer:
+def _make_static_layer(context: LayerContext, name: str) -> Layer:
     interpretation = Interpretation(
-        track_unknown_space=shared.value("track_unknown_space", False),
-        unknown_cost_value=shared.value("unknown_cost_value", 255) % 256,
-        lethal_threshold=max(0, min(100, shared.value("lethal_cost_threshold", 100))),
-        trinary=shared.value("trinary_costmap", True),
+        track_unknown_space=context.value("track_unknown_space", False),
+        unknown_cost_value=context.value("unknown_cost_value", 255) % 256,
+        lethal_threshold=max(0, min(100, context.value("lethal_cost_threshold", 100))),
+        trinary=context.value("trinary_costmap", True),
     )
-    shared.value(f"{name}.transform_tolerance", 0.0)
-    topic = shared.value(f"{name}.map_topic", "") or shared.value("map_topic", "map")
+    context.value(f"{name}.transform_tolerance", 0.0)
+    topic = context.value(f"{name}.map_topic", "") or context.value("map_topic", "map")
     map_topic: list[MapTopic] = []
 
     def pose() -> MapPose | None:
         frame = map_topic[0].frame
-        if frame is None or frame == shared.frame:
+        if frame is None or frame == context.frame:
             return 0.0, 0.0, 0.0
         try:
-            frame_pose, _ = shared.transforms.lookup(frame, shared.frame, 0)
+            frame_pose, _ = context.transforms.lookup(frame, context.frame, 0)
         except TransformException:
             return None
         return frame_pose[0], frame_pose[1], rpy_from_quaternion(frame_pose[3:])[2]
 
     layer = StaticLayer(
         interpretation,
-        use_maximum=shared.value("use_maximum", False),
-        footprint_clearing=shared.value(f"{name}.footprint_clearing_enabled", False),
+        use_maximum=context.value("use_maximum", False),
+        footprint_clearing=context.value(f"{name}.footprint_clearing_enabled", False),
         pose=pose,
     )
     map_topic.append(
         MapTopic(
-            shared.node,
-            _in_parent_namespace(shared.node, topic),
+            context.node,
+            _in_parent_namespace(context.node, topic),
             layer,
-            transient_local=shared.value(f"{name}.map_subscribe_transient_local", True),
-            updates=shared.value(f"{name}.subscribe_to_updates", False),
-            on_map=shared.on_map,
+            transient_local=context.value(f"{name}.map_subscribe_transient_local", True),
+            has_updates=context.value(f"{name}.subscribe_to_updates", False),
+            on_map=context.on_map,
         )
     )
-    shared.topics += map_topic
+    context.topics += map_topic
     return layer
 
 
-def _make_obstacle_layer(shared: Surroundings, name: str) -> Layer:
+def _make_obstacle_layer(context: LayerContext, name: str) -> Layer:
     return ObstacleLayer(
-        _make_buffers(shared, name),
-        declare_table(shared.node, Heights, name),
-        combination_method=shared.value(f"{name}.combination_method", 1),
-        footprint_clearing=shared.value(f"{name}.footprint_clearing_enabled", True),
+        _make_buffers(context, name),
+        declare_table(context.node, HeightRange, name),
+        combination_method=context.value(f"{name}.combination_method", 1),
+        footprint_clearing=context.value(f"{name}.footprint_clearing_enabled", True),
     )
 
 
-def _make_voxel_layer(shared: Surroundings, name: str) -> Layer:
-    if shared.value(f"{name}.publish_voxel_map", False):
-        shared.node.get_logger().info(f"{name}.publish_voxel_map is not supported: '{name}' publishes no voxels")
-    voxels: Voxels = declare_table(shared.node, Voxels, name)
+def _make_voxel_layer(context: LayerContext, name: str) -> Layer:
+    if context.value(f"{name}.publish_voxel_map", False):
+        context.node.get_logger().info(f"{name}.publish_voxel_map is not supported: '{name}' publishes no voxels")
+    voxels: Voxels = declare_table(context.node, Voxels, name)
     if not 0 < voxels.z_voxels <= MAX_LEVELS:
         valid_counts = [str(count) for count in range(1, MAX_LEVELS + 1)]
-        raise bad_value(f"{name}.z_voxels", voxels.z_voxels, shared.node.get_name(), valid_counts)
+        raise bad_value(f"{name}.z_voxels", voxels.z_voxels, context.node.get_name(), valid_counts)
     return VoxelLayer(
-        _make_buffers(shared, name),
-        declare_table(shared.node, Heights, name),
+        _make_buffers(context, name),
+        declare_table(context.node, HeightRange, name),
         voxels,
-        combination_method=shared.value(f"{name}.combination_method", 1),
-        footprint_clearing=shared.value(f"{name}.footprint_clearing_enabled", True),
+        combination_method=context.value(f"{name}.combination_method", 1),
+        footprint_clearing=context.value(f"{name}.footprint_clearing_enabled", True),
     )
 
 
-def _make_buffers(shared: Surroundings, name: str) -> list[ObservationBuffer]:
-    shared.value(f"{name}.tf_filter_tolerance", 0.05)
+def _make_buffers(context: LayerContext, name: str) -> list[ObservationBuffer]:
+    context.value(f"{name}.tf_filter_tolerance", 0.05)
     buffers = []
-    for source in shared.value(f"{name}.observation_sources", "").split():
+    for source in context.value(f"{name}.observation_sources", "").split():
         prefix = f"{name}.{source}"
-        kind = shared.value(f"{prefix}.data_type", "LaserScan")
+        kind = context.value(f"{prefix}.data_type", "LaserScan")
         if kind not in _DATA_TYPES:
-            raise bad_value(f"{prefix}.data_type", kind, shared.node.get_name(), _DATA_TYPES)
-        buffer = ObservationBuffer(declare_table(shared.node, Source, prefix))
+            raise bad_value(f"{prefix}.data_type", kind, context.node.get_name(), _DATA_TYPES)
+        buffer = ObservationBuffer(declare_table(context.node, Source, prefix))
         topic = PointsTopic(
-            shared.node,
-            _in_parent_namespace(shared.node, shared.value(f"{prefix}.topic", source)),
+            context.node,
+            _in_parent_namespace(context.node, context.value(f"{prefix}.topic", source)),
             kind,
             buffer,
-            shared.transforms,
-            shared.frame,
-            sensor_frame=shared.value(f"{prefix}.sensor_frame", ""),
-            inf_is_valid=shared.value(f"{prefix}.inf_is_valid", False),
+            context.transforms,
+            context.frame,
+            sensor_frame=context.value(f"{prefix}.sensor_frame", ""),
+            inf_is_valid=context.value(f"{prefix}.inf_is_valid", False),
         )
-        shared.topics.append(topic)
-        shared.sensors.append(topic)
+        context.topics.append(topic)
+        context.sensors.append(topic)
         buffers.append(buffer)
     return buffers
 
 
-def _make_inflation_layer(shared: Surroundings, name: str) -> Layer:
-    return InflationLayer(declare_table(shared.node, Inflation, name))
+def _make_inflation_layer(context: LayerContext, name: str) -> Layer:
+    return InflationLayer(declare_table(context.node, Inflation, name))
 
 
-def _make_range_layer(shared: Surroundings, name: str) -> Layer:
-    layer = RangeLayer(declare_table(shared.node, RangeSettings, name))
-    shared.value(f"{name}.inflate_cone", 1.0)
-    shared.value(f"{name}.input_sensor_type", "ALL")
-    for topic in string_list(shared.node, f"{name}.topics", []):
+def _make_range_layer(context: LayerContext, name: str) -> Layer:
+    layer = RangeLayer(declare_table(context.node, RangeSettings, name))
+    context.value(f"{name}.inflate_cone", 1.0)
+    context.value(f"{name}.input_sensor_type", "ALL")
+    for topic in get_string_list(context.node, f"{name}.topics", []):
         range_topic = RangeTopic(
-            shared.node, _in_parent_namespace(shared.node, topic), layer, shared.transforms, shared.frame
+            context.node, _in_parent_namespace(context.node, topic), layer, context.transforms, context.frame
         )
-        shared.topics.append(range_topic)
-        shared.sensors.append(range_topic)
+        context.topics.append(range_topic)
+        context.sensors.append(range_topic)
     return layer
 
 
-def _make_denoise_layer(shared: Surroundings, name: str) -> Layer:
+def _make_denoise_layer(context: LayerContext, name: str) -> Layer:
     return DenoiseLayer(
-        shared.value(f"{name}.minimal_group_size", 2), shared.value(f"{name}.group_connectivity_type", 8)
+        context.value(f"{name}.minimal_group_size", 2), context.value(f"{name}.group_connectivity_type", 8)
     )
 
 

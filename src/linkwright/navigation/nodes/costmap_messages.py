@@ -81,7 +81,7 @@ class CostmapPublisher:
 
     def add_change(self, window: Window) -> None:
         """Add a changed window to the changes that the next `publish` sends."""
-        self._pending_window = self._pending_window.joined(window)
+        self._pending_window = self._pending_window.union(window)
 
     def publish(self) -> None:
         """Publish the changes since the last call.
@@ -92,7 +92,7 @@ class CostmapPublisher:
         geometry = (grid.x, grid.y, grid.rows, grid.columns)
         subscriber_count = self._full_publisher.get_subscription_count() + self._raw_publisher.get_subscription_count()
         is_full = self._always_full or geometry != self._published_geometry or subscriber_count > self._subscriber_count
-        window, self._pending_window = self._pending_window.within(grid), Window()
+        window, self._pending_window = self._pending_window.clipped_to(grid), Window()
         self._subscriber_count = subscriber_count
         if not subscriber_count:
             self._published_geometry = None

@@ -29,7 +29,7 @@ from linkwright.graph import (
 from linkwright.graph.transforms.core import BufferCore
 from linkwright.messages import get_message
 from linkwright.navigation.costmaps.observations import ObservationBuffer
-from linkwright.navigation.costmaps.range_layer import RangeLayer, Reading
+from linkwright.navigation.costmaps.range_layer import RangeLayer, RangeReading
 from linkwright.navigation.costmaps.static_layer import StaticLayer
 from linkwright.navigation.grids.grid import Grid
 from linkwright.navigation.grids.occupancy import BadGridError, grid_from_message
@@ -57,7 +57,7 @@ class SensorTopic(ABC):
 
     def __init__(self, node: Node, topic: str, kind: str, transforms: BufferCore, frame: str) -> None:
         self._transforms, self._frame = transforms, frame
-        self._waiting: deque[Any] = deque(maxlen=_MAX_QUEUED)
+        self._queued_messages: deque[Any] = deque(maxlen=_MAX_QUEUED)
         message = get_message(f"sensor_msgs/msg/{kind}")
         self._subscription = node.create_subscription(message, topic, self._receive, SENSOR_DATA_QOS)
 
@@ -65,18 +65,18 @@ class SensorTopic(ABC):
         """Remove the subscription."""
         self._subscription.destroy()
 
-    def process(self) -> None:
+    def process_queue(self) -> None:
         """Pass the queued messages whose transforms are available to the layer.
 
         Older messages without a transform are dropped.
         """
-        messages = list(self._waiting)
+        messages = list(self._queued_messages)
         placed_messages = [(message, pose) for message in messages if (pose := self._pose(message)) is not None]
         if not placed_messages:
             return
         later_messages = messages[messages.index(placed_messages[-1][0]) + 1 :]
-        self._waiting.clear()
-        self._waiting.extend(later_messages)
+        self._queued_messages.clear()
+        self._queued_messages.extend(later_messages)
         for message, pose in placed_messages if self.uses_all_messages else placed_messages[-1:]:
             self._observe(message, pose)
 
@@ -90,7 +90,7 @@ class SensorTopic(ABC):
         """Pass a message to the layer with the sensor's pose in the frame of the costmap."""
 
     def _receive(self, message: Any) -> None:
-        self._waiting.append(message)
+        self._queued_messages.append(message)
 
     def _pose(self, message: Any) -> Transform | None:
         header = message.header
@@ -189,7 +189,7 @@ class RangeTopic(SensorTopic):
         horizontal_share = float(np.hypot(direction[0], direction[1]))
         stamp_ns = message.header.stamp.nanoseconds
         self._layer.add(
-            Reading(pose[0], pose[1], yaw, distance * horizontal_share, message.field_of_view, is_free, stamp_ns)
+            RangeReading(pose[0], pose[1], yaw, distance * horizontal_share, message.field_of_view, is_free, stamp_ns)
         )
 
 
@@ -201,7 +201,7 @@ class MapTopic:
         topic: the name of the topic.
         layer: receives the map.
         transient_local: whether to receive a map that was published earlier.
-        updates: whether to subscribe to changed parts of the map, on the same topic with the suffix ``_updates``.
+        has_updates: whether to subscribe to changed parts of the map, on the same topic with the suffix ``_updates``.
         on_map: called with each full map and its frame.
     """
 
@@ -212,7 +212,7 @@ class MapTopic:
         layer: StaticLayer,
         *,
         transient_local: bool,
-        updates: bool,
+        has_updates: bool,
         on_map: Callable[[Grid, str], None],
     ) -> None:
         self.frame: str | None = None
@@ -220,7 +220,7 @@ class MapTopic:
         qos = LATCHED_QOS if transient_local else QoSProfile(10, durability=DurabilityPolicy.VOLATILE)
         message = get_message("nav_msgs/msg/OccupancyGrid")
         self._subscriptions = [node.create_subscription(message, topic, self._receive, qos)]
-        if updates:
+        if has_updates:
             message = get_message("map_msgs/msg/OccupancyGridUpdate")
             self._subscriptions.append(node.create_subscription(message, f"{topic}_updates", self._on_update, 10))
 

@@ -23,8 +23,8 @@ from linkwright.navigation.following.checkers import (
 from linkwright.navigation.following.follower import Follower, Velocity
 from linkwright.navigation.following.pure_pursuit import PurePursuitParameters, RegulatedPurePursuit
 from linkwright.navigation.following.rotation_shim import RotationShim, RotationShimParameters
-from linkwright.navigation.following.sampling import Limits, SamplingFollower, SamplingParameters
-from linkwright.navigation.nodes.plugins import declare_unused, type_of, value_of
+from linkwright.navigation.following.sampling import SamplingFollower, SamplingParameters, VelocityLimits
+from linkwright.navigation.nodes.plugins import declare_unused, get_or_declare, get_plugin_type
 from linkwright.nodes.parameter_tables import declare_table
 from linkwright.nodes.settings import bad_value
 
@@ -43,7 +43,7 @@ def make_follower(node: Node, plugin: str) -> Follower:
     Raises:
         LinkwrightError: NODE431, the plugin's type is not set; GRAPH201, a parameter has the wrong type.
     """
-    kind = type_of(node, plugin, DEFAULT_FOLLOWERS)
+    kind = get_plugin_type(node, plugin, DEFAULT_FOLLOWERS)
     logger = node.get_logger()
     logger.info(f"Created controller : {plugin} of type {kind.replace('/', '::')}")
     if kind == ROTATION_SHIM:
@@ -62,7 +62,7 @@ def make_follower(node: Node, plugin: str) -> Follower:
 
 def _make_rotation_shim(node: Node, plugin: str) -> Follower:
     parameters = declare_table(node, RotationShimParameters, plugin)
-    primary = str(value_of(node, f"{plugin}.primary_controller", DWB)).replace("::", "/")
+    primary = str(get_or_declare(node, f"{plugin}.primary_controller", DWB)).replace("::", "/")
     follower = RotationShim(_make_basic_follower(node, plugin, primary), parameters)
     unused_parameters = declare_unused(node, plugin)
     if unused_parameters:
@@ -82,9 +82,9 @@ def _dwb_parameters(node: Node, plugin: str) -> SamplingParameters:
     """Return the sampling settings with DWB's limits, simulated time and defaults."""
 
     def value(name: str, default: float) -> float:
-        return float(value_of(node, f"{plugin}.{name}", default))
+        return float(get_or_declare(node, f"{plugin}.{name}", default))
 
-    limits = Limits(
+    limits = VelocityLimits(
         min_velocity=Velocity(value("min_vel_x", 0.0), value("min_vel_y", 0.0), -value("max_vel_theta", 0.0)),
         max_velocity=Velocity(value("max_vel_x", 0.0), value("max_vel_y", 0.0), value("max_vel_theta", 0.0)),
         acceleration=Velocity(value("acc_lim_x", 0.0), value("acc_lim_y", 0.0), value("acc_lim_theta", 0.0)),
@@ -92,25 +92,25 @@ def _dwb_parameters(node: Node, plugin: str) -> SamplingParameters:
             abs(value("decel_lim_x", 0.0)), abs(value("decel_lim_y", 0.0)), abs(value("decel_lim_theta", 0.0))
         ),
     )
-    return SamplingParameters(limits=limits, seconds=value("sim_time", 1.7))
+    return SamplingParameters(limits=limits, simulated_seconds=value("sim_time", 1.7))
 
 
 def _mppi_parameters(node: Node, plugin: str) -> SamplingParameters:
     """Return the sampling settings with MPPI's limits, simulated time and defaults."""
 
     def value(name: str, default: float) -> float:
-        return float(value_of(node, f"{plugin}.{name}", default))
+        return float(get_or_declare(node, f"{plugin}.{name}", default))
 
-    is_omnidirectional = value_of(node, f"{plugin}.motion_model", "DiffDrive") == "Omni"
+    is_omnidirectional = get_or_declare(node, f"{plugin}.motion_model", "DiffDrive") == "Omni"
     max_sideways = value("vy_max", 0.5) if is_omnidirectional else 0.0
-    limits = Limits(
+    limits = VelocityLimits(
         min_velocity=Velocity(max(value("vx_min", -0.35), 0.0), -max_sideways, -value("wz_max", 1.9)),
         max_velocity=Velocity(value("vx_max", 0.5), max_sideways, value("wz_max", 1.9)),
         acceleration=Velocity(value("ax_max", 3.0), value("ay_max", 3.0), value("az_max", 3.5)),
         deceleration=Velocity(abs(value("ax_min", -3.0)), abs(value("ay_min", -3.0)), value("az_max", 3.5)),
     )
-    steps, step = int(value_of(node, f"{plugin}.time_steps", 56)), value("model_dt", 0.05)
-    return SamplingParameters(limits=limits, seconds=min(steps * step, _MAX_SECONDS))
+    steps, step = int(get_or_declare(node, f"{plugin}.time_steps", 56)), value("model_dt", 0.05)
+    return SamplingParameters(limits=limits, simulated_seconds=min(steps * step, _MAX_SECONDS))
 
 
 def make_goal_checker(node: Node, plugin: str) -> GoalChecker:
@@ -118,7 +118,7 @@ def make_goal_checker(node: Node, plugin: str) -> GoalChecker:
 
     The exceptions are the same as for `make_follower`.
     """
-    kind = type_of(node, plugin, DEFAULT_GOAL_CHECKERS)
+    kind = get_plugin_type(node, plugin, DEFAULT_GOAL_CHECKERS)
     checkers: dict[str, Callable[[], GoalChecker]] = {
         "nav2_controller/SimpleGoalChecker": lambda: SimpleGoalChecker(
             declare_table(node, SimpleGoalParameters, plugin)
@@ -136,7 +136,7 @@ def make_progress_checker(node: Node, plugin: str) -> ProgressChecker:
 
     The exceptions are the same as for `make_follower`.
     """
-    kind = type_of(node, plugin, DEFAULT_PROGRESS_CHECKERS)
+    kind = get_plugin_type(node, plugin, DEFAULT_PROGRESS_CHECKERS)
     checkers: dict[str, Callable[[], ProgressChecker]] = {
         "nav2_controller/SimpleProgressChecker": lambda: ProgressChecker(
             declare_table(node, ProgressParameters, plugin)

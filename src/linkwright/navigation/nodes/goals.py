@@ -33,17 +33,17 @@ class GoalServer:
 
     Goals are rejected while the node is not active.
 
-    The code that executes the goal must check `is_canceled` regularly, and then call `canceled`.
+    The code that executes the goal must check `is_canceled` regularly, and then call `end_canceled`.
 
     Args:
         node: the node that offers the action.
         kind: the type of the action.
         name: the name of the action.
         begin: called with each accepted goal, after the previous goal was aborted.
-        may_begin: returns whether to accept a goal; by default every goal is accepted.
+        accepts_goal: returns whether to accept a goal; by default every goal is accepted.
 
     Attributes:
-        current: the active goal; None if there is none.
+        active_goal: the active goal; None if there is none.
     """
 
     def __init__(
@@ -53,12 +53,12 @@ class GoalServer:
         name: str,
         begin: Callable[[ServerGoalHandle], None],
         *,
-        may_begin: Callable[[Any], bool] | None = None,
+        accepts_goal: Callable[[Any], bool] | None = None,
     ) -> None:
-        self.current: ServerGoalHandle | None = None
+        self.active_goal: ServerGoalHandle | None = None
         self._type = get_action(kind)
         self._begin = begin
-        self._accepts = may_begin
+        self._accepts_goal = accepts_goal
         self._node = node
         self._server = ActionServer(
             node,
@@ -73,24 +73,24 @@ class GoalServer:
     @property
     def goal(self) -> Any:
         """The goal message of the active goal."""
-        assert self.current is not None, "there is an active goal"
-        return self.current.request
+        assert self.active_goal is not None, "there is an active goal"
+        return self.active_goal.request
 
     @property
     def is_canceled(self) -> bool:
         """Whether cancellation of the active goal was requested."""
-        return self.current is not None and self.current.is_cancel_requested
+        return self.active_goal is not None and self.active_goal.is_cancel_requested
 
-    def feedback(self, **fields: Any) -> None:
+    def publish_feedback(self, **fields: Any) -> None:
         """Publish feedback for the active goal, if there is one.
 
         The arguments are the fields of the feedback.
         """
-        if self.current is not None:
+        if self.active_goal is not None:
             message = self._type.Feedback()
             for name, value in fields.items():
                 setattr(message, name, value)
-            self.current.publish_feedback(message)
+            self.active_goal.publish_feedback(message)
 
     def succeed(self, **fields: Any) -> None:
         """End the active goal with the status succeeded.
@@ -111,7 +111,7 @@ class GoalServer:
         if (goal := self._take_active_goal()) is not None:
             goal.abort(self._result(code, reason, fields))
 
-    def canceled(self, **fields: Any) -> None:
+    def end_canceled(self, **fields: Any) -> None:
         """End the active goal with the status canceled, or aborted if no cancellation was requested."""
         if (goal := self._take_active_goal()) is not None:
             if goal.is_cancel_requested:
@@ -125,20 +125,20 @@ class GoalServer:
         self._server.destroy()
 
     def _take_active_goal(self) -> ServerGoalHandle | None:
-        goal, self.current = self.current, None
+        goal, self.active_goal = self.active_goal, None
         return goal if goal is not None and goal.is_active else None
 
     def _on_goal(self, goal: Any) -> GoalResponse:
         if not self._node.is_active:
             self._node.get_logger().warning("Action server is inactive. Rejecting the goal.")
             return GoalResponse.REJECT
-        is_accepted = self._accepts is None or self._accepts(goal)
+        is_accepted = self._accepts_goal is None or self._accepts_goal(goal)
         return GoalResponse.ACCEPT if is_accepted else GoalResponse.REJECT
 
     def _on_accepted(self, goal: ServerGoalHandle) -> None:
         self.abort("UNKNOWN", "another goal replaced it")
         goal.update(GoalEvent.EXECUTE)
-        self.current = goal
+        self.active_goal = goal
         self._begin(goal)
 
     def _result(self, code: str, reason: str, fields: dict[str, Any]) -> Any:

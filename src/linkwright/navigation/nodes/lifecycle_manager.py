@@ -25,7 +25,7 @@ from linkwright.nodes.settings import bad_value, log_unknown
 _CHECK_PERIOD = 1.0
 
 
-class _Step(Enum):
+class _Transition(Enum):
     """A transition, with its ID, the log line that precedes it, and the resulting state."""
 
     CONFIGURE = (1, "Configuring", INACTIVE)
@@ -81,7 +81,7 @@ class _ManagedNodeClient:
         """Return whether the lifecycle services of the managed node are available."""
         return bool(self._change_client.service_is_ready() and self._get_client.service_is_ready())
 
-    async def wait(self, log_period: float) -> None:
+    async def wait_until_available(self, log_period: float) -> None:
         """Wait until the lifecycle services of the managed node are available.
 
         A line is logged every `log_period` seconds.
@@ -90,17 +90,20 @@ class _ManagedNodeClient:
             while not await wait_for_service(self._node, client, log_period):
                 self._node.get_logger().info(f"Waiting for service {client.service_name}...")
 
-    async def change(self, step: _Step, log_period: float) -> bool:
+    async def run_transition(self, transition: _Transition, log_period: float) -> bool:
         """Run a transition, and return whether the node reached the resulting state.
 
         The transition fails if the node disappears before it responds. A line is logged every `log_period` seconds.
         """
         request = self._change_type.Request()
-        request.transition.id = step.number
+        request.transition.id = transition.number
         response = await self._call(self._change_client, request, log_period)
-        return bool(response is not None and response.success) and await self.state(log_period) == step.goal.state_id
+        return (
+            bool(response is not None and response.success)
+            and await self.get_state(log_period) == transition.goal.state_id
+        )
 
-    async def state(self, log_period: float) -> int | None:
+    async def get_state(self, log_period: float) -> int | None:
         """Return the ID of the node's lifecycle state, or None if the node is not available.
 
         A line is logged every `log_period` seconds.
@@ -167,7 +170,7 @@ class LifecycleManager(SingleNode):
             self._node.create_service(get_service(kind), f"{name}/{service}", callback, callback_group=group)
         DiagnosticUpdater(self._node, "Nav2 Health", lambda: _HEALTH[self._state], hardware_id="Nav2")
         if self._autostart:
-            self._begin(self._run_exclusively(self._startup))
+            self._start_task(self._run_exclusively(self._startup))
 
     def close(self) -> None:
         """Close the manager, but keep the states of the managed nodes."""
@@ -221,49 +224,53 @@ class LifecycleManager(SingleNode):
 
     async def _startup(self) -> bool:
         self._logger.info("Starting managed nodes bringup...")
-        if not await self._transition_all(_Step.CONFIGURE) or not await self._transition_all(_Step.ACTIVATE):
-            return self._failed("Failed to bring up all requested nodes. Aborting bringup.")
+        if not await self._transition_all(_Transition.CONFIGURE) or not await self._transition_all(
+            _Transition.ACTIVATE
+        ):
+            return self._fail("Failed to bring up all requested nodes. Aborting bringup.")
         return self._set_state(_State.ACTIVE, "Managed nodes are active")
 
     async def _configure(self) -> bool:
         self._logger.info("Configuring managed nodes...")
-        if not await self._transition_all(_Step.CONFIGURE):
-            return self._failed("Failed to configure all requested nodes. Aborting bringup.")
+        if not await self._transition_all(_Transition.CONFIGURE):
+            return self._fail("Failed to configure all requested nodes. Aborting bringup.")
         return self._set_state(_State.INACTIVE, "Managed nodes are now configured")
 
     async def _cleanup(self) -> bool:
         self._logger.info("Cleaning up managed nodes...")
-        if not await self._transition_all(_Step.CLEANUP):
-            return self._failed("Failed to cleanup all requested nodes. Aborting cleanup.")
+        if not await self._transition_all(_Transition.CLEANUP):
+            return self._fail("Failed to cleanup all requested nodes. Aborting cleanup.")
         return self._set_state(_State.UNCONFIGURED, "Managed nodes have been cleaned up")
 
     async def _pause(self) -> bool:
         self._logger.info("Pausing managed nodes...")
-        if not await self._transition_all(_Step.DEACTIVATE):
-            return self._failed("Failed to pause nodes: aborting pause")
+        if not await self._transition_all(_Transition.DEACTIVATE):
+            return self._fail("Failed to pause nodes: aborting pause")
         return self._set_state(_State.INACTIVE, "Managed nodes have been paused")
 
     async def _resume(self) -> bool:
         self._logger.info("Resuming managed nodes...")
-        if not await self._transition_all(_Step.ACTIVATE):
-            return self._failed("Failed to resume nodes: aborting resume")
+        if not await self._transition_all(_Transition.ACTIVATE):
+            return self._fail("Failed to resume nodes: aborting resume")
         return self._set_state(_State.ACTIVE, "Managed nodes are active")
 
     async def _reset(self) -> bool:
         self._logger.info("Resetting managed nodes...")
-        if not await self._transition_all(_Step.DEACTIVATE) or not await self._transition_all(_Step.CLEANUP):
-            return self._failed("Failed to reset nodes: aborting reset")
+        if not await self._transition_all(_Transition.DEACTIVATE) or not await self._transition_all(
+            _Transition.CLEANUP
+        ):
+            return self._fail("Failed to reset nodes: aborting reset")
         return self._set_state(_State.UNCONFIGURED, "Managed nodes have been reset")
 
     async def _shutdown(self) -> bool:
         self._logger.info("Shutting down managed nodes...")
         self._logger.info("Deactivate, cleanup, and shutdown nodes")
         self._state = _State.FINALIZED
-        for step in (_Step.DEACTIVATE, _Step.CLEANUP, _Step.SHUTDOWN):
-            await self._transition_all(step, ignore_failures=True)
+        for transition in (_Transition.DEACTIVATE, _Transition.CLEANUP, _Transition.SHUTDOWN):
+            await self._transition_all(transition, ignore_failures=True)
         return self._set_state(_State.FINALIZED, "Managed nodes have been shut down")
 
-    def _failed(self, line: str) -> bool:
+    def _fail(self, line: str) -> bool:
         self._logger.error(line)
         self._state = _State.UNKNOWN
         return False
@@ -274,41 +281,41 @@ class LifecycleManager(SingleNode):
         return True
 
     async def _transition_all(
-        self, step: _Step, *, ignore_failures: bool = False, skipped: _ManagedNodeClient | None = None
+        self, transition: _Transition, *, ignore_failures: bool = False, skipped: _ManagedNodeClient | None = None
     ) -> bool:
         """Run a transition of all nodes, and return whether all succeeded.
 
         Nodes are configured and activated in order, and taken down in reverse order.
 
         Args:
-            step: the transition.
+            transition: the transition.
             ignore_failures: whether to continue after a failure.
             skipped: a node that is left out; None for no node.
         """
-        is_bringup = step in (_Step.CONFIGURE, _Step.ACTIVATE)
+        is_bringup = transition in (_Transition.CONFIGURE, _Transition.ACTIVATE)
         for managed in self._managed_nodes if is_bringup else reversed(self._managed_nodes):
             if (
                 managed is not skipped
-                and not await self._transition(managed, step, wait=is_bringup)
+                and not await self._transition(managed, transition, wait=is_bringup)
                 and not ignore_failures
             ):
                 return False
         return True
 
-    async def _transition(self, managed: _ManagedNodeClient, step: _Step, *, wait: bool) -> bool:
-        self._logger.info(f"{step.line} {managed.name}")
+    async def _transition(self, managed: _ManagedNodeClient, transition: _Transition, *, wait: bool) -> bool:
+        self._logger.info(f"{transition.line} {managed.name}")
         if wait:
-            await managed.wait(self._log_period)
-        if step is not _Step.ACTIVATE:
+            await managed.wait_until_available(self._log_period)
+        if transition is not _Transition.ACTIVATE:
             managed.end_bond()  # End the bond before the node leaves it; otherwise that would count as a failure.
-        if not await managed.change(step, self._log_period):
+        if not await managed.run_transition(transition, self._log_period):
             self._logger.error(f"Failed to change state for node: {managed.name}")
             return False
-        return step is not _Step.ACTIVATE or await self._bind(managed)
+        return transition is not _Transition.ACTIVATE or await self._form_bond(managed)
 
     # --- bonds -------------------------------------------------------------------------------------------------------
 
-    async def _bind(self, managed: _ManagedNodeClient) -> bool:
+    async def _form_bond(self, managed: _ManagedNodeClient) -> bool:
         if self._bond_timeout <= 0.0:
             return True
         formed: asyncio.Future[None] = asyncio.get_running_loop().create_future()
@@ -317,7 +324,7 @@ class LifecycleManager(SingleNode):
             self._node,
             managed.name,
             timeout=self._bond_timeout,
-            on_formed=lambda: _resolve(formed),
+            on_formed=lambda: _set_done(formed),
             on_broken=lambda: self._on_bond_broken(managed),
         )
         if not await wait_for_future(self._node, formed, self._bond_timeout):
@@ -332,7 +339,7 @@ class LifecycleManager(SingleNode):
         return True
 
     def _on_bond_broken(self, managed: _ManagedNodeClient) -> None:
-        self._begin(self._run_exclusively(lambda: self._bring_down(managed)))
+        self._start_task(self._run_exclusively(lambda: self._bring_down(managed)))
 
     async def _bring_down(self, dead: _ManagedNodeClient) -> bool:
         """Reset the other nodes after one died, and start reconnecting if that is enabled."""
@@ -347,11 +354,11 @@ class LifecycleManager(SingleNode):
         )
         self._logger.info("Resetting managed nodes...")
         dead.end_bond()
-        for step in (_Step.DEACTIVATE, _Step.CLEANUP):
-            await self._transition_all(step, ignore_failures=True, skipped=dead)
+        for transition in (_Transition.DEACTIVATE, _Transition.CLEANUP):
+            await self._transition_all(transition, ignore_failures=True, skipped=dead)
         self._set_state(_State.UNCONFIGURED, "Managed nodes have been reset")
         if self._reconnects:
-            self._begin(self._reconnect())
+            self._start_task(self._reconnect())
         return True
 
     async def _reconnect(self) -> None:
@@ -377,12 +384,12 @@ class LifecycleManager(SingleNode):
         """Return whether no command has changed the nodes since they were taken down."""
         return self._state is _State.UNCONFIGURED
 
-    def _begin(self, work: Coroutine[Any, Any, Any]) -> None:
+    def _start_task(self, work: Coroutine[Any, Any, Any]) -> None:
         task = asyncio.get_running_loop().create_task(work)
         self._tasks.add(task)
         task.add_done_callback(self._tasks.discard)
 
 
-def _resolve(future: asyncio.Future[None]) -> None:
+def _set_done(future: asyncio.Future[None]) -> None:
     if not future.done():
         future.set_result(None)

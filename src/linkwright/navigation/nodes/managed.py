@@ -39,7 +39,7 @@ class ManagedNode(LifecycleNodeMixin, Node):
         self._timer: Timer | None = None
         self._has_logged_unknown = False
         self.get_logger().info("Creating")
-        self._beats: float = self.declare_parameter("bond_heartbeat_period", PERIOD).value
+        self._heartbeat_period: float = self.declare_parameter("bond_heartbeat_period", PERIOD).value
         self._is_autostarted: bool = self.declare_parameter("autostart_node", False).value
         self.declare()
 
@@ -126,9 +126,9 @@ class ManagedNode(LifecycleNodeMixin, Node):
             self.log_error(error)
             super().on_deactivate(state)
             return TransitionCallbackReturn.FAILURE
-        if self._beats > 0.0:
+        if self._heartbeat_period > 0.0:
             self.get_logger().info(f"Creating bond ({self.get_name()}) to lifecycle manager.")
-            self._bond = Bond(self, self.get_name(), period=self._beats)
+            self._bond = Bond(self, self.get_name(), period=self._heartbeat_period)
         return result
 
     def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
@@ -159,7 +159,7 @@ class ManagedNode(LifecycleNodeMixin, Node):
         self._release()
         return super().on_error(state)
 
-    def leave(self) -> None:
+    def shut_down(self) -> None:
         """Stop working, break the bond and clean up, before the node is destroyed."""
         if self.is_active:
             self.deactivate()
@@ -207,5 +207,5 @@ class ManagedServer(SingleNode):
 
     def close(self) -> None:
         """Close the node and notify its manager."""
-        self._node.leave()
+        self._node.shut_down()
         super().close()

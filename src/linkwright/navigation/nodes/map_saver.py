@@ -40,7 +40,7 @@ _INVALID_ARGUMENT_STATUS = 255
 """The exit status of nav2's ``return -1``."""
 
 
-class _MapSaving:
+class _MapReceiver:
     """A receiver that saves a map, shared by both programs."""
 
     def __init__(self, node: Node) -> None:
@@ -51,7 +51,7 @@ class _MapSaving:
         self._default_occupied: float = declare("occupied_thresh_default", OCCUPIED_THRESH).value
         self._is_latched: bool = declare("map_subscribe_transient_local", True).value
 
-    def mode(self, text: str) -> MapMode:
+    def parse_mode(self, text: str) -> MapMode:
         """Return the map mode with the given name.
 
         If there is no such mode, log a warning and return ``trinary``.
@@ -159,7 +159,7 @@ class MapSaver(SingleNode):
             self.finished.set_result(0)
             return
         with handle_start_errors(self._node):
-            saving = _MapSaving(self._node)
+            saving = _MapReceiver(self._node)
             log_unknown(self._node)
         try:
             option_values = _parse_options(program_arguments)
@@ -175,9 +175,9 @@ class MapSaver(SingleNode):
             self._task.cancel()
         super().close()
 
-    async def _run(self, saving: _MapSaving, arguments: dict[str, str]) -> None:
+    async def _run(self, saving: _MapReceiver, arguments: dict[str, str]) -> None:
         free, occupied = (float(arguments.get(option, 0.0)) for option in ("--free", "--occ"))
-        mode = saving.mode(arguments.get("--mode", ""))
+        mode = saving.parse_mode(arguments.get("--mode", ""))
         is_saved = await saving.save(
             arguments.get("-t", "map"), arguments.get("-f", ""), arguments.get("--fmt", ""), mode, free, occupied
         )
@@ -213,7 +213,7 @@ class MapSaverNode(ManagedNode):
 
     def declare(self) -> None:
         """Declare nav2's parameters."""
-        self._saving = _MapSaving(self)
+        self._saving = _MapReceiver(self)
 
     def configure(self) -> None:
         """Create the service ``save_map``."""
@@ -221,7 +221,7 @@ class MapSaverNode(ManagedNode):
         self.register(self.create_service(get_service("nav2_msgs/srv/SaveMap"), name, self._on_save))
 
     async def _on_save(self, request: Any, response: Any) -> Any:
-        mode = self._saving.mode(request.map_mode)
+        mode = self._saving.parse_mode(request.map_mode)
         response.result = await self._saving.save(
             request.map_topic,
             request.map_url,

@@ -27,7 +27,7 @@ from linkwright.navigation.nodes.costmap import CostmapNode, make_costmap
 from linkwright.navigation.nodes.goals import GoalError, GoalServer
 from linkwright.navigation.nodes.managed import ManagedNode, ManagedServer
 from linkwright.navigation.nodes.paths import path_message, pose_of, poses_from_messages
-from linkwright.navigation.nodes.plugins import declare_unused, string_list, type_of
+from linkwright.navigation.nodes.plugins import declare_unused, get_plugin_type, get_string_list
 from linkwright.navigation.nodes.slices import WAIT, SlicedWork
 from linkwright.navigation.planning.planner import PlanError, Settings, plan
 from linkwright.nodes.options import NodeOptions
@@ -72,7 +72,7 @@ class PlannerNode(ManagedNode):
             LinkwrightError: NODE431, a planner has no type.
         """
         self._planners = {
-            name: self._create_planner(name) for name in string_list(self, "planner_plugins", ["GridBased"])
+            name: self._create_planner(name) for name in get_string_list(self, "planner_plugins", ["GridBased"])
         }
         self.get_logger().info(f"Planner Server has {' '.join(self._planners)}  planners available.")
         if self.get_parameter("expected_planner_frequency").value <= 0.0:
@@ -105,7 +105,7 @@ class PlannerNode(ManagedNode):
     # --- planners -----------------------------------------------------------------------------------------------------
 
     def _create_planner(self, name: str) -> Settings:
-        kind = type_of(self, name, _DEFAULT_TYPES)
+        kind = get_plugin_type(self, name, _DEFAULT_TYPES)
         settings = declare_table(self, Settings, name, _REPLACED_TYPES.get(kind))
         if kind != _NAVFN:
             declare_unused(self, name)
@@ -139,11 +139,11 @@ class PlannerNode(ManagedNode):
             self._stop(name)
             began_ns = self.now_ns()
 
-            def done(poses: Any, error: Exception | None) -> None:
+            def on_done(poses: Any, error: Exception | None) -> None:
                 del self._work[name]
                 self._finish(server, poses, error, began_ns)
 
-            self._work[name] = SlicedWork(self, work(goal.request), lambda: not server.is_canceled, done)
+            self._work[name] = SlicedWork(self, work(goal.request), lambda: not server.is_canceled, on_done)
 
         server = self.register(GoalServer(self, f"nav2_msgs/action/{kind}", name, begin))
 
@@ -155,7 +155,7 @@ class PlannerNode(ManagedNode):
             server.abort("UNKNOWN", str(error))
         elif poses is None:
             self.get_logger().info("Goal was canceled. Canceling planning action.")
-            server.canceled()
+            server.end_canceled()
         else:
             path = path_message(poses, self.costmap.global_frame, self.get_clock().now().to_msg())
             self._path_publisher.publish(path)
@@ -183,7 +183,7 @@ class PlannerNode(ManagedNode):
     def _plan_to_pose(self, request: Any) -> Work:
         yield from self._wait_until_current()
         start, goal = self._start_pose(request), self._pose_in_costmap(request.goal)
-        return (yield from self._planned(start, goal, request.planner_id))
+        return (yield from self._plan(start, goal, request.planner_id))
 
     def _plan_through_poses(self, request: Any) -> Work:
         yield from self._wait_until_current()
@@ -193,7 +193,7 @@ class PlannerNode(ManagedNode):
         start = self._start_pose(request)
         paths = []
         for goal in goals:
-            path = yield from self._planned(start, self._pose_in_costmap(goal), request.planner_id)
+            path = yield from self._plan(start, self._pose_in_costmap(goal), request.planner_id)
             paths.append(path)
             start = (float(path[-1, 0]), float(path[-1, 1]), float(path[-1, 2]))
         return np.concatenate(paths)
@@ -206,7 +206,7 @@ class PlannerNode(ManagedNode):
                 raise GoalError("TIMEOUT", "Costmap timed out waiting for update")
             yield WAIT
 
-    def _planned(self, start: Pose, goal: Pose, planner: str) -> Work:
+    def _plan(self, start: Pose, goal: Pose, planner: str) -> Work:
         name, settings = self._choose_planner(planner)
         try:
             return (yield from plan(self.costmap.costmap.copy(), start, goal, settings))
@@ -226,7 +226,7 @@ class PlannerNode(ManagedNode):
         return pose
 
     def _pose_in_costmap(self, stamped: Any) -> Pose:
-        pose = self.costmap.pose_of(pose_of(stamped), stamped.header.frame_id)
+        pose = self.costmap.transform_pose(pose_of(stamped), stamped.header.frame_id)
         if pose is None:
             raise GoalError("TF_ERROR", "Unable to transform poses to global frame")
         return pose
@@ -243,7 +243,7 @@ class PlannerNode(ManagedNode):
         first_index = int(np.argmin(np.hypot(poses[:, 0] - robot_pose[0], poses[:, 1] - robot_pose[1])))
         poses_ahead = poses[first_index:]
         if self.costmap.uses_radius:
-            costs = self.costmap.costmap.cost_at(poses_ahead[:, :2], outside=LETHAL)
+            costs = self.costmap.costmap.cost_at(poses_ahead[:, :2], outside_cost=LETHAL)
             is_invalid = (costs == LETHAL) | (costs == INSCRIBED)
         else:
             is_invalid = self.costmap.costmap.footprint_cost(poses_ahead, self.costmap.footprint) == LETHAL

@@ -9,24 +9,24 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 from linkwright.graph import Node, ParameterDescriptor, ParameterType
 
 
-def value_of(node: Node, name: str, default: Any) -> Any:
+def get_or_declare(node: Node, name: str, default: Any) -> Any:
     """Return the value of a parameter, declaring it first if necessary."""
     if node.has_parameter(name):
         return node.get_parameter(name).value
     return node.declare_parameter(name, default).value
 
 
-def string_list(node: Node, name: str, default: Sequence[str]) -> list[str]:
+def get_string_list(node: Node, name: str, default: Sequence[str]) -> list[str]:
     """Return the value of a string-array parameter, which may be empty.
 
-    The parameter is declared first if necessary; see `value_of`.
+    The parameter is declared first if necessary; see `get_or_declare`.
     """
     if not node.has_parameter(name):
         node.declare_parameter(name, list(default), ParameterDescriptor(dynamic_typing=True))
     return [str(text) for text in node.get_parameter(name).value or ()]
 
 
-def type_of(node: Node, plugin: str, defaults: Mapping[str, str]) -> str:
+def get_plugin_type(node: Node, plugin: str, defaults: Mapping[str, str]) -> str:
     """Return the type of a plugin from ``PLUGIN.plugin``, with ``::`` replaced by ``/``.
 
     Args:
@@ -38,7 +38,7 @@ def type_of(node: Node, plugin: str, defaults: Mapping[str, str]) -> str:
         LinkwrightError: NODE431, the type is not set.
     """
     name = f"{plugin}.plugin"
-    type_name = value_of(node, name, defaults.get(plugin, ParameterType.STRING))
+    type_name = get_or_declare(node, name, defaults.get(plugin, ParameterType.STRING))
     if not type_name:
         raise LinkwrightError(
             Diagnostic(

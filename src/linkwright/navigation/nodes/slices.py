@@ -26,8 +26,8 @@ class SlicedWork:
         node: the node whose clock times the waits.
         work: the generator; it yields None to let other callbacks run, and `WAIT` to be resumed a little later.
         is_wanted: returns whether to continue; called before each slice.
-        done: called at the end with the result and None, or with None and the exception; called with None and None if
-            `is_wanted` returned False.
+        on_done: called at the end with the result and None, or with None and the exception; called with None and None
+            if `is_wanted` returned False.
     """
 
     def __init__(
@@ -35,15 +35,15 @@ class SlicedWork:
         node: Node,
         work: Generator[str | None, None, Any],
         is_wanted: Callable[[], bool],
-        done: Callable[[Any, Exception | None], None],
+        on_done: Callable[[Any, Exception | None], None],
     ) -> None:
-        self._node, self._work, self._is_wanted, self._done = node, work, is_wanted, done
+        self._node, self._work, self._is_wanted, self._on_done = node, work, is_wanted, on_done
         self._timer: Any = None
         self._handle: asyncio.Handle | None = None
         self._schedule()
 
     def stop(self) -> None:
-        """Stop the work without calling `done`."""
+        """Stop the work without calling `on_done`."""
         self._work.close()
         if self._handle is not None:
             self._handle.cancel()
@@ -56,7 +56,7 @@ class SlicedWork:
         self._end_timer()
         if not self._is_wanted():
             self._work.close()
-            self._done(None, None)
+            self._on_done(None, None)
             return
         deadline = perf_counter() + SLICE_SECONDS
         try:
@@ -65,9 +65,9 @@ class SlicedWork:
                     self._timer = self._node.create_timer(_WAIT_SECONDS, self._resume)
                     return
         except StopIteration as end:
-            self._done(end.value, None)
+            self._on_done(end.value, None)
         except Exception as error:  # noqa: BLE001  # passed to the caller of the work
-            self._done(None, error)
+            self._on_done(None, error)
         else:
             self._schedule()
 

@@ -21,8 +21,8 @@ from linkwright.navigation.nodes.costmap_reading import costmap_from_message
 from linkwright.navigation.nodes.goals import GoalServer
 from linkwright.navigation.nodes.managed import ManagedNode, ManagedServer
 from linkwright.navigation.nodes.paths import path_message, poses_from_messages
-from linkwright.navigation.nodes.plugins import declare_unused, string_list, type_of
-from linkwright.navigation.planning.smoothing import Smoothing, directions, smoothed
+from linkwright.navigation.nodes.plugins import declare_unused, get_plugin_type, get_string_list
+from linkwright.navigation.planning.smoothing import Smoothing, directions, smooth_path
 from linkwright.nodes.parameter_tables import declare_table
 
 _SIMPLE: Final = "nav2_smoother/SimpleSmoother"
@@ -48,19 +48,19 @@ class SmootherNode(ManagedNode):
         """
         load_scipy("linalg")
         self._costmap: Costmap | None = None
-        names = string_list(self, "smoother_plugins", ["simple_smoother"])
+        names = get_string_list(self, "smoother_plugins", ["simple_smoother"])
         for name in names:
             self._declare_smoother(name)
         self._smoothers = names
         self.get_logger().info(f"Smoother Server has {' '.join(names)}  smoothers available.")
-        raw, path = get_message("nav2_msgs/msg/Costmap"), get_message("nav_msgs/msg/Path")
+        costmap_type, path = get_message("nav2_msgs/msg/Costmap"), get_message("nav_msgs/msg/Path")
         topic = self.get_parameter("costmap_topic").value
-        self.register(self.create_subscription(raw, topic, self._on_costmap, LATCHED_QOS))
+        self.register(self.create_subscription(costmap_type, topic, self._on_costmap, LATCHED_QOS))
         self._output = self.register(self.create_publisher(path, "plan_smoothed", 1))
         self._goals = self.register(GoalServer(self, "nav2_msgs/action/SmoothPath", "smooth_path", self._smooth))
 
     def _declare_smoother(self, name: str) -> None:
-        kind = type_of(self, name, _DEFAULT_TYPES)
+        kind = get_plugin_type(self, name, _DEFAULT_TYPES)
         declare_table(self, Smoothing, name)
         declare_unused(self, name)
         if kind != _SIMPLE:
@@ -83,7 +83,7 @@ class SmootherNode(ManagedNode):
         else:
             values = {field.name: self.get_parameter(f"{name}.{field.name}").value for field in fields(Smoothing)}
             poses = poses_from_messages(request.path.poses)
-            points, _ = smoothed(poses[:, :2], Smoothing(**values), self._costmap)
+            points, _ = smooth_path(poses[:, :2], Smoothing(**values), self._costmap)
             poses = np.column_stack((points, directions(points, poses[-1, 2])))
             path = path_message(poses, request.path.header.frame_id, request.path.header.stamp)
             self._output.publish(path)
@@ -93,7 +93,7 @@ class SmootherNode(ManagedNode):
         assert self._costmap is not None, "a goal is accepted only with a costmap"
         duration = Duration(nanoseconds=self.get_clock().now().nanoseconds - began_ns).to_msg()
         if request.check_for_collisions:
-            costs = self._costmap.cost_at(poses[:, :2], outside=LETHAL)
+            costs = self._costmap.cost_at(poses[:, :2], outside_cost=LETHAL)
             collision_indices = np.flatnonzero((costs == LETHAL) | (costs == INSCRIBED))
             if len(collision_indices):
                 x, y, yaw = poses[collision_indices[0]]

@@ -46,7 +46,7 @@ class StepNode(ManagedNode):
         if self._server is not None and self._server is not server:
             self._server.abort("UNKNOWN", "another goal replaced it")
         self._server, self._work = server, work
-        self.begin_cycles(_PERIOD, self._cycle)
+        self.begin_cycles(_PERIOD, self._run_cycle)
 
     def publish_feedback(self, server: GoalServer) -> None:
         """Publish feedback for the active goal.
@@ -89,7 +89,7 @@ class StepNode(ManagedNode):
             raise StepError("UNKNOWN", sent_goal.reason(summary))
         return sent_goal.result
 
-    def until(self, is_done: Callable[[], bool], server_name: str) -> Step:
+    def wait_until(self, is_done: Callable[[], bool], server_name: str) -> Step:
         """Wait until a condition holds.
 
         `server_name` names the server in the error.
@@ -103,7 +103,7 @@ class StepNode(ManagedNode):
                 raise StepError("UNKNOWN", f"{server_name} does not answer")
             yield
 
-    def _cycle(self) -> None:
+    def _run_cycle(self) -> None:
         """Run the next step, or end the goal."""
         server, work = self._server, self._work
         if server is None or work is None:
@@ -112,7 +112,7 @@ class StepNode(ManagedNode):
         if server.is_canceled:
             self.get_logger().info("Goal canceled")
             self._stop()
-            server.canceled(**self.result())
+            server.end_canceled(**self.result())
             return
         try:
             next(work)

@@ -20,7 +20,7 @@ from linkwright.graph.endpoints.drivers import DriverWatch
 from linkwright.graph.lifecycle.states import LifecycleState, TransitionCallbackReturn
 from linkwright.messages import get_message
 from linkwright.navigation.nodes.managed import ManagedNode, ManagedServer
-from linkwright.navigation.nodes.velocity_smoothing import Limits, smooth_velocities
+from linkwright.navigation.nodes.velocity_smoothing import AxisLimits, smooth_velocities
 from linkwright.nodes.velocity_topic import VelocityTopic, velocity_types
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
@@ -58,7 +58,7 @@ class _ManagedSmoother(ManagedNode):
         self.declare_parameter("velocity_timeout", 1.0)
         self.declare_parameter("use_realtime_priority", False)
         self._is_stamped: bool | None = self.declare_parameter("enable_stamped_cmd_vel", ParameterType.BOOL).value
-        self.add_on_set_parameters_callback(self._check)
+        self.add_on_set_parameters_callback(self._check_parameters)
         self.add_post_set_parameters_callback(lambda _: self._apply_parameters())
 
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
@@ -71,7 +71,7 @@ class _ManagedSmoother(ManagedNode):
 
     def configure(self) -> None:
         """Read the parameters and create the topics."""
-        self._read()
+        self._read_parameters()
         is_stamped = self._is_stamped
         self._output = VelocityTopic(self, "cmd_vel_smoothed", is_stamped)
         commander = Commander(self._on_publisher_lost, DriverWatch.of(self))
@@ -105,21 +105,21 @@ class _ManagedSmoother(ManagedNode):
     def _value(self, name: str) -> Any:
         return self.get_parameter(name).value
 
-    def _read(self) -> None:
+    def _read_parameters(self) -> None:
         self._frequency: float = self._value("smoothing_frequency")
         self._keeps_direction: bool = self._value("scale_velocities")
-        self._closed: bool = self._value("feedback") == "CLOSED_LOOP"
+        self._uses_feedback: bool = self._value("feedback") == "CLOSED_LOOP"
         self._timeout: float = self._value("velocity_timeout")
         self._odometry_window: float = self._value("odom_duration")
         columns = [list(self._value(name)) for name in _LIMITS]
         if len(columns[0]) == len(_PLANAR):  # Three entries are limits for x, y and yaw.
             columns = [_expand_to_axes(column) for column in columns]
         self._limits = [
-            Limits(min_velocity, max_velocity, *other_limits)
+            AxisLimits(min_velocity, max_velocity, *other_limits)
             for max_velocity, min_velocity, *other_limits in zip(*columns, strict=True)
         ]
 
-    def _check(self, parameters: list[Parameter]) -> SetParametersResult:
+    def _check_parameters(self, parameters: list[Parameter]) -> SetParametersResult:
         problem = self._parameter_error({parameter.name: parameter.value for parameter in parameters})
         return SetParametersResult(successful=problem is None, reason="" if problem is None else str(problem))
 
@@ -130,7 +130,7 @@ class _ManagedSmoother(ManagedNode):
         """
         if self._output is not None:
             old_frequency = self._frequency
-            self._read()
+            self._read_parameters()
             if self.is_cycling and old_frequency != self._frequency:
                 self.begin_cycles(1.0 / self._frequency, self._smooth)
 
@@ -208,7 +208,7 @@ class _ManagedSmoother(ManagedNode):
             self._on_timeout()
         self._is_stopped = False
         current = self._last_velocities
-        if self._closed:
+        if self._uses_feedback:
             measured = [values for _, values in self._measured_velocities] or [[0.0] * len(_AXES)]
             current = [sum(column) / len(measured) for column in zip(*measured, strict=True)]
         self._last_velocities = smooth_velocities(

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True, slots=True)
-class Limits:
+class AxisLimits:
     """The limits of one axis, in m/s and m/s2, or rad/s and rad/s2.
 
     Attributes:
@@ -28,7 +28,7 @@ class Limits:
         """Return a velocity clamped to the minimum and maximum velocity."""
         return min(max(velocity, self.min_velocity), self.max_velocity)
 
-    def change(self, current: float, requested: float, seconds: float) -> float:
+    def max_change(self, current: float, requested: float, seconds: float) -> float:
         """Return the maximum magnitude of the velocity change in a cycle of some seconds.
 
         The acceleration limit applies if the speed increases or stays equal in the same direction; otherwise the
@@ -43,7 +43,7 @@ class Limits:
 
 
 def smooth_velocities(
-    limits: Sequence[Limits],
+    limits: Sequence[AxisLimits],
     current: Sequence[float],
     requested: Sequence[float],
     seconds: float,
@@ -60,9 +60,10 @@ def smooth_velocities(
         keep_direction: whether all changes are reduced by the factor of the most limited axis.
     """
     targets = [axis.clamped(velocity) for axis, velocity in zip(limits, requested, strict=True)]
-    differences = [goal - velocity for goal, velocity in zip(targets, current, strict=True)]
+    differences = [target - velocity for target, velocity in zip(targets, current, strict=True)]
     max_changes = [
-        axis.change(velocity, goal, seconds) for axis, velocity, goal in zip(limits, current, targets, strict=True)
+        axis.max_change(velocity, target, seconds)
+        for axis, velocity, target in zip(limits, current, targets, strict=True)
     ]
     factor = 1.0
     if keep_direction:
@@ -78,6 +79,6 @@ def smooth_velocities(
             ]
         )
     return [
-        velocity + min(max(factor * way, -most), most)
-        for velocity, way, most in zip(current, differences, max_changes, strict=True)
+        velocity + min(max(factor * difference, -max_change), max_change)
+        for velocity, difference, max_change in zip(current, differences, max_changes, strict=True)
     ]

@@ -12,7 +12,7 @@ from linkwright.graph.actions.goal import ServerGoalHandle
 from linkwright.messages import get_action, get_message, is_before_iron
 from linkwright.navigation.nodes.goals import GoalServer
 from linkwright.navigation.nodes.managed import ManagedServer
-from linkwright.navigation.nodes.plugins import type_of, value_of
+from linkwright.navigation.nodes.plugins import get_or_declare, get_plugin_type
 from linkwright.navigation.nodes.steps import Step, StepError, StepNode
 
 _WAIT_TASK = "nav2_waypoint_follower/WaitAtWaypoint"
@@ -38,12 +38,12 @@ class WaypointNode(StepNode):
             LinkwrightError: a parameter has the wrong type.
         """
         task = str(self.get_parameter("waypoint_task_executor_plugin").value)
-        kind = type_of(self, task, {"wait_at_waypoint": _WAIT_TASK})
+        kind = get_plugin_type(self, task, {"wait_at_waypoint": _WAIT_TASK})
         self._pause_seconds = 0.0
         if kind == _WAIT_TASK:
-            is_enabled = bool(value_of(self, f"{task}.enabled", True))
+            is_enabled = bool(get_or_declare(self, f"{task}.enabled", True))
             self._pause_seconds = (
-                int(value_of(self, f"{task}.waypoint_pause_duration", 0)) / 1000.0 if is_enabled else 0.0
+                int(get_or_declare(self, f"{task}.waypoint_pause_duration", 0)) / 1000.0 if is_enabled else 0.0
             )
         else:
             self.get_logger().warning(f"{task}: {kind} is not supported; no task runs at waypoints")
@@ -55,7 +55,7 @@ class WaypointNode(StepNode):
 
     def publish_feedback(self, server: GoalServer) -> None:
         """Publish the index of the current waypoint as feedback for the goal."""
-        server.feedback(current_waypoint=self._index)
+        server.publish_feedback(current_waypoint=self._index)
 
     def result(self) -> dict[str, Any]:
         """Return the result field with the missed waypoints."""

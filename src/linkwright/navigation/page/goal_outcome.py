@@ -34,7 +34,7 @@ class GoalOutcomeFeature(PageFeature):
         super().__init__(viewer)
         self._subscriptions: list[Any] = []
         self._goal_id = b""
-        self._active = False
+        self._is_active = False
         self._reasons: dict[str, str] = {}
         self._outcome: GoalOutcome = NO_GOAL_FAILED
         self._publish_timer: asyncio.TimerHandle | None = None
@@ -45,7 +45,7 @@ class GoalOutcomeFeature(PageFeature):
             latched = QoSProfile(depth=_STATUS_DEPTH, durability=DurabilityPolicy.TRANSIENT_LOCAL)
             self._subscriptions = [
                 self._subscribe("action_msgs/msg/GoalStatusArray", STATUS_TOPIC, self._on_status, latched),
-                self._subscribe("rcl_interfaces/msg/Log", "/rosout", self._logged, ROSOUT_QOS),
+                self._subscribe("rcl_interfaces/msg/Log", "/rosout", self._on_log_record, ROSOUT_QOS),
             ]
         return [self._outcome]
 
@@ -72,17 +72,17 @@ class GoalOutcomeFeature(PageFeature):
         latest = max(message.status_list, key=acceptance_time)
         goal_id = bytes(latest.goal_info.goal_id.uuid)
         if goal_id != self._goal_id:
-            self._goal_id, self._active = goal_id, False
+            self._goal_id, self._is_active = goal_id, False
             self._reasons.clear()
             self._publish(NO_GOAL_FAILED)
         if latest.status in _ACTIVE:
-            self._active = True
-        elif self._active:
-            self._active = False
+            self._is_active = True
+        elif self._is_active:
+            self._is_active = False
             if latest.status == _ABORTED:
                 self._publish_timer = asyncio.get_running_loop().call_later(_LOG_DELAY, self._publish_failure, goal_id)
 
-    def _logged(self, record: Any) -> None:
+    def _on_log_record(self, record: Any) -> None:
         if record.level >= _ERROR_LEVEL:
             self._reasons[record.name] = record.msg
 

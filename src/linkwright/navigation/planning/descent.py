@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from linkwright.navigation.planning.potential import Cell, Floats
 
-Place = tuple[float, float]
+Position = tuple[float, float]
 """A position as row and column, in cells. The middle of cell (0, 0) is (0.5, 0.5)."""
 
 _STEP_CELLS = 0.5
@@ -29,42 +29,44 @@ class _Slope:
     def __init__(self, costs: Floats) -> None:
         self._costs = costs
         self._rows, self._columns = costs.shape
-        self._gradients: dict[Cell, Place | None] = {}
+        self._gradients: dict[Cell, Position | None] = {}
 
-    def at(self, row: int, column: int) -> float:
+    def potential_at(self, row: int, column: int) -> float:
         """Return the potential of a cell, infinite outside the grid."""
         if 0 <= row < self._rows and 0 <= column < self._columns:
             return float(self._costs[row, column])
         return inf
 
-    def joined(self, cell: Cell, neighbour: Cell) -> bool:
+    def are_connected(self, cell: Cell, neighbour: Cell) -> bool:
         """Return whether the straight step to an adjacent cell avoids unreachable cells.
 
         For a diagonal step, both cells beside the corner must be reachable, too.
         """
         (row, column), (to_row, to_column) = cell, neighbour
-        return self.at(to_row, to_column) < inf and (
-            row == to_row or column == to_column or max(self.at(row, to_column), self.at(to_row, column)) < inf
+        return self.potential_at(to_row, to_column) < inf and (
+            row == to_row
+            or column == to_column
+            or max(self.potential_at(row, to_column), self.potential_at(to_row, column)) < inf
         )
 
     def steepest_neighbour(self, cell: Cell) -> Cell:
         """Return the neighbour with the steepest descent, or the cell if no neighbour is lower."""
         row, column = cell
-        cost = self.at(row, column)
-        best, steepest = cell, 0.0
+        cost = self.potential_at(row, column)
+        steepest_neighbor, steepest_descent = cell, 0.0
         for row_step, column_step in _NEIGHBOUR_OFFSETS:
             neighbour = (row + row_step, column + column_step)
-            descent = (cost - self.at(*neighbour)) / hypot(row_step, column_step)
-            if descent > steepest and self.joined(cell, neighbour):
-                best, steepest = neighbour, descent
-        return best
+            descent = (cost - self.potential_at(*neighbour)) / hypot(row_step, column_step)
+            if descent > steepest_descent and self.are_connected(cell, neighbour):
+                steepest_neighbor, steepest_descent = neighbour, descent
+        return steepest_neighbor
 
-    def direction(self, place: Place) -> Place | None:
+    def direction(self, position: Position) -> Position | None:
         """Return the direction of steepest descent as a unit vector (rows, columns).
 
         Returns None if the potential is flat at the position.
         """
-        row, column = place[0] - 0.5, place[1] - 0.5
+        row, column = position[0] - 0.5, position[1] - 0.5
         top, left = floor(row), floor(column)
         row_share, column_share = row - top, column - left
         row_direction = column_direction = 0.0
@@ -81,15 +83,15 @@ class _Slope:
         length = hypot(row_direction, column_direction)
         return None if length < _MIN_SLOPE else (row_direction / length, column_direction / length)
 
-    def _gradient(self, cell: Cell) -> Place | None:
+    def _gradient(self, cell: Cell) -> Position | None:
         if cell in self._gradients:
             return self._gradients[cell]
         row, column = cell
-        cost = self.at(row, column)
-        gradient: Place | None = None
+        cost = self.potential_at(row, column)
+        gradient: Position | None = None
         if cost < inf:
-            row_slope = _difference(self.at(row - 1, column), cost, self.at(row + 1, column))
-            column_slope = _difference(self.at(row, column - 1), cost, self.at(row, column + 1))
+            row_slope = _difference(self.potential_at(row - 1, column), cost, self.potential_at(row + 1, column))
+            column_slope = _difference(self.potential_at(row, column - 1), cost, self.potential_at(row, column + 1))
             length = hypot(row_slope, column_slope)
             gradient = (row_slope / length, column_slope / length) if length > _MIN_SLOPE else None
         self._gradients[cell] = gradient
@@ -108,22 +110,22 @@ def _difference(previous: float, current: float, following: float) -> float:
     return min(0.0, following - current) if following < inf else 0.0
 
 
-def descend(costs: Floats, source: Cell, begin: Place) -> Generator[None, None, NDArray[np.float64]]:
+def descend(costs: Floats, source: Cell, start: Position) -> Generator[None, None, NDArray[np.float64]]:
     """Extract a path by descent on a potential.
 
     The generator yields regularly, so that other callbacks can run.
 
     Args:
-        costs: a potential (see `potential`).
+        costs: a potential (see `compute_potential`).
         source: the cell where the potential is zero.
-        begin: the row and column of the path's start, in a reachable cell.
+        start: the row and column of the path's start, in a reachable cell.
 
     Returns:
         Rows and columns, of shape (n, 2), from the start to the middle of the source.
     """
     slope = _Slope(costs)
     end = (source[0] + 0.5, source[1] + 0.5)
-    position, cell = begin, (floor(begin[0]), floor(begin[1]))
+    position, cell = start, (floor(start[0]), floor(start[1]))
     path = [position]
     steps_in_cell = 0
     while cell != source:
@@ -141,16 +143,18 @@ def descend(costs: Floats, source: Cell, begin: Place) -> Generator[None, None, 
     return np.array(path)
 
 
-def _step(slope: _Slope, place: Place, cell: Cell) -> Place | None:
+def _step(slope: _Slope, position: Position, cell: Cell) -> Position | None:
     """Return the position half a cell downhill from a position in a cell.
 
     Returns None if the potential is flat or the step leads to an unreachable cell.
     """
-    direction = slope.direction(place)
+    direction = slope.direction(position)
     if direction is None:
         return None
-    next_position = (place[0] + _STEP_CELLS * direction[0], place[1] + _STEP_CELLS * direction[1])
+    next_position = (position[0] + _STEP_CELLS * direction[0], position[1] + _STEP_CELLS * direction[1])
     next_cell = (floor(next_position[0]), floor(next_position[1]))
-    if next_cell != cell and not (slope.joined(cell, next_cell) and slope.at(*next_cell) < slope.at(*cell)):
+    if next_cell != cell and not (
+        slope.are_connected(cell, next_cell) and slope.potential_at(*next_cell) < slope.potential_at(*cell)
+    ):
         return None
     return next_position

@@ -20,7 +20,7 @@ from linkwright.navigation.costmaps.costmap import INSCRIBED, LETHAL, MAX_PASSAB
 from linkwright.navigation.costmaps.layered import Pose
 from linkwright.navigation.grids.rays import cells_on_lines
 from linkwright.navigation.planning.descent import descend
-from linkwright.navigation.planning.potential import Cell, Floats, crossing_prices, potential
+from linkwright.navigation.planning.potential import Cell, Floats, compute_potential, crossing_prices
 
 _ESCAPE_PRICE: Final = 2530.0
 """The price of crossing a cell that is too near to an obstacle, if the robot starts in such a cell."""
@@ -103,9 +103,9 @@ def plan(costmap: Costmap, start: Pose, goal: Pose, settings: Settings) -> Gener
         _open_escape(prices, costmap, from_cell, start)
     end = to_cell
     if prices[to_cell] < np.inf:
-        costs_to_start = yield from potential(prices, from_cell, to_cell, heuristic=settings.use_astar)
+        costs_to_start = yield from compute_potential(prices, from_cell, to_cell, heuristic=settings.use_astar)
     if not prices[to_cell] < np.inf or not costs_to_start[to_cell] < np.inf:
-        costs_to_start = yield from potential(prices, from_cell)
+        costs_to_start = yield from compute_potential(prices, from_cell)
         end = _nearest_reachable_cell(costs_to_start, costmap, goal, to_cell, settings)
     is_reached = end == to_cell
     centre = costmap.grid.centres_of(np.array(end))
@@ -116,7 +116,7 @@ def plan(costmap: Costmap, start: Pose, goal: Pose, settings: Settings) -> Gener
     return _poses(_thin_path(path_cells[::-1], prices), costmap, start, end_pose, settings)
 
 
-def run(steps: Generator[None, None, NDArray[np.float64]]) -> NDArray[np.float64]:
+def run_to_end(steps: Generator[None, None, NDArray[np.float64]]) -> NDArray[np.float64]:
     """Run a generator to its end, and return its result."""
     results: list[NDArray[np.float64]] = []
 
@@ -130,7 +130,7 @@ def run(steps: Generator[None, None, NDArray[np.float64]]) -> NDArray[np.float64
 
 def _cell_in_grid(costmap: Costmap, pose: Pose, problem: Problem, subject: str) -> Cell:
     indices = costmap.grid.cells_of(np.array(pose[:2]))
-    if not costmap.grid.has(indices):
+    if not costmap.grid.contains(indices):
         raise PlanError(problem, f"{subject} Coordinates of({pose[0]:f}, {pose[1]:f}) was outside bounds")
     return int(indices[0]), int(indices[1])
 

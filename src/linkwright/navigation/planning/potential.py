@@ -52,7 +52,7 @@ def crossing_prices(costs: NDArray[np.uint8], *, allow_unknown: bool = True) -> 
     return prices
 
 
-def potential(
+def compute_potential(
     price: Floats, source: Cell, target: Cell | None = None, *, heuristic: bool = False
 ) -> Generator[None, None, Floats]:
     """Compute the cost of the cheapest path from a cell to each other cell.

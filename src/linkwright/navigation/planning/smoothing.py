@@ -41,7 +41,7 @@ class Smoothing:
     enforce_path_inversion: bool = True
 
 
-def smoothed(points: Points, smoothing: Smoothing, costmap: Costmap | None = None) -> tuple[Points, bool]:
+def smooth_path(points: Points, smoothing: Smoothing, costmap: Costmap | None = None) -> tuple[Points, bool]:
     """Smooth a path.
 
     Args:
@@ -53,13 +53,13 @@ def smoothed(points: Points, smoothing: Smoothing, costmap: Costmap | None = Non
         The smoothed points, of the same shape, with the same first and last point; and whether all points could move
         without a collision.
     """
-    result, complete = points, True
+    result, all_points_moved = points, True
     pass_count = 1 + (smoothing.refinement_num if smoothing.do_refinement else 0)
     is_fixed = _fixed_points(points, smoothing)
     for _ in range(pass_count):
-        result, all_moved = _once(result, is_fixed, smoothing, costmap)
-        complete &= all_moved
-    return result, complete
+        result, all_moved_in_pass = _smooth_once(result, is_fixed, smoothing, costmap)
+        all_points_moved &= all_moved_in_pass
+    return result, all_points_moved
 
 
 def directions(points: Points, last_yaw: float) -> NDArray[np.float64]:
@@ -81,7 +81,7 @@ def _fixed_points(points: Points, smoothing: Smoothing) -> NDArray[np.bool_]:
     return is_fixed
 
 
-def _once(
+def _smooth_once(
     points: Points, is_fixed: NDArray[np.bool_], smoothing: Smoothing, costmap: Costmap | None
 ) -> tuple[Points, bool]:
     if len(points) < _MIN_POINTS:
@@ -99,15 +99,15 @@ def _once(
 
 def _blocked_points(points: Points, costmap: Costmap) -> NDArray[np.bool_]:
     """Return a mask of the points that collide, or have a colliding midpoint to a neighbour."""
-    middles = (points + np.roll(points, -1, axis=0)) / 2.0
-    middles[-1] = points[-1]
+    midpoints = (points + np.roll(points, -1, axis=0)) / 2.0
+    midpoints[-1] = points[-1]
 
-    def barred(positions: Points) -> NDArray[np.bool_]:
+    def collision_mask(positions: Points) -> NDArray[np.bool_]:
         costs = costmap.cost_at(positions)
         return np.asarray((costs > MAX_PASSABLE) & (costs != UNKNOWN))
 
-    is_blocked = barred(points)
-    is_gap_blocked = barred(middles)
+    is_blocked = collision_mask(points)
+    is_gap_blocked = collision_mask(midpoints)
     is_blocked |= is_gap_blocked
     is_blocked[1:] |= is_gap_blocked[:-1]
     return is_blocked

@@ -11,10 +11,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from linkwright.navigation.slam.contradiction import contradiction_share
-from linkwright.navigation.slam.matching import Match, match
+from linkwright.navigation.slam.matching import Match, match_scan
 from linkwright.navigation.slam.occupancy import OccupancyMap
 from linkwright.navigation.slam.pose_graph import PoseGraph
-from linkwright.navigation.slam.poses import Floats, compose, relative_pose, wrapped
+from linkwright.navigation.slam.poses import Floats, compose, relative_pose, wrap_angles
 from linkwright.navigation.slam.reference import Reference
 from linkwright.navigation.slam.scan import PlanarScan
 from linkwright.navigation.slam.search import Search
@@ -44,18 +44,18 @@ class Outcome:
     Attributes:
         pose: the pose of the robot in the map, of shape (3,).
         covariance: the covariance of the pose, of shape (3, 3), in the frame of the robot.
-        matched: whether scan matching determined the pose; otherwise odometry did.
+        is_matched: whether scan matching determined the pose; otherwise odometry did.
         response: the response of the match, 0 to 1.
-        links: the number of earlier passes to which the scan was linked.
-        loops: the number of closed loops.
+        link_count: the number of earlier passes to which the scan was linked.
+        loop_count: the number of closed loops.
     """
 
     pose: Floats
     covariance: Floats
-    matched: bool
+    is_matched: bool
     response: float
-    links: int = 0
-    loops: int = 0
+    link_count: int = 0
+    loop_count: int = 0
 
 
 class Mapper:
@@ -88,7 +88,7 @@ class Mapper:
         """The time of the last processed scan in nanoseconds, or 0 before the first scan."""
         return 0 if self._last_processed is None else self._last_processed[1]
 
-    def replace(self, graph: PoseGraph, scans: list[PlanarScan], odometry: list[Floats]) -> None:
+    def replace_graph(self, graph: PoseGraph, scans: list[PlanarScan], odometry: list[Floats]) -> None:
         """Replace the graph, and erase the old scans from the map.
 
         The new scans are not drawn yet.
@@ -135,7 +135,7 @@ class Mapper:
             or abs(motion[2]) >= self.settings.minimum_travel_heading
         )
 
-    def expected(self, odometry: Floats) -> Floats:
+    def predict_pose(self, odometry: Floats) -> Floats:
         """Return the pose in the map, of shape (3,), predicted by odometry since the last scan."""
         if self._map_pose is None:
             return odometry
@@ -153,7 +153,7 @@ class Mapper:
             odometry: the odometry pose of the robot, of shape (3,).
         """
         is_first_of_session = self._last_processed is None and self._map_pose is not None
-        guess, motion = self.expected(odometry), None
+        guess, motion = self.predict_pose(odometry), None
         if self._last_processed is not None:
             motion = relative_pose(self._last_processed[0], odometry)
         self._last_processed = odometry, scan.stamp_ns
@@ -161,7 +161,7 @@ class Mapper:
             return (yield from self._match_first_scan(scan, guess, odometry))
         odometric_information = _odometric_information(motion if motion is not None else np.zeros(3))
         best_match = None
-        latest_scans = self._buffer(guess)
+        latest_scans = self._recent_scans_near(guess)
         if motion is not None and latest_scans and self.settings.use_scan_matching:
             best_match = yield from self._match(latest_scans, scan, guess, self.settings.matching)
         pose = guess if best_match is None else best_match.pose
@@ -184,7 +184,7 @@ class Mapper:
         The arguments are the same as for `process`.
         """
         is_first = self._last_processed is None
-        guess = self.expected(odometry)
+        guess = self.predict_pose(odometry)
         motion = np.zeros(3) if self._last_processed is None else relative_pose(self._last_processed[0], odometry)
         self._last_processed = odometry, scan.stamp_ns
         window = self.settings.loop if is_first else self.settings.matching
@@ -202,7 +202,7 @@ class Mapper:
         """
         tolerance = _REDRAW_SHARE * self.occupancy.resolution
         for number, scan in enumerate(self.scans):
-            pose, drawn_pose = self.graph.poses[number], self.occupancy.drawn_at(number)
+            pose, drawn_pose = self.graph.poses[number], self.occupancy.drawn_pose(number)
             if drawn_pose is not None:
                 change = relative_pose(drawn_pose, pose)
                 if np.hypot(change[0], change[1]) + _FAR_POINT * abs(change[2]) < tolerance:
@@ -230,7 +230,7 @@ class Mapper:
         yield from self.redraw()
         return _outcome(pose, information, best_match)
 
-    def _buffer(self, pose: Floats) -> list[int]:
+    def _recent_scans_near(self, pose: Floats) -> list[int]:
         """Return the numbers of the latest scans of this session that are near a pose."""
         begin = max(self._session, len(self.scans) - self.settings.scan_buffer_size)
         is_near = self._distances(pose) <= self.settings.scan_buffer_maximum_scan_distance
@@ -256,7 +256,7 @@ class Mapper:
         """
         reference = Reference([self.scans[node] for node in nodes], self.graph.poses[nodes])
         yield
-        best_match = yield from match(reference, scan, guess, search, expand=self.settings.use_response_expansion)
+        best_match = yield from match_scan(reference, scan, guess, search, expand=self.settings.use_response_expansion)
         if best_match is None or best_match.response < self.settings.link_match_minimum_response_fine:
             return None
         offset = np.abs(best_match.pose - guess)[:2].max()
@@ -287,7 +287,7 @@ class Mapper:
             if len(chain) >= settings.loop_match_minimum_chain_size and linked_nodes.isdisjoint(chain)
         ]
         for chain in candidates[:_MAX_LOOP_CANDIDATES]:
-            if (yield from self._close(number, chain)):
+            if (yield from self._close_loop(number, chain)):
                 loops += 1
         return links, loops
 
@@ -306,7 +306,7 @@ class Mapper:
                 chains.append([index])
         return sorted(chains, key=lambda chain: (float(distances[chain].min()), chain[0]))
 
-    def _close(self, number: int, chain: list[int]) -> Steps[bool]:
+    def _close_loop(self, number: int, chain: list[int]) -> Steps[bool]:
         """Try to close a loop with a chain of nodes, and return whether an edge was added."""
         settings = self.settings
         guess = self.graph.poses[number]
@@ -338,7 +338,7 @@ class Mapper:
         if contradiction_share(self.scans[nearest], pose, scan, best_match.pose) > _MAX_CONTRADICTION:
             return None
         information = best_match.information + _MIN_INFORMATION * np.eye(3)
-        self.graph.add_edge(nearest, number, relative_pose(pose, best_match.pose), information, doubtful=True)
+        self.graph.add_edge(nearest, number, relative_pose(pose, best_match.pose), information, is_doubtful=True)
         return best_match
 
 
@@ -358,7 +358,7 @@ def _odometric_information(moved: Floats) -> Floats:
 
     The standard deviations are 3 cm and 0.02 rad at rest, and grow by about 10 % of the motion.
     """
-    rotation = abs(float(wrapped(moved)[2]))
+    rotation = abs(float(wrap_angles(moved)[2]))
     position_deviation = 0.03 + 0.1 * float(np.hypot(moved[0], moved[1])) + 0.03 * rotation
     yaw_deviation = 0.02 + 0.1 * rotation + 0.05 * float(np.hypot(moved[0], moved[1]))
     result: Floats = np.diag((position_deviation**-2, position_deviation**-2, yaw_deviation**-2))

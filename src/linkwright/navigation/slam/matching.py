@@ -7,8 +7,8 @@ from math import pi
 
 import numpy as np
 
-from linkwright.navigation.slam.poses import Floats, transform_points, wrapped
-from linkwright.navigation.slam.reference import Likelihood, Reference
+from linkwright.navigation.slam.poses import Floats, transform_points, wrap_angles
+from linkwright.navigation.slam.reference import LikelihoodField, Reference
 from linkwright.navigation.slam.scan import PlanarScan
 from linkwright.navigation.slam.search import Search, best_pose
 from linkwright.navigation.slam.steps import Steps
@@ -51,7 +51,7 @@ class Match:
     error: float
 
 
-def match(
+def match_scan(
     reference: Reference, scan: PlanarScan, guess: Floats, search: Search, *, expand: bool = False
 ) -> Steps[Match | None]:
     """Match a scan against earlier scans, in steps.
@@ -70,7 +70,7 @@ def match(
     """
     if len(scan.points) < MIN_POINTS or len(reference) < MIN_POINTS:
         return None
-    likelihood = Likelihood(reference.points, search.cell, search.smear_deviation)
+    likelihood = LikelihoodField(reference.points, search.cell, search.smear_deviation)
     yield
     pose, response = yield from best_pose(likelihood, scan.points, guess, search)
     for offset in _EXPANSIONS if expand else ():
@@ -95,7 +95,7 @@ def _refine(reference: Reference, scan: PlanarScan, guess: Floats, start: Floats
     pose, max_distance = start.copy(), _FIRST_MAX_DISTANCE
     system = _normal_equations(reference, scan, pose, max_distance, scale)
     projection = _constrained_projection(system[0], len(scan.points))
-    yaw_offset = wrapped(start - guess)[2]
+    yaw_offset = wrap_angles(start - guess)[2]
     shift: Floats = np.array((start[0] - guess[0], start[1] - guess[1], yaw_offset)) / scale
     pose = guess + scale * (projection @ shift)
     for _ in range(_MAX_ITERATIONS):

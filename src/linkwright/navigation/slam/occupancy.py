@@ -62,17 +62,17 @@ class OccupancyMap:
         trace = self._trace_scan(scan, pose)
         if not len(trace.cells):
             return
-        self._grow(trace.cells)
+        self._grow_to_contain(trace.cells)
         self._traces[number] = trace
-        self._count(trace, 1)
+        self._add_counts(trace, 1)
 
     def erase(self, number: int) -> None:
         """Remove a scan if it was added."""
         trace = self._traces.pop(number, None)
         if trace is not None:
-            self._count(trace, -1)
+            self._add_counts(trace, -1)
 
-    def drawn_at(self, number: int) -> Floats | None:
+    def drawn_pose(self, number: int) -> Floats | None:
         """Return the pose at which a scan was added, or None if the scan is not in the map."""
         trace = self._traces.get(number)
         return None if trace is None else trace.pose
@@ -95,12 +95,12 @@ class OccupancyMap:
         y, x = (int(self._corner[0] + rows[0]), int(self._corner[1] + columns[0]))
         return Grid(cells=cells, resolution=self.resolution, x=x * self.resolution, y=y * self.resolution)
 
-    def _count(self, trace: _Trace, sign: int) -> None:
+    def _add_counts(self, trace: _Trace, sign: int) -> None:
         rows, columns = (trace.cells - self._corner).T
         self._passes[rows, columns] += sign * trace.passes
         self._hits[rows, columns] += sign * trace.hits
 
-    def _grow(self, cells: Cells) -> None:
+    def _grow_to_contain(self, cells: Cells) -> None:
         low, high = cells.min(axis=0), cells.max(axis=0) + 1
         size = np.array(self._passes.shape)
         if size.all() and (low >= self._corner).all() and (high <= self._corner + size).all():

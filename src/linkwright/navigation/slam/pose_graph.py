@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from linkwright.navigation.grids.library import load_scipy
-from linkwright.navigation.slam.poses import Floats, wrapped
+from linkwright.navigation.slam.poses import Floats, wrap_angles
 from linkwright.navigation.slam.steps import Steps
 
 _MAX_ITERATIONS = 20
@@ -31,7 +31,7 @@ class PoseGraph:
         measured: for each edge, the pose of the second node in the frame of the first, of shape (3,).
         information: for each edge, the inverse of the covariance of `measured` in the frame of the second node, of
             shape (3, 3).
-        doubtful: for each edge, whether it may be wrong.
+        is_doubtful: for each edge, whether it may be wrong.
     """
 
     poses: Floats = field(default_factory=lambda: np.zeros((0, 3)))
@@ -39,7 +39,7 @@ class PoseGraph:
     second: list[int] = field(default_factory=list)
     measured: list[Floats] = field(default_factory=list)
     information: list[Floats] = field(default_factory=list)
-    doubtful: list[bool] = field(default_factory=list)
+    is_doubtful: list[bool] = field(default_factory=list)
 
     def add_node(self, pose: Floats) -> int:
         """Add a node at a pose of shape (3,).
@@ -51,7 +51,7 @@ class PoseGraph:
         return len(self.poses) - 1
 
     def add_edge(
-        self, first: int, second: int, measured: Floats, information: Floats, *, doubtful: bool = False
+        self, first: int, second: int, measured: Floats, information: Floats, *, is_doubtful: bool = False
     ) -> None:
         """Add a measured relative pose between two nodes.
 
@@ -61,7 +61,7 @@ class PoseGraph:
         self.second.append(second)
         self.measured.append(measured)
         self.information.append(information)
-        self.doubtful.append(doubtful)
+        self.is_doubtful.append(is_doubtful)
 
     def solve(self) -> Steps[float]:
         """Optimise the poses with respect to all edges, in steps.
@@ -71,7 +71,7 @@ class PoseGraph:
         """
         old_poses = self.poses.copy()
         if self.first and len(self.poses) > 1:
-            for robust in (False, True) if any(self.doubtful) else (False,):
+            for robust in (False, True) if any(self.is_doubtful) else (False,):
                 for _ in range(_MAX_ITERATIONS):
                     step = self._step(robust=robust)
                     yield
@@ -84,7 +84,7 @@ class PoseGraph:
         information = np.array(self.information)
         if robust:
             errors = np.einsum("ni,nij,nj->n", residuals, information, residuals)
-            weights = np.where(self.doubtful, 1 / (1 + errors / _KERNEL_SCALE), 1.0)
+            weights = np.where(self.is_doubtful, 1 / (1 + errors / _KERNEL_SCALE), 1.0)
             information = information * weights[:, None, None]
         sparse, linalg = load_scipy("sparse"), load_scipy("sparse.linalg")
         size = 3 * len(self.poses)
@@ -102,7 +102,7 @@ class PoseGraph:
         matrix = (weighted @ jacobian)[3:, 3:] + 1e-9 * sparse.identity(size - 3)
         step: Floats = np.asarray(linalg.spsolve(matrix.tocsc(), -(weighted @ residuals.ravel())[3:])).reshape(-1, 3)
         self.poses[1:] += step
-        self.poses[:, 2] = wrapped(self.poses[:, 2])
+        self.poses[:, 2] = wrap_angles(self.poses[:, 2])
         return float(np.abs(step).max())
 
     def _linearized(self) -> tuple[Floats, Floats, Floats]:
@@ -121,7 +121,7 @@ class PoseGraph:
         x, y = measured[:, 0], measured[:, 1]
         residuals[:, :2] = np.einsum("nij,nj->ni", to_second, offsets)
         residuals[:, :2] -= np.stack((cos_m * x + sin_m * y, cos_m * y - sin_m * x), axis=-1)
-        residuals[:, 2] = wrapped(end[:, 2] - yaw)
+        residuals[:, 2] = wrap_angles(end[:, 2] - yaw)
         second_jacobians = np.zeros((len(start), 3, 3))
         second_jacobians[:, :2, :2] = to_second
         second_jacobians[:, 2, 2] = 1.0

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 
 
-def wrapped(angles: Floats) -> Floats:
+def wrap_angles(angles: Floats) -> Floats:
     """Return angles wrapped to -pi to pi."""
     result: Floats = (angles + pi) % (2 * pi) - pi
     return result
@@ -23,7 +23,7 @@ def compose(b_in_a: Floats, c_in_b: Floats) -> Floats:
     """Return the poses of c in a, of shape (..., 3), from the poses of b in a and of c in b."""
     cos, sin = np.cos(b_in_a[..., 2]), np.sin(b_in_a[..., 2])
     x, y = c_in_b[..., 0], c_in_b[..., 1]
-    yaw = wrapped(b_in_a[..., 2] + c_in_b[..., 2])
+    yaw = wrap_angles(b_in_a[..., 2] + c_in_b[..., 2])
     result: Floats = np.stack((b_in_a[..., 0] + cos * x - sin * y, b_in_a[..., 1] + sin * x + cos * y, yaw), axis=-1)
     return result
 

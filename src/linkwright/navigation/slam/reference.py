@@ -85,7 +85,7 @@ class Reference:
         return distances, indices, self.points[indices], self._normals[indices], self._flatness[indices]
 
 
-class Likelihood:
+class LikelihoodField:
     """A grid of likelihoods, with the maxima over blocks of 2x2, 4x4, ... cells.
 
     Args:

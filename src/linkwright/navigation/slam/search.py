@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linkwright.navigation.slam.poses import Floats
-from linkwright.navigation.slam.reference import Likelihood
+from linkwright.navigation.slam.reference import LikelihoodField
 from linkwright.navigation.slam.steps import Steps
 
 _PENALTY_GAIN = 0.2
@@ -79,7 +79,7 @@ class _Blocks:
 class _Window:
     """The poses around a guess, rated in blocks."""
 
-    def __init__(self, likelihood: Likelihood, points: Floats, guess: Floats, search: Search) -> None:
+    def __init__(self, likelihood: LikelihoodField, points: Floats, guess: Floats, search: Search) -> None:
         self._likelihood, self._search = likelihood, search
         stride = -(-len(points) // _MAX_POINTS)
         points = points[::stride]
@@ -95,7 +95,7 @@ class _Window:
         self._rows = np.floor(y / likelihood.resolution).astype(np.int32)
         self._columns = np.floor(x / likelihood.resolution).astype(np.int32)
 
-    def top(self) -> tuple[int, _Blocks]:
+    def largest_blocks(self) -> tuple[int, _Blocks]:
         """Return the level of the largest blocks, and these blocks with bounds of 0."""
         side_length = 2 * self.half + 1
         level = max(0, (side_length // _BLOCKS_PER_SIDE).bit_length() - 1)
@@ -146,7 +146,9 @@ class _Window:
         return _Blocks(angle[is_inside], row[is_inside], column[is_inside], np.zeros(int(is_inside.sum())))
 
 
-def best_pose(likelihood: Likelihood, points: Floats, guess: Floats, search: Search) -> Steps[tuple[Floats, float]]:
+def best_pose(
+    likelihood: LikelihoodField, points: Floats, guess: Floats, search: Search
+) -> Steps[tuple[Floats, float]]:
     """Search a window for the pose with the highest response, in steps.
 
     Args:
@@ -159,7 +161,7 @@ def best_pose(likelihood: Likelihood, points: Floats, guess: Floats, search: Sea
         The pose, of shape (3,), and its response, reduced by the penalties.
     """
     window = _Window(likelihood, points, guess, search)
-    level, blocks = window.top()
+    level, blocks = window.largest_blocks()
     yield from _rate_in_batches(window, blocks, level)
     best_response, best_block = -1.0, blocks.selected(np.s_[:1])
     while level:

@@ -1,7 +1,7 @@
 """Generators that do long work in steps, between which a node can run other callbacks.
 
 A function that takes long is a generator: it yields every few milliseconds, and returns its result. A caller that may
-block calls `finish`; other callers call ``next`` when they have time, or ``yield from`` the generator in their own.
+block calls `run_to_end`; other callers call ``next`` when they have time, or ``yield from`` the generator in their own.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ Steps = Generator[None, None, T]
 """Work in steps with a result."""
 
 
-def finish(work: Steps[T]) -> T:
+def run_to_end(work: Steps[T]) -> T:
     """Run all steps without pausing, and return the result of the work."""
     try:
         while True:

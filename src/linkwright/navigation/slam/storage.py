@@ -33,7 +33,7 @@ _FORMAT = 1
 _MAX_FILE_BYTES = 1 << 30
 
 
-def path_of(name: str) -> Path:
+def graph_path(name: str) -> Path:
     """Return the path of a graph's file, with the extension added if it is missing."""
     return Path(name if name.endswith(EXTENSION) else name + EXTENSION)
 
@@ -51,7 +51,7 @@ def save_graph(mapper: Mapper, path: Path) -> None:
         "edges": np.array([graph.first, graph.second], dtype=np.int64),
         "measured": np.array(graph.measured).reshape(-1, 3),
         "information": np.array(graph.information).reshape(-1, 3, 3),
-        "doubtful": np.array(graph.doubtful, dtype=bool),
+        "doubtful": np.array(graph.is_doubtful, dtype=bool),
         "odometry": np.array(mapper.odometry).reshape(-1, 3),
         "origins": np.array([scan.origin for scan in scans]).reshape(-1, 2),
         "stamps": np.array([scan.stamp_ns for scan in scans], dtype=np.int64),
@@ -78,14 +78,14 @@ def load_graph(mapper: Mapper, path: Path) -> None:
         message = phrase("the pose graph '{path}' does not exist", path=display_path(path))
         raise LinkwrightError(Diagnostic("NAV501", message, hint=missing_file_hint(path))) from None
     except OSError as error:
-        raise _unreadable(path, foreign(error.strerror or error)) from None
+        raise _unreadable_error(path, foreign(error.strerror or error)) from None
     if b"serialization::archive" in data[:64]:
-        raise _unreadable(path, phrase("slam_toolbox wrote it, in a format that only slam_toolbox can read"))
+        raise _unreadable_error(path, phrase("slam_toolbox wrote it, in a format that only slam_toolbox can read"))
     try:
         graph, scans, odometry = _read(data)
     except (BadZipFile, KeyError, ValueError, IndexError, OSError, EOFError):
-        raise _unreadable(path, phrase("it does not contain a pose graph")) from None
-    mapper.replace(graph, scans, odometry)
+        raise _unreadable_error(path, phrase("it does not contain a pose graph")) from None
+    mapper.replace_graph(graph, scans, odometry)
 
 
 def _read(data: bytes) -> tuple[PoseGraph, list[PlanarScan], list[Floats]]:
@@ -114,7 +114,7 @@ def _read(data: bytes) -> tuple[PoseGraph, list[PlanarScan], list[Floats]]:
     return graph, scans, list(arrays["odometry"])
 
 
-def _unreadable(path: Path, reason: Phrase) -> LinkwrightError:
+def _unreadable_error(path: Path, reason: Phrase) -> LinkwrightError:
     message = phrase("the pose graph '{path}' cannot be read: {reason}", path=display_path(path), reason=reason)
     hint = phrase("create the map again, and save it with the service serialize_map")
     return LinkwrightError(Diagnostic("NAV501", message, hint=hint))

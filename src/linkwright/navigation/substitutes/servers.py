@@ -56,7 +56,7 @@ class Server:
         return self.name or self.executable
 
     @property
-    def is_here(self) -> bool:
+    def is_available(self) -> bool:
         """Whether Linkwright provides the executable."""
         from linkwright.nodes import EXECUTABLES
 
@@ -84,7 +84,7 @@ def configured_parameters(context: LaunchContext) -> ParameterFile:
     return ParameterFile(rewritten, allow_substs=True)
 
 
-def managed(
+def server_actions(
     context: LaunchContext,
     manager: str,
     servers: Sequence[Server],
@@ -103,7 +103,7 @@ def managed(
     """
     sim_time = {"use_sim_time": is_true(context, "use_sim_time")}
     file = configured_parameters(context)
-    managed_names = [server.node_name for server in servers if server.is_here]
+    managed_names = [server.node_name for server in servers if server.is_available]
     manager_parameters: Mapping[str, Any] = {
         **sim_time,
         "autostart": is_true(context, "autostart"),

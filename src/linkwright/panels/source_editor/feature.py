@@ -10,7 +10,7 @@ from itertools import count
 from pathlib import Path
 from typing import Any
 
-from linkwright.descriptions.editing import EditRefusedError
+from linkwright.descriptions.editing import EditRefusedError, Workspace
 from linkwright.descriptions.editing.refusals import changed_file
 from linkwright.descriptions.unsaved import UnsavedText, with_lf
 from linkwright.diagnostics import Diagnostic, Phrase, phrase
@@ -66,10 +66,15 @@ class SourceEditorFeature(PageFeature):
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
         self._editors: dict[Page, _Editor] = {}
+        self._workspace: Path | None = None
         self._unsaved = viewer.context.library.unsaved
         self._shown: set[asyncio.Task[None]] = set()
         self._waiting: asyncio.Queue[tuple[Page, PageMessage]] = asyncio.Queue()
         self._tasks: list[asyncio.Task[None]] = []
+
+    def edit_workspace(self, folder: Path) -> None:
+        """Let pages on this machine edit all files of a workspace, even if no description is shown."""
+        self._workspace = folder
 
     def receive(self, page: Page, message: Any) -> None:
         """Forward a message to the language server, or queue a request about files."""
@@ -149,11 +154,11 @@ class SourceEditorFeature(PageFeature):
         If no file can be edited, the language server is ended, and the response gives the reason.
         """
         known = self._description_files(page)
-        why_not = _refusal_reason(page, file, known)
+        why_not = _refusal_reason(page, file, known, self._workspace)
         if why_not is not None:
             self.remove_page(page)
             return messages.EditorOpened("", "", why_not)
-        files = SourceFiles(Path(file), known)
+        files = SourceFiles(Workspace(Path(file), self._workspace), known)
         editor = self._editors.get(page)
         if editor is None:
             self._editors[page] = _Editor(files, self._process(page))
@@ -259,13 +264,13 @@ def _changed(stamps: dict[str, tuple[int, ...]]) -> list[str]:
     return [path for path, stamp in stamps.items() if _stamp(path) != stamp]
 
 
-def _refusal_reason(page: Page, file: str, known: frozenset[str]) -> Phrase | None:
+def _refusal_reason(page: Page, file: str, known: frozenset[str], workspace: Path | None) -> Phrase | None:
     """Return the reason why a page may not edit the workspace of a file, or None."""
     if not page.is_here:
         return elsewhere().message
     if find_spec(EXTRAS["lsp"]) is None:
         return phrase("the editor needs the language server: {hint}", hint=install_hint("lsp"))
-    if file not in known or file.startswith("<"):
+    if workspace is None and (file not in known or file.startswith("<")):
         return phrase(
             "this description was received as text, so its file is unknown: open it with `linkwright view FILE`"
         )

@@ -57,16 +57,16 @@ class SourceFiles:
     It may write the files that edits of the robot may write.
 
     Args:
-        main: a file of the workspace.
+        workspace: the workspace.
         description_files: the files of the shown descriptions.
 
     Attributes:
         known: the files of the shown descriptions.
     """
 
-    def __init__(self, main: Path, description_files: frozenset[str] = frozenset()) -> None:
+    def __init__(self, workspace: Workspace, description_files: frozenset[str] = frozenset()) -> None:
         self.known = description_files
-        self._workspace = Workspace(main)
+        self._workspace = workspace
 
     @property
     def folder(self) -> Path:

@@ -16,7 +16,7 @@ _JPEG_QUALITY = 95
 _CHANNELS = {"rgb8": 3, "bgr8": 3, "mono8": 1}
 
 
-def compressed(image: Any) -> Any | None:
+def compress_image(image: Any) -> Any | None:
     """Compress an image to a CompressedImage, or return None if its encoding is not supported.
 
     Supported are non-empty images with the encodings rgb8, bgr8 and mono8.

@@ -21,10 +21,10 @@ from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handl
 from linkwright.nodes.settings import bad_value, log_unknown, options_from_words, words_of
 from linkwright.perception.nodes.image_transports import (
     BadImageError,
-    compressed_depth,
-    compressed_image,
-    plain_depth,
-    plain_image,
+    compress_depth,
+    compress_image,
+    decompress_depth,
+    decompress_image,
 )
 from linkwright.perception.nodes.lazy import LazySubscriptions
 
@@ -39,13 +39,13 @@ def _unchanged(image: Any) -> Any:
 
 _DECODERS: dict[str, Callable[[Any], Any]] = {
     "raw": _unchanged,
-    "compressed": plain_image,
-    "compressedDepth": plain_depth,
+    "compressed": decompress_image,
+    "compressedDepth": decompress_depth,
 }
 _ENCODERS: dict[str, Callable[[Any], Any]] = {
     "raw": _unchanged,
-    "compressed": compressed_image,
-    "compressedDepth": compressed_depth,
+    "compressed": compress_image,
+    "compressedDepth": compress_depth,
 }
 
 

@@ -15,25 +15,25 @@ import numpy as np
 
 from linkwright.images import BadImageError
 from linkwright.images.compressed_depth import decode_depth
-from linkwright.images.image_files import RawImage, encoding_of, unpacked
+from linkwright.images.image_files import RawImage, decode_compressed, encoding_of
 from linkwright.messages import get_message
-from linkwright.perception.nodes.compressed import compressed as compressed_image
+from linkwright.perception.nodes.compressed import compress_image
 from linkwright.perception.nodes.depthimage_to_laserscan import read_depths
 
 _HEADER = struct.Struct("<iff")
 _DEPTH_MAX, _QUANTIZATION = 10.0, 100.0
 _INTEGER_ENCODINGS = ("16UC1", "mono16")
 
-__all__ = ["BadImageError", "compressed_depth", "compressed_image", "plain_depth", "plain_image"]
+__all__ = ["BadImageError", "compress_depth", "compress_image", "decompress_depth", "decompress_image"]
 
 
-def plain_image(message: Any) -> Any:
+def decompress_image(message: Any) -> Any:
     """Decode a CompressedImage of the transport ``compressed`` to an Image.
 
     Raises:
         BadImageError: the data is neither a JPEG nor a PNG.
     """
-    image = unpacked(message)
+    image = decode_compressed(message)
     if encoding_of(message).startswith("bgr") and image.encoding in ("rgb8", "rgba8"):
         channels = len(image.encoding) - 1
         rows = image.data.reshape(image.height, image.width, channels)[:, :, [2, 1, 0, 3][:channels]]
@@ -41,7 +41,7 @@ def plain_image(message: Any) -> Any:
     return _to_message(image)
 
 
-def compressed_depth(image: Any) -> Any | None:
+def compress_depth(image: Any) -> Any | None:
     """Encode a depth image for the transport ``compressedDepth``, or return None for others.
 
     Raises:
@@ -72,7 +72,7 @@ def compressed_depth(image: Any) -> Any | None:
     return message
 
 
-def plain_depth(message: Any) -> Any:
+def decompress_depth(message: Any) -> Any:
     """Decode a CompressedImage of the transport ``compressedDepth`` to a sensor_msgs/msg/Image.
 
     Raises:

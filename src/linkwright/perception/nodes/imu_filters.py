@@ -25,7 +25,7 @@ from linkwright.graph import SENSOR_DATA_QOS, TF_QOS, Graph
 from linkwright.messages import TFMessage, TransformBatch, get_message
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
 from linkwright.nodes.settings import bad_value, log_unknown
-from linkwright.perception.attitude import GRAVITY, ComplementaryFilter, MadgwickFilter, World, attitude_at_rest
+from linkwright.perception.attitude import GRAVITY, ComplementaryFilter, MadgwickFilter, WorldFrame, attitude_at_rest
 
 _QUEUE_DEPTH = 5
 
@@ -77,7 +77,7 @@ class _ImuFilter(SingleNode, ABC):
     def _create_filter(self) -> _Filter:
         """Create the filter from the remaining parameters."""
 
-    def _begin(self, acceleration: Vector3, magnetic: Vector3 | None) -> bool:
+    def _initialize_orientation(self, acceleration: Vector3, magnetic: Vector3 | None) -> bool:
         """Initialise the orientation, or return False if that is not possible yet."""
         return True
 
@@ -91,9 +91,9 @@ class _ImuFilter(SingleNode, ABC):
     def _receive_magnetic(self, message: Any) -> None:
         field = message.magnetic_field
         if all(isfinite(component) for component in (field.x, field.y, field.z)):
-            self._magnetic = self._compensate((field.x, field.y, field.z))
+            self._magnetic = self._remove_bias((field.x, field.y, field.z))
 
-    def _compensate(self, magnetic: Vector3) -> Vector3:
+    def _remove_bias(self, magnetic: Vector3) -> Vector3:
         return magnetic
 
     def _receive_imu(self, message: Any) -> None:
@@ -107,7 +107,7 @@ class _ImuFilter(SingleNode, ABC):
         if not all(isfinite(component) for component in (*angular_velocity, *acceleration)):
             return
         stamp_ns: int = message.header.stamp.nanoseconds
-        if self._last_ns is None and not self._begin(acceleration, self._magnetic):
+        if self._last_ns is None and not self._initialize_orientation(acceleration, self._magnetic):
             self._node.get_logger().warning(
                 "The IMU seems to be in free fall, cannot determine gravity direction!", throttle_duration_sec=5.0
             )
@@ -158,9 +158,9 @@ class MadgwickNode(_ImuFilter):
     def _create_filter(self) -> MadgwickFilter:
         declare = self._node.declare_parameter
         name: str = declare("world_frame", "enu").value
-        if name not in [world.value for world in World]:
-            raise bad_value("world_frame", name, self._node.get_name(), [world.value for world in World])
-        self._world = World(name)
+        if name not in [world.value for world in WorldFrame]:
+            raise bad_value("world_frame", name, self._node.get_name(), [world.value for world in WorldFrame])
+        self._world = WorldFrame(name)
         self._stateless: bool = declare("stateless", False).value
         self._remove_gravity: bool = declare("remove_gravity_vector", False).value
         offset: float = declare("yaw_offset", 0.0).value - declare("declination", 0.0).value
@@ -169,7 +169,7 @@ class MadgwickNode(_ImuFilter):
         self._magnetometer_bias = (bias[0], bias[1], bias[2])
         return MadgwickFilter(declare("gain", 0.1).value, declare("zeta", 0.0).value, self._world)
 
-    def _begin(self, acceleration: Vector3, magnetic: Vector3 | None) -> bool:
+    def _initialize_orientation(self, acceleration: Vector3, magnetic: Vector3 | None) -> bool:
         orientation = attitude_at_rest(acceleration, magnetic, self._world)
         if orientation is None:
             return False
@@ -181,7 +181,7 @@ class MadgwickNode(_ImuFilter):
             self._last_ns = None  # each measurement is then handled as the first one
         super()._receive_imu(message)
 
-    def _compensate(self, magnetic: Vector3) -> Vector3:
+    def _remove_bias(self, magnetic: Vector3) -> Vector3:
         x, y, z = (reading - bias for reading, bias in zip(magnetic, self._magnetometer_bias, strict=True))
         return x, y, z
 
@@ -210,22 +210,22 @@ class ComplementaryNode(_ImuFilter):
     def _create_filter(self) -> ComplementaryFilter:
         declare = self._node.declare_parameter
 
-        def share(name: str) -> float:
+        def declare_share(name: str) -> float:
             value: float = declare(name, 0.01).value
             if not 0.0 <= value <= 1.0:
                 raise bad_value(name, value, self._node.get_name())
             return value
 
         return ComplementaryFilter(
-            gain_acc=share("gain_acc"),
-            gain_mag=share("gain_mag"),
-            bias_alpha=share("bias_alpha"),
+            gain_acc=declare_share("gain_acc"),
+            gain_mag=declare_share("gain_mag"),
+            bias_alpha=declare_share("bias_alpha"),
             do_bias_estimation=declare("do_bias_estimation", True).value,
             do_adaptive_gain=declare("do_adaptive_gain", True).value,
         )
 
-    def _begin(self, acceleration: Vector3, magnetic: Vector3 | None) -> bool:
-        orientation = attitude_at_rest(acceleration, magnetic, World.NWU)
+    def _initialize_orientation(self, acceleration: Vector3, magnetic: Vector3 | None) -> bool:
+        orientation = attitude_at_rest(acceleration, magnetic, WorldFrame.NWU)
         if orientation is not None:
             self._filter.orientation = orientation
         return orientation is not None

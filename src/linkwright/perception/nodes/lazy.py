@@ -29,7 +29,7 @@ class LazySubscriptions:
         self._node = node
         self._publishers = publishers
         self._subscribe = subscribe
-        self._open: Sequence[Subscription[Any]] = ()
+        self._subscriptions: Sequence[Subscription[Any]] = ()
         self._graph_condition = node.create_guard_condition(self._update_subscriptions)
         graph.watch(self._graph_condition.trigger)
         self._update_subscriptions()
@@ -37,7 +37,7 @@ class LazySubscriptions:
     @property
     def are_open(self) -> bool:
         """Whether the subscriptions exist at the moment."""
-        return bool(self._open)
+        return bool(self._subscriptions)
 
     def close(self) -> None:
         """Stop watching the graph.
@@ -48,9 +48,9 @@ class LazySubscriptions:
 
     def _update_subscriptions(self) -> None:
         is_needed = any(publisher.get_subscription_count() for publisher in self._publishers)
-        if is_needed and not self._open:
-            self._open = self._subscribe()
-        elif not is_needed and self._open:
-            for subscription in self._open:
+        if is_needed and not self._subscriptions:
+            self._subscriptions = self._subscribe()
+        elif not is_needed and self._subscriptions:
+            for subscription in self._subscriptions:
                 self._node.destroy_subscription(subscription)
-            self._open = ()
+            self._subscriptions = ()

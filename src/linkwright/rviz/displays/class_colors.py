@@ -10,7 +10,7 @@ from typing import TypeAlias
 import yaml
 
 from linkwright.diagnostics import foreign, phrase
-from linkwright.images.colour_words import find_rgb
+from linkwright.images.color_words import find_rgb
 
 Color: TypeAlias = tuple[int, int, int]
 

@@ -25,7 +25,7 @@ from linkwright.graph.qos.profile import QoSPolicyKind
 from linkwright.messages import get_message
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
 from linkwright.nodes.standstill import VELOCITIES, send_stop
-from linkwright.perception.nodes.compressed import compressed
+from linkwright.perception.nodes.compressed import compress_image
 from linkwright.simulation.nodes.conversions import DEFAULT_ROS_TYPES, conversion
 from linkwright.simulation.plugins.bridged import hidden_gz_topic
 
@@ -248,7 +248,7 @@ class ImageBridge(_Bridge):
 
         def forward(image: Any) -> None:
             try:
-                message = compressed(image)
+                message = compress_image(image)
             except ModuleNotFoundError as error:
                 text = phrase(
                     "images are not compressed, because {name} is missing; {hint}",

@@ -67,33 +67,33 @@ class ActionReader:
             all_kinds = ", ".join(self.KINDS)
             message = (
                 phrase(
-                    "{what} has two actions, '{first}' and '{second}'",
-                    what=self._keys.what,
+                    "{subject} has two actions, '{first}' and '{second}'",
+                    subject=self._keys.subject,
                     first=kinds[0],
                     second=kinds[1],
                 )
                 if kinds
-                else phrase("{what} has no action", what=self._keys.what)
+                else phrase("{subject} has no action", subject=self._keys.subject)
             )
             raise self._keys.error(message, None, phrase("add one of {known}", known=all_kinds))
         readers: dict[str, Callable[[], Action]] = {
-            "drive": self._drive,
-            "stop": self._stop,
-            "scale_speed": self._scale_speed,
+            "drive": self._read_drive,
+            "stop": self._read_stop,
+            "scale_speed": self._read_scale_speed,
             "set_speed": lambda: SetSpeed(self._read_amount(self._keys, "set_speed")),
-            "go_to": self._go_to,
-            "gripper": self._gripper,
-            "action": self._action,
-            "service": self._service,
-            "publish": self._publish,
-            "launch": self._launch,
+            "go_to": self._read_go_to,
+            "gripper": self._read_gripper,
+            "action": self._read_action,
+            "service": self._read_service,
+            "publish": self._read_publish,
+            "launch": self._read_launch,
         }
         return readers[kinds[0]]()
 
     def _nested_keys(self, key: str, allowed: tuple[str, ...]) -> Keys:
         return Keys(self._document, self._keys.node(key), phrase("'{key}'", key=key), allowed)
 
-    def _drive(self) -> Action:
+    def _read_drive(self) -> Action:
         keys = self._nested_keys("drive", ("x", "y", "turn", "duration", "distance", "angle"))
         limits = [name for name in ("duration", "distance", "angle") if keys.node(name) is not None]
         x, y, turn = (keys.number(name) for name in ("x", "y", "turn"))
@@ -111,15 +111,15 @@ class ActionReader:
         amounts = {name: self._read_amount(keys, name) for name in limits}
         return Drive(x, y, turn, **amounts)
 
-    def _stop(self) -> Action:
+    def _read_stop(self) -> Action:
         if isinstance(self._keys.node("stop"), yaml.MappingNode):
             keys = self._nested_keys("stop", ("publish",))
-            return Stop((self._publication(keys.node("publish")),))
+            return Stop((self._read_publication(keys.node("publish")),))
         if not self._keys.flag("stop"):
             raise self._keys.error(phrase("'stop' must be true"), self._keys.node("stop"))
         return Stop()
 
-    def _scale_speed(self) -> Action:
+    def _read_scale_speed(self) -> Action:
         factor = self._keys.number("scale_speed")
         if not factor > 0.0:
             raise self._keys.error(
@@ -127,14 +127,14 @@ class ActionReader:
             )
         return ScaleSpeed(factor)
 
-    def _go_to(self) -> Action:
+    def _read_go_to(self) -> Action:
         node = self._keys.node("go_to")
         if isinstance(node, yaml.ScalarNode):
             keys, key, action = self._keys, "go_to", ""
         else:
             keys, key = self._nested_keys("go_to", ("place", "action")), "place"
             action = keys.text("action")
-        text = keys.text(key, needed=True)
+        text = keys.text(key, is_required=True)
         slot = self._find_slot(text, keys, key)
         if slot is None and text not in self._places:
             message = phrase("there is no place '{name}'", name=text)
@@ -143,33 +143,35 @@ class ActionReader:
             raise keys.error(phrase("'{key}' must be a place", key=key), keys.node(key))
         return GoTo(slot or text, action or "navigate_to_pose")
 
-    def _gripper(self) -> Action:
+    def _read_gripper(self) -> Action:
         keys = self._nested_keys("gripper", ("action", "position", "max_effort"))
-        goal = {"command": {"position": keys.number("position", needed=True), "max_effort": keys.number("max_effort")}}
-        return SendGoal(keys.text("action", needed=True), _GRIPPER_TYPE, goal)
+        goal = {
+            "command": {"position": keys.number("position", is_required=True), "max_effort": keys.number("max_effort")}
+        }
+        return SendGoal(keys.text("action", is_required=True), _GRIPPER_TYPE, goal)
 
-    def _action(self) -> Action:
+    def _read_action(self) -> Action:
         keys = self._nested_keys("action", ("name", "type", "goal"))
-        name, type_name, goal = self._call(keys, "goal", lambda name: get_action(name).Goal)
+        name, type_name, goal = self._read_typed_message(keys, "goal", lambda name: get_action(name).Goal)
         return SendGoal(name, type_name, goal)
 
-    def _service(self) -> Action:
+    def _read_service(self) -> Action:
         keys = self._nested_keys("service", ("name", "type", "request"))
-        name, type_name, request = self._call(keys, "request", lambda name: get_service(name).Request)
+        name, type_name, request = self._read_typed_message(keys, "request", lambda name: get_service(name).Request)
         return CallService(name, type_name, request)
 
-    def _publish(self) -> Action:
-        return self._publication(self._keys.node("publish"))
+    def _read_publish(self) -> Action:
+        return self._read_publication(self._keys.node("publish"))
 
-    def _publication(self, node: yaml.Node | None) -> Publish:
+    def _read_publication(self, node: yaml.Node | None) -> Publish:
         keys = Keys(self._document, node, phrase("'{key}'", key="publish"), ("topic", "type", "message"))
-        name, type_name, message = self._call(keys, "message", get_message)
+        name, type_name, message = self._read_typed_message(keys, "message", get_message)
         return Publish(name, type_name, message)
 
-    def _launch(self) -> Action:
+    def _read_launch(self) -> Action:
         keys = self._nested_keys("launch", ("package", "file", "arguments"))
-        package, file = keys.text("package", needed=True), keys.text("file", needed=True)
-        arguments = self._fields(keys, "arguments")
+        package, file = keys.text("package", is_required=True), keys.text("file", is_required=True)
+        arguments = self._read_fields(keys, "arguments")
         for name, value in arguments.items():
             if not str(name).isidentifier() or isinstance(value, dict | list):
                 raise keys.error(phrase("'arguments' must map names to strings or numbers"), keys.node("arguments"))
@@ -177,17 +179,19 @@ class ActionReader:
             raise keys.error(phrase("'launch' must name a package and a file"))
         return Launch(package, file, arguments)
 
-    def _call(self, keys: Keys, fields_key: str, find: Callable[[str], Any]) -> tuple[str, str, dict[str, Any]]:
+    def _read_typed_message(
+        self, keys: Keys, fields_key: str, get_message_class: Callable[[str], Any]
+    ) -> tuple[str, str, dict[str, Any]]:
         """Return the name, type and fields of a message to send.
 
         The fields are checked with an example value in each slot.
         """
-        name = keys.text("topic" if fields_key == "message" else "name", needed=True)
-        type_name = keys.text("type", needed=True)
-        values = self._fields(keys, fields_key)
+        name = keys.text("topic" if fields_key == "message" else "name", is_required=True)
+        type_name = keys.text("type", is_required=True)
+        values = self._read_fields(keys, fields_key)
         checked_key = "type"
         try:
-            message = find(type_name)()
+            message = get_message_class(type_name)()
             checked_key = fields_key
             set_fields(message, fill_template(values, self._samples), expand_header_auto=True, expand_time_now=True)
         except LinkwrightError as error:
@@ -199,8 +203,8 @@ class ActionReader:
             ) from None
         return name, type_name, values
 
-    def _fields(self, keys: Keys, key: str) -> dict[str, Any]:
-        values = keys.plain(key)
+    def _read_fields(self, keys: Keys, key: str) -> dict[str, Any]:
+        values = keys.data(key)
         if not isinstance(values, dict):
             raise keys.error(phrase("'{key}' must be a mapping of keys to values", key=key), keys.node(key))
         for text in _collect_texts(values):
@@ -230,7 +234,9 @@ class ActionReader:
         if match is None:
             return None
         if match[1] not in self._samples:
-            message = phrase("'{slot}' does not occur in every phrase of {what}", slot=text, what=self._keys.what)
+            message = phrase(
+                "'{slot}' does not occur in every phrase of {subject}", slot=text, subject=self._keys.subject
+            )
             raise keys.error(message, keys.node(key))
         return Slot(match[1])
 

@@ -21,7 +21,7 @@ from linkwright.files.yaml_documents import YamlDocument, read_source
 from linkwright.speech.commands.action_reading import ActionReader
 from linkwright.speech.commands.actions import MOTIONS
 from linkwright.speech.commands.command_set import ANY, ByLanguage, Command, CommandSet, Destination
-from linkwright.speech.commands.phrases import Template, TemplateError, templates
+from linkwright.speech.commands.phrases import Template, TemplateError, parse_templates
 from linkwright.speech.commands.quantities import GRAMMAR_VALUES, parse_quantity
 from linkwright.speech.commands.reading import Keys
 from linkwright.speech.commands.words import Words, words_of
@@ -69,32 +69,34 @@ class _Reader:
         if not commands:
             message = phrase("there is no command in 'commands': list the commands for the robot there")
             raise top.error(message, top.node("commands"))
-        places = {name: self._place(name, node) for name, node in self._entries(top, "places")}
-        for name, node in self._entries(top, "objects"):
-            self._name("object", name, node)
-        for slot, node in self._entries(top, "said"):
+        places = {name: self._read_place(name, node) for name, node in self._read_entries(top, "places")}
+        for name, node in self._read_entries(top, "objects"):
+            self._read_names("object", name, node)
+        for slot, node in self._read_entries(top, "said"):
             self._add_slot_values(slot, node, top)
         answers = {name: self._read_phrases(top.node(name), ()) for name in ("yes", "no")}
-        command_list = tuple(self._command(intent, node, places) for intent, node in commands)
+        command_list = tuple(self._read_command(intent, node, places) for intent, node in commands)
         command_set = CommandSet(command_list, self._names, self._slot_values, places, answers)
-        self._count(command_set)
+        self._check_phrase_counts(command_set)
         return command_set
 
-    def _entries(self, top: Keys, key: str) -> list[tuple[str, yaml.Node]]:
+    def _read_entries(self, top: Keys, key: str) -> list[tuple[str, yaml.Node]]:
         return top.mapping(key) or []
 
-    def _place(self, name: str, node: yaml.Node) -> Destination:
+    def _read_place(self, name: str, node: yaml.Node) -> Destination:
         keys = Keys(self._document, node, phrase("the place '{name}'", name=name), _PLACE_KEYS)
-        self._name("place", name, keys.node("names"))
+        self._read_names("place", name, keys.node("names"))
         frame = keys.text("frame") or "map"
-        return Destination(keys.number("x", needed=True), keys.number("y", needed=True), keys.number("yaw"), frame)
+        return Destination(
+            keys.number("x", is_required=True), keys.number("y", is_required=True), keys.number("yaw"), frame
+        )
 
-    def _name(self, slot: str, name: str, node: yaml.Node | None) -> None:
+    def _read_names(self, slot: str, name: str, node: yaml.Node | None) -> None:
         """Read the spoken names of a place or an object.
 
         If there are none, its key is the name.
         """
-        texts = self._texts(node) if node is not None else {ANY: [(name, None)]}
+        texts = self._read_texts(node) if node is not None else {ANY: [(name, None)]}
         spoken_names = self._slot_values.setdefault(slot, {})
         for language, names in texts.items():
             spoken_names[language] = (*spoken_names.get(language, ()), *(text for text, _ in names))
@@ -110,7 +112,7 @@ class _Reader:
             raise top.error(
                 phrase("there is no quantity slot '{slot}'", slot=slot), node, did_you_mean(slot, list(GRAMMAR_VALUES))
             )
-        for language, entries in self._texts(node).items():
+        for language, entries in self._read_texts(node).items():
             for text, text_node in entries:
                 if parse_quantity(slot, words_of(text)) is None:
                     raise self._document.error(
@@ -122,11 +124,11 @@ class _Reader:
                 *(text for text, _ in entries),
             )
 
-    def _command(self, intent: str, node: yaml.Node, places: Mapping[str, Destination]) -> Command:
+    def _read_command(self, intent: str, node: yaml.Node, places: Mapping[str, Destination]) -> Command:
         title = phrase("the command '{intent}'", intent=intent)
         keys = Keys(self._document, node, title, ("phrases", "confirm", "response", "moves", *ActionReader.KINDS))
         if keys.node("phrases") is None:
-            raise keys.error(phrase("{what} has no 'phrases': it cannot be spoken", what=title))
+            raise keys.error(phrase("{subject} has no 'phrases': it cannot be spoken", subject=title))
         phrases = self._read_phrases(keys.node("phrases"), tuple(self._names), intent)
         slot_sets = [set(template.slots) for phrase in phrases.values() for template in phrase]
         slots = set.intersection(*slot_sets) if slot_sets else set()
@@ -134,25 +136,27 @@ class _Reader:
         action = ActionReader(self._document, keys, places, samples).read()
         if keys.node("stop") is not None and any(slot_sets):
             raise keys.error(phrase("a phrase of 'stop' must not have slots"), keys.node("phrases"))
-        moves = isinstance(action, MOTIONS) if keys.node("moves") is None else keys.flag("moves")
-        response = self._first_texts(keys.node("response"))
-        return Command(intent, phrases, action, self._read_question(keys), response, moves)
+        is_motion = isinstance(action, MOTIONS) if keys.node("moves") is None else keys.flag("moves")
+        response = self._read_first_texts(keys.node("response"))
+        return Command(intent, phrases, action, self._read_question(keys), response, is_motion)
 
     def _read_question(self, keys: Keys) -> ByLanguage:
         node = keys.node("confirm")
         if isinstance(node, yaml.ScalarNode) and node.tag == "tag:yaml.org,2002:bool":
             question = phrase("are you sure?")
             return {language: localized(question, language) for language in LANGUAGES} if keys.flag("confirm") else {}
-        return self._first_texts(node)
+        return self._read_first_texts(node)
 
-    def _first_texts(self, node: yaml.Node | None) -> dict[str, str]:
-        return {} if node is None else {name: entries[0][0] for name, entries in self._texts(node).items() if entries}
+    def _read_first_texts(self, node: yaml.Node | None) -> dict[str, str]:
+        return (
+            {} if node is None else {name: entries[0][0] for name, entries in self._read_texts(node).items() if entries}
+        )
 
     def _read_phrases(
         self, node: yaml.Node | None, slots: Sequence[str], intent: str = ""
     ) -> dict[str, tuple[Template, ...]]:
         templates_by_language: dict[str, tuple[Template, ...]] = {}
-        for language, texts in (self._texts(node) if node is not None else {}).items():
+        for language, texts in (self._read_texts(node) if node is not None else {}).items():
             for text, text_node in texts:
                 templates_by_language[language] = (
                     *templates_by_language.get(language, ()),
@@ -162,7 +166,7 @@ class _Reader:
 
     def _parse_templates(self, text: str, node: yaml.Node | None, slots: Sequence[str], intent: str) -> list[Template]:
         try:
-            parsed = templates(text, slots)
+            parsed = parse_templates(text, slots)
         except TemplateError as error:
             raise self._error(
                 "VOICE303", phrase("the phrase '{text}' is invalid: {why}", text=text, why=error.args[0]), node
@@ -174,7 +178,7 @@ class _Reader:
                 raise self._error("VOICE304", message, node)
         return parsed
 
-    def _texts(self, node: yaml.Node) -> dict[str, list[tuple[str, yaml.Node | None]]]:
+    def _read_texts(self, node: yaml.Node) -> dict[str, list[tuple[str, yaml.Node | None]]]:
         """Return the texts of a node by language, each with its node.
 
         The node is a text, a list of texts, or a mapping of languages to these.
@@ -185,7 +189,7 @@ class _Reader:
         title = "texts"
         return {ANY: Keys.of(self._document, title, node).texts(title)}
 
-    def _count(self, command_set: CommandSet) -> None:
+    def _check_phrase_counts(self, command_set: CommandSet) -> None:
         languages = {*LANGUAGES, *command_set.languages}
         for language in sorted(languages):
             count = command_set.phrase_count(language)

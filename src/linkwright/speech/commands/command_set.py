@@ -43,7 +43,7 @@ class Command:
         action: the action that it starts.
         question: by language, the question to ask before the command is executed; empty to execute it immediately.
         response: by language, the answer; empty for the default answer.
-        moves: whether it replaces a running motion.
+        is_motion: whether it replaces a running motion.
     """
 
     intent: str
@@ -51,7 +51,7 @@ class Command:
     action: Action
     question: ByLanguage
     response: ByLanguage
-    moves: bool
+    is_motion: bool
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,7 +87,7 @@ class CommandSet:
     places: Mapping[str, Destination]
     answers: Mapping[str, Mapping[str, tuple[Template, ...]]]
 
-    def understand(self, text: str) -> Match | None:
+    def match_command(self, text: str) -> Match | None:
         """Return the command that a text expresses in any language, or None if there is none.
 
         If several commands fit, the result is the one with the most literal words and, among these, the first in the
@@ -109,7 +109,7 @@ class CommandSet:
         return tuple(dict.fromkeys(name for command in self.commands for name in command.phrases))
 
     @property
-    def stops(self) -> tuple[Command, ...]:
+    def stop_commands(self) -> tuple[Command, ...]:
         """The commands that stop the robot."""
         return tuple(command for command in self.commands if isinstance(command.action, Stop))
 
@@ -117,12 +117,14 @@ class CommandSet:
         """Return whether a text contains a phrase that stops the robot."""
         words = words_of(text)
         return any(
-            has_words(words, template.pieces[0]) for stop in self.stops for template in _all_templates(stop.phrases)
+            has_words(words, template.pieces[0])
+            for stop in self.stop_commands
+            for template in _all_templates(stop.phrases)
         )
 
     def is_other_command(self, text: str) -> bool:
         """Return whether a text is exactly a command that does not stop the robot."""
-        match = self.understand(text)
+        match = self.match_command(text)
         return match is not None and not isinstance(match.command.action, Stop)
 
     def answer(self, text: str) -> bool | None:
@@ -136,7 +138,7 @@ class CommandSet:
     def phrases(self, language: str) -> tuple[str, ...]:
         """Return all phrases in a language, for `EngineOptions`."""
         values = self._slot_values(language)
-        return tuple(dict.fromkeys(text for template in self._templates(language) for text in template.spoken(values)))
+        return tuple(dict.fromkeys(text for template in self._templates(language) for text in template.expand(values)))
 
     def phrase_count(self, language: str) -> int:
         """Return the number of phrases in a language without generating them."""

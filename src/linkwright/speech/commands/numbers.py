@@ -7,7 +7,7 @@ from linkwright.speech.commands.words import Words
 _ENGLISH_NUMBERS = (
     "zero one two three four five six seven eight nine ten eleven twelve thirteen fourteen fifteen sixteen seventeen"
 )
-_UP_TO_NINETEEN = {word: number for number, word in enumerate((_ENGLISH_NUMBERS + " eighteen nineteen").split())} | {
+_UP_TO_NINETEEN = {word: value for value, word in enumerate((_ENGLISH_NUMBERS + " eighteen nineteen").split())} | {
     "oh": 0,
     "nought": 0,
 }
@@ -33,11 +33,11 @@ _FRACTIONS: dict[Words, float] = {
 AND_FRACTION: dict[Words, float] = {("and", "a", "half"): 0.5, ("and", "a", "quarter"): 0.25, ("半",): 0.5}
 """The fractions that can follow a number, or a number and its unit."""
 
-_DIGITS = {digit: number for number, digit in enumerate("零一二三四五六七八九")} | {"〇": 0, "两": 2}
+_DIGITS = {digit: value for value, digit in enumerate("零一二三四五六七八九")} | {"〇": 0, "两": 2}
 _POWERS = {"十": 10, "百": 100, "千": 1000}
 
 
-def number(words: Words) -> float | None:
+def parse_number(words: Words) -> float | None:
     """Return the non-negative number that words represent, or None if they are not a number."""
     if not words:
         return None
@@ -50,7 +50,7 @@ def number(words: Words) -> float | None:
 
 def has_number(words: Words) -> bool:
     """Return whether any of the words is a number, except the articles "a" and "an"."""
-    return any(word not in _ARTICLES and number((word,)) is not None for word in words)
+    return any(word not in _ARTICLES and parse_number((word,)) is not None for word in words)
 
 
 def _parse_english(words: Words) -> float | None:

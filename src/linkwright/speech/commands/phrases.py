@@ -55,7 +55,7 @@ class Template:
         """Return the values of the slots, or None if the words do not match."""
         return self._match_from(words, 0, names)
 
-    def spoken(self, values: Mapping[str, Sequence[str]]) -> Iterator[str]:
+    def expand(self, values: Mapping[str, Sequence[str]]) -> Iterator[str]:
         """Yield the phrases with all combinations of slot values.
 
         Args:
@@ -85,7 +85,7 @@ class Template:
         return None
 
 
-def templates(text: str, slots: Sequence[str]) -> list[Template]:
+def parse_templates(text: str, slots: Sequence[str]) -> list[Template]:
     """Expand the brackets of a phrase into templates.
 
     Args:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from math import pi, tau
 
-from linkwright.speech.commands.numbers import AND_FRACTION, number
+from linkwright.speech.commands.numbers import AND_FRACTION, parse_number
 from linkwright.speech.commands.words import Words, words_of
 
 
@@ -88,7 +88,7 @@ def parse_quantity(slot: str, words: Words) -> float | None:
     The unit is m, rad, m/s or s, depending on the slot. The slot ``number`` has no unit.
     """
     if slot == "number":
-        return number(words)
+        return parse_number(words)
     if slot == "speed" and words[:2] == _PER_SECOND:
         return _parse_with_unit(UNITS["distance"], words[2:])
     return _parse_with_unit(UNITS[slot], words)
@@ -101,7 +101,7 @@ def _parse_with_unit(units: Mapping[Words, float], words: Words) -> float | None
             continue
         for unit, factor in units.items():
             if len(measure_words) > len(unit) and measure_words[-len(unit) :] == unit:
-                value = number(measure_words[: -len(unit)])
+                value = parse_number(measure_words[: -len(unit)])
                 if value is not None and (not fraction or value == int(value)):
                     return (value + fraction) * factor
     return None

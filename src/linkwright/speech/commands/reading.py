@@ -20,7 +20,7 @@ class Keys:
     Args:
         document: the document that contains the mapping.
         node: the mapping.
-        what: the description of the mapping, for messages.
+        subject: the description of the mapping, for messages.
         allowed_keys: the allowed keys; None to allow any key.
 
     Raises:
@@ -28,12 +28,12 @@ class Keys:
     """
 
     def __init__(
-        self, document: YamlDocument, node: yaml.Node | None, what: Phrase, allowed_keys: Iterable[str] | None
+        self, document: YamlDocument, node: yaml.Node | None, subject: Phrase, allowed_keys: Iterable[str] | None
     ) -> None:
-        self._document, self._node, self.what = document, node, what
+        self._document, self._node, self.subject = document, node, subject
         self._values: dict[str, yaml.Node] = {}
         if not isinstance(node, yaml.MappingNode):
-            raise self.error(phrase("{what} must be a mapping of keys to values", what=what))
+            raise self.error(phrase("{subject} must be a mapping of keys to values", subject=subject))
         allowed_names = None if allowed_keys is None else tuple(allowed_keys)
         for key, value in node.value:
             key_name = str(key.value) if isinstance(key, yaml.ScalarNode) else ""
@@ -41,7 +41,7 @@ class Keys:
                 hint = did_you_mean(key_name, allowed_names) or phrase(
                     "use one of {names}", names=", ".join(allowed_names)
                 )
-                raise self.error(phrase("{what} has no '{key}'", what=what, key=key_name), key, hint)
+                raise self.error(phrase("{subject} has no '{key}'", subject=subject, key=key_name), key, hint)
             if key_name in self._values:
                 raise self.error(phrase("'{key}' occurs twice", key=key_name), key)
             self._values[key_name] = value
@@ -74,19 +74,19 @@ class Keys:
         nested = Keys(self._document, node, phrase("'{key}'", key=key), None)
         return [(name, nested._values[name]) for name in nested.names()]
 
-    def text(self, key: str, *, needed: bool = False) -> str:
+    def text(self, key: str, *, is_required: bool = False) -> str:
         """Return the text under a key, or an empty string if the key is missing and not required."""
         node = self.node(key)
-        if node is None and not needed:
+        if node is None and not is_required:
             return ""
         if not isinstance(node, yaml.ScalarNode) or not node.value:
             raise self._invalid_value(key, node, phrase("a string"))
         return str(node.value)
 
-    def number(self, key: str, *, needed: bool = False) -> float:
+    def number(self, key: str, *, is_required: bool = False) -> float:
         """Return the number under a key, or 0 if the key is missing and not required."""
         node = self.node(key)
-        if node is None and not needed:
+        if node is None and not is_required:
             return 0.0
         try:
             value = float(node.value) if isinstance(node, yaml.ScalarNode) else None
@@ -114,7 +114,7 @@ class Keys:
             texts.append((str(item.value), item))
         return texts
 
-    def plain(self, key: str) -> Any:
+    def data(self, key: str) -> Any:
         """Return the value under a key as plain Python data, or an empty mapping if it is missing."""
         node = self.node(key)
         if node is None:
@@ -126,5 +126,7 @@ class Keys:
 
     def _invalid_value(self, key: str, node: yaml.Node | None, expected: Phrase) -> LinkwrightError:
         if node is None:
-            return self.error(phrase("{what} must have '{key}', {wanted}", what=self.what, key=key, wanted=expected))
+            return self.error(
+                phrase("{subject} must have '{key}', {wanted}", subject=self.subject, key=key, wanted=expected)
+            )
         return self.error(phrase("'{key}' must be {wanted}", key=key, wanted=expected), node)

@@ -13,7 +13,7 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, displa
 from linkwright.speech.commands.numbers import has_number
 from linkwright.speech.commands.words import words_of
 from linkwright.speech.engine import EngineOptions, Heard, SpeechEngine
-from linkwright.speech.enrolled.recognition import ACCEPTED, Guess, Recogniser
+from linkwright.speech.enrolled.recognition import ACCEPTED, Guess, Recognizer
 from linkwright.speech.enrolled.words import Words, words_path
 from linkwright.speech.sound.activity import VoiceActivity, unsteady_noise
 from linkwright.speech.sound.samples import RATE, Samples
@@ -50,7 +50,7 @@ class EnrolledEngine(SpeechEngine):
         self._phrases = {_normalize(text): text for text in options.phrases}
         self._file_stamp = _read_stamp(self._path)
         self._problem: Diagnostic | None = None
-        self._recogniser: Recogniser | None = None
+        self._recognizer: Recognizer | None = None
         if self._file_stamp is not None:
             self._use_words(Words.read(self._path))
         else:
@@ -101,7 +101,7 @@ class EnrolledEngine(SpeechEngine):
         self._buffer = frames[-max_frames:]
 
     def _max_frames(self) -> int:
-        longest = self._recogniser.longest if self._recogniser is not None else 100
+        longest = self._recognizer.longest if self._recognizer is not None else 100
         return int(_MAX_LENGTH_FACTOR * longest) + 2 * _LEAD_IN
 
     def _partial_result(self) -> list[Heard]:
@@ -125,12 +125,12 @@ class EnrolledEngine(SpeechEngine):
         return [result]
 
     def _guess(self) -> Guess | None:
-        if self._recogniser is None:
+        if self._recognizer is None:
             return None
         noise = unsteady_noise(np.concatenate((self._noise_frames, self._buffer)), self._activity.floor)
         if noise is None and len(self._buffer) >= self._max_frames():
             return None
-        return self._recogniser.guess(self._buffer, self._activity.floor if noise is None else noise)
+        return self._recognizer.guess(self._buffer, self._activity.floor if noise is None else noise)
 
     def _name(self, guess: Guess | None) -> str | None:
         """Return the phrase of a guess, or None if the guess is too uncertain or not a phrase."""
@@ -156,7 +156,7 @@ class EnrolledEngine(SpeechEngine):
             return
         self._file_stamp = stamp
         if stamp is None:
-            self._recogniser = None
+            self._recognizer = None
             self._report_nothing_enrolled()
             return
         try:
@@ -166,9 +166,9 @@ class EnrolledEngine(SpeechEngine):
 
     def _use_words(self, words: Words) -> None:
         self._problem = None
-        self._recogniser = Recogniser(words) if words.names else None
-        if self._recogniser is not None:
-            self._recogniser.prepare()
+        self._recognizer = Recognizer(words) if words.names else None
+        if self._recognizer is not None:
+            self._recognizer.prepare()
         if not self._phrases.keys() & {_normalize(name) for name in words.names}:
             self._report_nothing_enrolled()
 

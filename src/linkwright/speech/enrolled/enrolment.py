@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linkwright.diagnostics import Diagnostic, Phrase, Severity, phrase
-from linkwright.speech.enrolled.recognition import Recogniser
+from linkwright.speech.enrolled.recognition import Recognizer
 from linkwright.speech.enrolled.words import MAX_WORDS, Take, Words, name_problem, round_powers
 from linkwright.speech.sound.activity import speech_span
 from linkwright.speech.sound.samples import Samples
@@ -77,7 +77,7 @@ def _compare_take(words: Words, name: str, take: Take) -> Diagnostic | None:
     """
     if not words.takes(name):
         return None
-    costs, reversed_cost = Recogniser(words, rooms=()).compare(take)
+    costs, reversed_cost = Recognizer(words, rooms=()).compare(take)
     own_cost = costs.pop(name)
     if own_cost > _MAX_OWN_DISTANCE * reversed_cost:
         return _rejection(

@@ -49,7 +49,7 @@ class Guess:
     last: int
 
 
-class Recogniser:
+class Recognizer:
     """A recogniser of the enrolled words of a user.
 
     Args:

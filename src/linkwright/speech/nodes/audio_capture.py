@@ -108,11 +108,11 @@ class AudioCapture(SingleNode):
 
         condition = self._node.create_guard_condition(publish)
 
-        def heard(samples: Samples) -> None:
+        def on_samples(samples: Samples) -> None:
             pending.append(samples)
             condition.trigger()
 
-        self._microphone = Microphone(device, chunk, heard)
+        self._microphone = Microphone(device, chunk, on_samples)
 
     def _start_playing(self, sound: Samples, chunk: int) -> None:
         self._sound, self._chunk, self._position = sound, chunk, -1

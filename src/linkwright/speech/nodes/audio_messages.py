@@ -84,19 +84,19 @@ class AudioReader:
     """A converter of a stream of AudioData to samples for engines: mono, 16 bits, 16 kHz.
 
     Args:
-        form: the format of the messages; None for 16 kHz, mono, S16LE.
+        audio_format: the format of the messages; None for 16 kHz, mono, S16LE.
     """
 
-    def __init__(self, form: AudioFormat | None = None) -> None:
-        self._form = form or AudioFormat()
-        self._is_engine_format = self._form == AudioFormat()
+    def __init__(self, audio_format: AudioFormat | None = None) -> None:
+        self._audio_format = audio_format or AudioFormat()
+        self._is_engine_format = self._audio_format == AudioFormat()
         self._incomplete = b""
-        self._resampler = None if self._form.rate == RATE else Resampler(self._form.rate)
+        self._resampler = None if self._audio_format.rate == RATE else Resampler(self._audio_format.rate)
 
     @property
-    def form(self) -> AudioFormat:
+    def audio_format(self) -> AudioFormat:
         """The format of the messages."""
-        return self._form
+        return self._audio_format
 
     def read(self, data: bytes | bytearray | memoryview | NDArray[np.uint8] | Sequence[int]) -> Samples:
         """Return the samples of the next AudioData.
@@ -108,25 +108,25 @@ class AudioReader:
             used_bytes = len(available) // 2 * 2
             self._incomplete = available[used_bytes:]
             return np.frombuffer(available[:used_bytes], "<i2").astype(np.int16)
-        values = _values(available, self._form)
-        frames = len(values) // self._form.channels
-        used_bytes = frames * self._form.channels * _sample_bytes(self._form)
+        values = _values(available, self._audio_format)
+        frames = len(values) // self._audio_format.channels
+        used_bytes = frames * self._audio_format.channels * _sample_bytes(self._audio_format)
         self._incomplete = available[used_bytes:]
-        mono: NDArray[np.float64] = values[: frames * self._form.channels].reshape(frames, -1).mean(axis=1)
+        mono: NDArray[np.float64] = values[: frames * self._audio_format.channels].reshape(frames, -1).mean(axis=1)
         return to_samples(mono) if self._resampler is None else self._resampler.feed(mono)
 
 
-def _sample_bytes(form: AudioFormat) -> int:
-    return int(re.sub(r"\D", "", form.sample_format)) // 8
+def _sample_bytes(audio_format: AudioFormat) -> int:
+    return int(re.sub(r"\D", "", audio_format.sample_format)) // 8
 
 
-def _values(data: bytes, form: AudioFormat) -> NDArray[np.float64]:
+def _values(data: bytes, audio_format: AudioFormat) -> NDArray[np.float64]:
     """Return samples with the stream's channels and rate, full scale at 1.
 
     An incomplete last sample is dropped.
     """
-    size, kind = _sample_bytes(form), form.sample_format[0]
-    order = ">" if form.sample_format.endswith("BE") else "<"
+    size, kind = _sample_bytes(audio_format), audio_format.sample_format[0]
+    order = ">" if audio_format.sample_format.endswith("BE") else "<"
     data = data[: len(data) // size * size]
     if kind == "F":
         return np.frombuffer(data, f"{order}f{size}").astype(np.float64)
@@ -142,11 +142,15 @@ def _values(data: bytes, form: AudioFormat) -> NDArray[np.float64]:
     return raw / full_scale if kind == "S" else raw / full_scale - 1.0
 
 
-def audio_info(form: AudioFormat) -> Any:
+def audio_info(audio_format: AudioFormat) -> Any:
     """Return the AudioInfo of a format, with the bit rate in kbit/s, as in audio_capture."""
     info = get_message(AUDIO_INFO)()
-    info.channels, info.sample_rate, info.sample_format = form.channels, form.rate, form.sample_format
-    info.bitrate = form.channels * form.rate * 8 * _sample_bytes(form) // 1000
+    info.channels, info.sample_rate, info.sample_format = (
+        audio_format.channels,
+        audio_format.rate,
+        audio_format.sample_format,
+    )
+    info.bitrate = audio_format.channels * audio_format.rate * 8 * _sample_bytes(audio_format) // 1000
     info.coding_format = WAVE
     return info
 

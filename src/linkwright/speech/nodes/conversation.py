@@ -58,7 +58,9 @@ class Conversation:
         self._report_command, self._respond = report_command, respond
         self._pending: tuple[Match, str] | None = None
         clock = Clock(clock_type=ClockType.STEADY_TIME, timebase=node.get_clock().timebase)
-        self._question_timer = node.create_timer(confirmation_timeout, self._on_no_answer, clock=clock, autostart=False)
+        self._question_timer = node.create_timer(
+            confirmation_timeout, self._on_question_timeout, clock=clock, autostart=False
+        )
         for command in commands.commands:
             requests.prepare(command.action)
             for publication in command.action.publishes if isinstance(command.action, Stop) else ():
@@ -80,11 +82,11 @@ class Conversation:
             confirmed, spoken_text = self._pending
             self._drop_question()
             if answer:
-                self._carry_out(confirmed, spoken_text)
+                self._execute_and_respond(confirmed, spoken_text)
             else:
                 self.answer(phrase("I will not do it"))
             return True
-        match = self._commands.understand(text)
+        match = self._commands.match_command(text)
         if match is None:
             return False
         self._drop_question()
@@ -94,7 +96,7 @@ class Conversation:
             self._respond(str(fill_template(choose_text(match.command.question, self._language), match.values)))
             self._question_timer.reset()
         else:
-            self._carry_out(match, text)
+            self._execute_and_respond(match, text)
         return True
 
     def stop(self, text: str = "") -> None:
@@ -108,8 +110,8 @@ class Conversation:
         self._requests.cancel_all()
         self._notify_others()
         if text:
-            stop = self._commands.stops[0]
-            match = self._commands.understand(text)
+            stop = self._commands.stop_commands[0]
+            match = self._commands.match_command(text)
             if match is not None:
                 self._set_language(match.language)
             self._report_command(stop.intent)
@@ -143,7 +145,7 @@ class Conversation:
         if language != ANY:
             self._language = language
 
-    def _carry_out(self, match: Match, text: str) -> None:
+    def _execute_and_respond(self, match: Match, text: str) -> None:
         if isinstance(match.command.action, Stop):
             self.stop(text)
             return
@@ -160,12 +162,12 @@ class Conversation:
     def _execute(self, match: Match) -> Phrase | None:
         """Execute an action, and return the reason if it cannot be executed, or None."""
         action, values = match.command.action, match.values
-        if match.command.moves:
+        if match.command.is_motion:
             self._end_other_motion(match)
         if isinstance(action, Drive):
             self._driver.begin(action, values)
         elif isinstance(action, ScaleSpeed):
-            self._driver.scale(action.factor)
+            self._driver.scale_speed(action.factor)
         elif isinstance(action, SetSpeed):
             self._driver.set_speed(resolve_amount(action.speed, values) or 0.0)
         elif isinstance(action, Publish):
@@ -193,7 +195,7 @@ class Conversation:
             self._notify_others()
 
     def _notify_others(self) -> None:
-        for stop in self._commands.stops:
+        for stop in self._commands.stop_commands:
             for publication in stop.action.publishes if isinstance(stop.action, Stop) else ():
                 self._requests.publish(publication, {})
 
@@ -201,6 +203,6 @@ class Conversation:
         self._pending = None
         self._question_timer.cancel()
 
-    def _on_no_answer(self) -> None:
+    def _on_question_timeout(self) -> None:
         self._drop_question()
         self.answer(phrase("I received no answer, so I will not do it"))

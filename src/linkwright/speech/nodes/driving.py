@@ -93,14 +93,14 @@ class Driver:
         self._topic.update_type(may_change=False)
         self._topic.stop()
 
-    def scale(self, factor: float) -> float:
+    def scale_speed(self, factor: float) -> float:
         """Multiply the speeds by a factor, within bounds, and return the total factor."""
         self._scale = min(max(self._scale * factor, _SCALE_RANGE[0]), _SCALE_RANGE[1])
         return self._scale
 
     def set_speed(self, speed: float) -> float:
         """Set the speed in m/s, within bounds, and return the speed that now applies."""
-        self.scale(speed / (self._initial_speed * self._scale))
+        self.scale_speed(speed / (self._initial_speed * self._scale))
         return self._initial_speed * self._scale
 
     def _on_odometry(self, message: Any) -> None:

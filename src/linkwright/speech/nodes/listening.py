@@ -65,13 +65,13 @@ class Listener:
         A block is dropped if the engine lags far behind.
         """
         if self._blocks.qsize() >= _MAX_PENDING:
-            self.note_gap(samples.size / RATE)
+            self.record_gap(samples.size / RATE)
             return False
         self._sample_count += samples.size
         self._blocks.put(samples)
         return True
 
-    def note_gap(self, seconds: float) -> None:
+    def record_gap(self, seconds: float) -> None:
         """Record that seconds of sound are missing before the next block."""
         self._gaps.append((self._sample_count / RATE, seconds))
 
@@ -94,14 +94,14 @@ class Listener:
 
     def _run(self) -> None:
         try:
-            self._serve()
+            self._process_blocks()
         except LinkwrightError as error:
             self._queue_result(error)
         except Exception as error:  # noqa: BLE001 - another package's engine may raise anything
             message = phrase("the speech engine failed: {problem}", problem=foreign(f"{type(error).__name__}: {error}"))
             self._queue_result(LinkwrightError(Diagnostic("VOICE307", message)))
 
-    def _serve(self) -> None:
+    def _process_blocks(self) -> None:
         engine = self._make_engine()
         problem = None
         try:

@@ -22,17 +22,17 @@ class _Press:
     """The words that were recognised during one press.
 
     Attributes:
-        is_settled: whether a command of this press was executed or answered.
+        has_command: whether a command of this press was executed or answered.
         has_gaps: whether some of its sound was lost.
         unknown: the last recognised speech that is not a command.
     """
 
-    is_settled: bool = False
+    has_command: bool = False
     has_gaps: bool = False
     unknown: Heard | None = None
 
 
-class Presses:
+class ButtonPresses:
     """The presses whose sound the engine still processes, even if the next press has begun.
 
     Args:
@@ -54,19 +54,19 @@ class Presses:
         self.proposes_enrolling = False
         self._presses.append(_Press())
 
-    def settle(self) -> None:
+    def record_command(self) -> None:
         """Record that a command of the oldest press was executed or answered."""
         self._missed_presses = 0
         self.proposes_enrolling = False
         if self._presses:
-            self._presses[0].is_settled = True
+            self._presses[0].has_command = True
 
-    def note_gap(self) -> None:
+    def record_gap(self) -> None:
         """Record that sound of the latest press was lost."""
         if self._presses:
             self._presses[-1].has_gaps = True
 
-    def note_unknown(self, result: Heard) -> None:
+    def record_unknown_speech(self, result: Heard) -> None:
         """Record speech of the oldest press that is not a command."""
         if self._presses:
             self._presses[0].unknown = result
@@ -76,7 +76,7 @@ class Presses:
         if not self._presses:
             return None
         press = self._presses.popleft()
-        if press.is_settled or press.unknown is None:
+        if press.has_command or press.unknown is None:
             return None
         if press.has_gaps:
             return PLEASE_REPEAT

@@ -33,7 +33,7 @@ _EXIT_TIMEOUT = 5.0
 """The time in s that a launch file has to end before it is killed."""
 
 
-class Goals:
+class ActionGoals:
     """A client of one action with at most one goal at a time.
 
     Args:
@@ -113,13 +113,13 @@ class Requests:
 
     Args:
         node: the node that sends requests.
-        on_goal_end: called when a goal has ended; see `Goals`.
+        on_goal_end: called when a goal has ended; see `ActionGoals`.
         respond: called with the field ``message`` of a service's response.
     """
 
     def __init__(self, node: Node, on_goal_end: Callable[[bool, str], None], respond: Callable[[str], None]) -> None:
         self._node, self._on_goal_end, self._respond = node, on_goal_end, respond
-        self._goals: dict[str, Goals] = {}
+        self._goals: dict[str, ActionGoals] = {}
         self._publishers: dict[str, Publisher[Any]] = {}
         self._launch_process: subprocess.Popen[bytes] | None = None
         self._end_thread: threading.Thread | None = None
@@ -136,9 +136,9 @@ class Requests:
         need.
         """
         if isinstance(action, GoTo):
-            self._goals.setdefault(action.action, Goals(self._node, NAVIGATE, action.action, self._on_goal_end))
+            self._goals.setdefault(action.action, ActionGoals(self._node, NAVIGATE, action.action, self._on_goal_end))
         elif isinstance(action, SendGoal) and action.action not in self._goals:
-            self._goals[action.action] = Goals(self._node, action.type_name, action.action, self._on_goal_end)
+            self._goals[action.action] = ActionGoals(self._node, action.type_name, action.action, self._on_goal_end)
         elif isinstance(action, Publish) and action.topic not in self._publishers:
             message_class = get_message(action.type_name)
             self._publishers[action.topic] = self._node.create_publisher(message_class, action.topic, _QUEUE_DEPTH)
@@ -180,7 +180,7 @@ class Requests:
 
     def launch(self, action: Launch, values: Values) -> None:
         """Start a launch file in a separate process, and end the previous one."""
-        self._end_launch()
+        self._interrupt_launch()
         launch_arguments = [
             f"{name}:={_format_argument(value)}" for name, value in fill_template(action.arguments, values).items()
         ]
@@ -195,7 +195,7 @@ class Requests:
         for name, goals in self._goals.items():
             if name != except_action:
                 goals.cancel()
-        self._end_launch()
+        self._interrupt_launch()
 
     def cancel_all(self) -> None:
         """End the launch file, and cancel all goals of the commands' actions.
@@ -204,7 +204,7 @@ class Requests:
         """
         for goals in self._goals.values():
             goals.cancel_all()
-        self._end_launch()
+        self._interrupt_launch()
 
     def close(self) -> None:
         """Cancel all goals, end the launch file, and wait for its end."""
@@ -216,7 +216,7 @@ class Requests:
     def _is_launched(self) -> bool:
         return self._launch_process is not None and self._launch_process.poll() is None
 
-    def _end_launch(self) -> None:
+    def _interrupt_launch(self) -> None:
         """Interrupt the launch file without waiting for its end."""
         process, self._launch_process = self._launch_process, None
         if process is None or process.poll() is not None:

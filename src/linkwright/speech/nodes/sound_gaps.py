@@ -53,16 +53,16 @@ class SoundGaps:
     """A detector of missing sound, for publishers that derive their stamps from a sample count."""
 
     def __init__(self) -> None:
-        self._next: int | None = None
+        self._next_stamp: int | None = None
         self._steady_blocks = 0
         self._small_jumps = 0  # sum of jumps that are too small to report individually
 
     def restart(self) -> None:
         """Start a new stream of a publisher that is assumed to stamp in the same way as before."""
-        self._next = None
+        self._next_stamp = None
         self._small_jumps = 0
 
-    def missing(self, stamp: int, samples: int) -> float:
+    def measure_gap(self, stamp: int, samples: int) -> float:
         """Return the seconds of sound that are missing before a block.
 
         Args:
@@ -70,8 +70,8 @@ class SoundGaps:
             samples: the number of samples, at 16 kHz.
         """
         length = samples * NANOSECONDS_PER_SECOND // RATE
-        jump = 0 if self._next is None else stamp - self._next
-        self._next = stamp + length
+        jump = 0 if self._next_stamp is None else stamp - self._next_stamp
+        self._next_stamp = stamp + length
         if jump <= _JITTER:
             # Stamps that are early after late ones only occur if a publisher stamps blocks with their arrival times.
             self._steady_blocks, self._small_jumps = (

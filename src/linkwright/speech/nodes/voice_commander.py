@@ -34,7 +34,7 @@ from linkwright.speech.nodes.audio_messages import (
 from linkwright.speech.nodes.conversation import Conversation
 from linkwright.speech.nodes.driving import Driver, Ending
 from linkwright.speech.nodes.listening import Listener
-from linkwright.speech.nodes.presses import PLEASE_REPEAT, Presses
+from linkwright.speech.nodes.presses import PLEASE_REPEAT, ButtonPresses
 from linkwright.speech.nodes.requests import Requests
 from linkwright.speech.nodes.sound_gaps import SoundGaps
 
@@ -109,7 +109,7 @@ class VoiceCommander(SingleNode):
         self._min_confidence: float = node.declare_parameter("confidence", 0.5).value
         if not 0.0 <= self._min_confidence <= 1.0:
             raise bad_value("confidence", self._min_confidence, node.get_name())
-        self._open: bool = node.declare_parameter("open_listening", False).value
+        self._create_interfaces: bool = node.declare_parameter("open_listening", False).value
         speed, turn_speed = self._positive("speed", 0.2), self._positive("turn_speed", 0.6)
         silence_timeout, confirmation_timeout = (
             self._positive("silence_timeout", 10.0),
@@ -141,13 +141,13 @@ class VoiceCommander(SingleNode):
             self._publish_text["response"],
         )
         self._commands = commands
-        self._listen_to_texts()
+        self._subscribe_to_texts()
         # Use the steady clock: a pause of simulated time must not delay the silence check.
         clock = Clock(clock_type=ClockType.STEADY_TIME, timebase=node.get_clock().timebase)
         self._silence_timer = node.create_timer(silence_timeout, self._on_silence, clock=clock, autostart=False)
         # Pages write enrolled words to the default file only. A node that always listens does not answer speech that
         # is not a command.
-        self._presses = Presses(can_enrol=engine == "enrolled" and not words and not self._open)
+        self._presses = ButtonPresses(can_enrol=engine == "enrolled" and not words and not self._create_interfaces)
         self._proposal_publisher: Publisher[Any] = node.create_publisher(_BOOL, "voice/propose_enrolling", _QUEUE_DEPTH)
         if engine:
             model_path = words if engine == "enrolled" and words else model
@@ -163,7 +163,7 @@ class VoiceCommander(SingleNode):
             raise bad_value(name, value, self._node.get_name())
         return positive(self._node, name, value)
 
-    def _listen_to_texts(self) -> None:
+    def _subscribe_to_texts(self) -> None:
         commander = Commander(self._on_commander_lost)
         callback = commander.tracking_callback(lambda message: self._execute(message.data, by_voice=False))
         commander.watch(self._node.create_subscription(_STRING, "voice/text_input", callback, _QUEUE_DEPTH))
@@ -173,7 +173,7 @@ class VoiceCommander(SingleNode):
     def _start_listening(self, make_engine: Any, clock: Clock) -> None:
         node = self._node
         self._listener = Listener(
-            node, make_engine, self._handle_result, self._end_press, self._log_problem, self._failed
+            node, make_engine, self._handle_result, self._end_press, self._log_problem, self._fail
         )
         self._reader = AudioReader()
         self._gaps = SoundGaps()
@@ -190,28 +190,28 @@ class VoiceCommander(SingleNode):
 
     def _on_info(self, info: Any) -> None:
         try:
-            form = AudioFormat.of(info)
+            audio_format = AudioFormat.of(info)
         except LinkwrightError as error:
             self._node.get_logger().error(error.diagnostics[0].message)
             return
-        if form != self._reader.form:
-            self._reader = AudioReader(form)
+        if audio_format != self._reader.audio_format:
+            self._reader = AudioReader(audio_format)
 
     def _on_audio(self, message: Any) -> None:
-        if not (self._is_button_held or self._open) or self._listener is None:
+        if not (self._is_button_held or self._create_interfaces) or self._listener is None:
             return
         samples = self._reader.read(message.audio.data)
         stamp = message.header.stamp
-        missing = self._gaps.missing(stamp.nanoseconds, samples.size)
+        missing = self._gaps.measure_gap(stamp.nanoseconds, samples.size)
         if missing:
-            self._listener.note_gap(missing)
-            self._presses.note_gap()
+            self._listener.record_gap(missing)
+            self._presses.record_gap()
             self._node.get_logger().warning(
                 phrase("{seconds} s of sound were lost in transmission", seconds=f"{missing:.1f}"),
                 throttle_duration_sec=5.0,
             )
         if not self._listener.add_sound(samples):
-            self._presses.note_gap()
+            self._presses.record_gap()
             self._node.get_logger().warning(
                 phrase("this machine is too slow for the speech engine, so sound is dropped"), throttle_duration_sec=5.0
             )
@@ -238,9 +238,9 @@ class VoiceCommander(SingleNode):
         if has_stopped and not (self._commands.is_stop(result.text) and self._commands.is_other_command(result.text)):
             return
         if self._handle_final_result(result):
-            self._presses.settle()
+            self._presses.record_command()
         else:
-            self._presses.note_unknown(result)
+            self._presses.record_unknown_speech(result)
 
     def _handle_final_result(self, result: Heard) -> bool:
         """Execute a recognised text, or ask the user to repeat it.
@@ -271,7 +271,7 @@ class VoiceCommander(SingleNode):
         """Answer a button press after its sound was processed."""
         answer = self._presses.end()
         self._publish_proposal()
-        if answer is not None and not self._open:
+        if answer is not None and not self._create_interfaces:
             self._conversation.answer(answer)
 
     def _publish_proposal(self) -> None:
@@ -283,7 +283,7 @@ class VoiceCommander(SingleNode):
     @property
     def _is_addressed(self) -> bool:
         """Whether a result is meant for the robot, even if it arrives after the button was released."""
-        return self._is_button_held or not self._open
+        return self._is_button_held or not self._create_interfaces
 
     def _stop_early(self, text: str) -> None:
         """Stop on a partial result, unless the stop word is part of another command."""
@@ -291,7 +291,7 @@ class VoiceCommander(SingleNode):
             return
         if self._conversation.is_busy or (self._is_button_held and not self._has_stopped_early):
             self._has_stopped_early = True
-            self._presses.settle()
+            self._presses.record_command()
             self._conversation.stop(text)
 
     def _log_problem(self, problem: Diagnostic) -> None:
@@ -300,7 +300,7 @@ class VoiceCommander(SingleNode):
         if problem.hint:
             logger.warning(localized(problem.hint))
 
-    def _failed(self, error: LinkwrightError) -> None:
+    def _fail(self, error: LinkwrightError) -> None:
         diagnostic = error.diagnostics[0]
         logger = self._node.get_logger()
         logger.fatal(diagnostic.message)

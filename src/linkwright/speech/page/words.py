@@ -79,11 +79,11 @@ class WordBook:
             case EndTake(has_gaps=has_gaps):
                 self._add_take(page, has_gaps=has_gaps)
             case RemoveWord(name=name):
-                self._change(page, lambda words: words.remove(name))
+                self._change_words(page, lambda words: words.remove(name))
             case RenameWord(name=name, new_name=new_name):
-                self._change(page, lambda words: _rename(words, name, new_name.strip()))
+                self._change_words(page, lambda words: _rename(words, name, new_name.strip()))
             case ImportWords(text=text):
-                self._change(page, lambda words: _import_words(words, text))
+                self._change_words(page, lambda words: _import_words(words, text))
             case AskWordsFile():
                 self._send_file(page)
 
@@ -105,7 +105,7 @@ class WordBook:
             return
         samples = recording.samples
         findings: list[Diagnostic] = []
-        if self._change(page, lambda words: findings.extend(enrol(words, recording.name, samples, has_gaps))):
+        if self._change_words(page, lambda words: findings.extend(enrol(words, recording.name, samples, has_gaps))):
             finding = next(iter(translated(findings)), None)
             peak = float(np.max(np.abs(samples.astype(np.int32)), initial=0)) / 32768
             self._take_count += 1
@@ -120,7 +120,7 @@ class WordBook:
                 )
             )
 
-    def _change(self, page: Page, change: Callable[[Words], object]) -> bool:
+    def _change_words(self, page: Page, change: Callable[[Words], object]) -> bool:
         """Change the file and send the words to watching pages, or send the reason for a failure.
 
         Returns:
@@ -131,7 +131,7 @@ class WordBook:
             change(words)
             words.write(words_path())
         except LinkwrightError as error:
-            self._send(page, _text(error))
+            self._send(page, _error_text(error))
             return False
         except OSError as error:
             reason = foreign(error.strerror or error)
@@ -145,7 +145,7 @@ class WordBook:
         try:
             words = _read()
         except LinkwrightError as error:
-            words, problem = Words(), problem or _text(error)
+            words, problem = Words(), problem or _error_text(error)
         enrolled = [EnrolledWord(name, len(words.takes(name))) for name in words.names]
         page.send(VoiceWords(enrolled, RECOMMENDED_TAKES, display_path(words_path()), problem))
 
@@ -196,6 +196,6 @@ def _import_words(words: Words, text: str) -> None:
             words.add(name, take)
 
 
-def _text(error: LinkwrightError) -> str:
+def _error_text(error: LinkwrightError) -> str:
     """Return the message of an error, in the language of the terminal."""
     return str(next(iter(translated(error.diagnostics))).message)

@@ -72,7 +72,7 @@ class VoiceActivity:
             self.speaking = True
         elif self.quiet_frames >= HANGOVER:
             self.speaking = False
-        self._update_floor(smoothed, loud=is_loud)
+        self._update_floor(smoothed, is_loud=is_loud)
         return self.speaking
 
     def end(self) -> None:
@@ -80,9 +80,9 @@ class VoiceActivity:
         self.speaking = False
         self._loud_frames = 0
 
-    def _update_floor(self, smoothed: NDArray[np.float64], *, loud: bool) -> None:
+    def _update_floor(self, smoothed: NDArray[np.float64], *, is_loud: bool) -> None:
         is_lower = smoothed < self.floor
-        rate = np.where(is_lower, _FALL_RATE, 0.0 if loud else max(_RISE_RATE, 1.0 / self._frame_count))
+        rate = np.where(is_lower, _FALL_RATE, 0.0 if is_loud else max(_RISE_RATE, 1.0 / self._frame_count))
         self.floor = self.floor + rate * (smoothed - self.floor)
         if self._frame_count % 10 == 0 and len(self._smoothed_frames) == _MINIMUM_FRAMES:
             self.floor = np.maximum(self.floor, _MEAN_TO_MINIMUM * np.min(self._smoothed_frames, axis=0))

@@ -25,7 +25,7 @@ _SUPPORTED_FORMATS = {(_PCM, 8), (_PCM, 16), (_PCM, 24), (_PCM, 32), (_FLOAT, 32
 
 
 @dataclass(frozen=True, slots=True)
-class _Form:
+class _WavFormat:
     """The format that the ``fmt`` chunk declares."""
 
     kind: int
@@ -97,7 +97,7 @@ def parse_wav(data: bytes, name: str) -> Samples:
     return resample(values.mean(axis=1), wav_format.rate)
 
 
-def wav_bytes(samples: Samples) -> bytes:
+def encode_wav(samples: Samples) -> bytes:
     """Return samples as the bytes of a WAV file: 16 bits, mono, at `RATE`."""
     sample_bytes = samples.astype("<i2").tobytes()
     header = struct.pack("<4sI4s4sIHHIIHH4sI", b"RIFF", 36 + len(sample_bytes), b"WAVE", b"fmt ", 16, _PCM, 1, RATE,
@@ -105,11 +105,11 @@ def wav_bytes(samples: Samples) -> bytes:
     return header + sample_bytes
 
 
-def _read_chunks(data: bytes, name: str) -> tuple[_Form, bytes]:
+def _read_chunks(data: bytes, name: str) -> tuple[_WavFormat, bytes]:
     """Return the format, and the bytes of the samples."""
     if data[:4] != b"RIFF" or data[8:12] != b"WAVE":
         raise _wav_error(name, phrase("it has no WAV header"))
-    wav_format: _Form | None = None
+    wav_format: _WavFormat | None = None
     offset = 12
     while offset + 8 <= len(data):
         chunk_id, size = data[offset : offset + 4], int.from_bytes(data[offset + 4 : offset + 8], "little")
@@ -118,7 +118,7 @@ def _read_chunks(data: bytes, name: str) -> tuple[_Form, bytes]:
             tag, channels, rate, _, _, bits = struct.unpack("<HHIIHH", body[:16])
             if tag == _EXTENSIBLE and len(body) >= 26:
                 tag = int.from_bytes(body[24:26], "little")
-            wav_format = _Form(tag, channels, rate, bits)
+            wav_format = _WavFormat(tag, channels, rate, bits)
         elif chunk_id == b"data":
             if wav_format is None:
                 raise _wav_error(name, phrase("its 'data' chunk comes before its 'fmt ' chunk"))
@@ -127,17 +127,17 @@ def _read_chunks(data: bytes, name: str) -> tuple[_Form, bytes]:
     raise _wav_error(name, phrase("it contains no samples"))
 
 
-def _values(sample_bytes: bytes, form: _Form) -> NDArray[np.float64]:
+def _values(sample_bytes: bytes, wav_format: _WavFormat) -> NDArray[np.float64]:
     """Return the samples of all channels, interleaved, full scale at 1."""
-    if form.kind == _FLOAT:
-        return np.frombuffer(sample_bytes, f"<f{form.bits // 8}").astype(np.float64)
-    if form.bits == 8:
+    if wav_format.kind == _FLOAT:
+        return np.frombuffer(sample_bytes, f"<f{wav_format.bits // 8}").astype(np.float64)
+    if wav_format.bits == 8:
         return (np.frombuffer(sample_bytes, np.uint8).astype(np.float64) - 128.0) / 128.0
-    if form.bits == 24:
+    if wav_format.bits == 24:
         widened = np.zeros((len(sample_bytes) // 3, 4), np.uint8)
         widened[:, 1:] = np.frombuffer(sample_bytes, np.uint8).reshape(-1, 3)
         return widened.reshape(-1).view("<i4").astype(np.float64) / 2.0**31
-    return np.frombuffer(sample_bytes, f"<i{form.bits // 8}").astype(np.float64) / 2.0 ** (form.bits - 1)
+    return np.frombuffer(sample_bytes, f"<i{wav_format.bits // 8}").astype(np.float64) / 2.0 ** (wav_format.bits - 1)
 
 
 def _wav_error(name: str, why: Phrase) -> LinkwrightError:

@@ -82,19 +82,19 @@ def read_classes(path: Path) -> ClassRules:
     document = YamlDocument(read_source(path, phrase("file of classes"), "VISION201"), "VISION201")
     root = document.root
     if not isinstance(root, yaml.MappingNode) or not root.value:
-        raise _invalid_classes(document, root)
+        raise _invalid_classes_error(document, root)
     patterns: dict[str, tuple[str, ...]] = {}
     for key, value in root.value:
         if not isinstance(key, yaml.ScalarNode) or not key.value.strip() or key.value in patterns:
-            raise _invalid_classes(document, key)
+            raise _invalid_classes_error(document, key)
         entries = value.value if isinstance(value, yaml.SequenceNode) else [value]
         if not entries or not all(isinstance(entry, yaml.ScalarNode) for entry in entries):
-            raise _invalid_classes(document, value)
+            raise _invalid_classes_error(document, value)
         patterns[key.value] = tuple(str(entry.value) or key.value for entry in entries)
     return ClassRules(patterns)
 
 
-def _invalid_classes(document: YamlDocument, node: yaml.Node | None) -> LinkwrightError:
+def _invalid_classes_error(document: YamlDocument, node: yaml.Node | None) -> LinkwrightError:
     hint = phrase("write for example `ball: [football, '*_ball']`, with each name only once")
     return document.error(phrase("a file of classes must map names of classes to patterns of model names"), node, hint)
 
@@ -118,7 +118,9 @@ def default_rules(simulations: list[Simulation]) -> ClassRules:
     for simulation in simulations:
         for name, model in simulation.scene.models.items():
             if not _is_background(simulation, name, model.model):
-                patterns.setdefault(default_class(own_name(model.model)), set()).update((name, own_name(model.model)))
+                patterns.setdefault(default_class(original_name(model.model)), set()).update(
+                    (name, original_name(model.model))
+                )
     return ClassRules({name: tuple(sorted(names)) for name, names in sorted(patterns.items())})
 
 
@@ -132,7 +134,7 @@ def find_objects(simulation: Simulation, rules: ClassRules) -> list[SceneObject]
     boxes = geom_boxes(simulation.model, simulation.data)
     for name, scene_model in simulation.scene.models.items():
         geoms = visuals.get(name, {})
-        model_label = rules.class_number(name, own_name(scene_model.model))
+        model_label = rules.class_number(name, original_name(scene_model.model))
         if model_label is not None:
             geom_names = tuple(geom for part in geoms.values() for geom in part)
             objects += [SceneObject(name, model_label, geom_names)] if geom_names else []
@@ -143,12 +145,12 @@ def find_objects(simulation: Simulation, rules: ClassRules) -> list[SceneObject]
             if label is not None:
                 visuals_by_label.setdefault(label, []).append(visual)
         for label, visuals_of_label in visuals_by_label.items():
-            for group in _touching(visuals_of_label, geoms, simulation.model, boxes):
+            for group in _touching_groups(visuals_of_label, geoms, simulation.model, boxes):
                 objects.append(SceneObject(group[0], label, tuple(geom for part in group for geom in geoms[part])))
     return objects
 
 
-def own_name(model: Model) -> str:
+def original_name(model: Model) -> str:
     """Return the name of a model in its own file, even if it is included under another name."""
     return (model.element.attributes.get("name") if model.element is not None else None) or model.name
 
@@ -177,7 +179,7 @@ def _visuals(simulation: Simulation) -> dict[str, dict[str, list[str]]]:
 
 
 def _is_background(simulation: Simulation, name: str, model: Model) -> bool:
-    words = set(re.split(r"[ _-]+", own_name(model).lower()))
+    words = set(re.split(r"[ _-]+", original_name(model).lower()))
     if words & _BACKGROUND_WORDS:
         return True
     geom_ids = [simulation.model.geom(geom).id for part in _visuals(simulation).get(name, {}).values() for geom in part]
@@ -190,7 +192,9 @@ def _is_background(simulation: Simulation, name: str, model: Model) -> bool:
     return model.static and bool((extent[:2] > _MAX_OBJECT_WIDTH).any())
 
 
-def _touching(visuals: list[str], geoms: Mapping[str, list[str]], model: Any, boxes: Array) -> Iterator[list[str]]:
+def _touching_groups(
+    visuals: list[str], geoms: Mapping[str, list[str]], model: Any, boxes: Array
+) -> Iterator[list[str]]:
     """Yield groups of visuals whose bounding boxes touch each other."""
     remaining = list(visuals)
     bounds = {part: boxes[[model.geom(geom).id for geom in geoms[part]]] for part in visuals}

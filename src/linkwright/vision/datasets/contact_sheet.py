@@ -5,39 +5,39 @@ from __future__ import annotations
 from collections.abc import Sequence
 from io import BytesIO
 
-from linkwright.vision.datasets.making import LabelledImage
+from linkwright.vision.datasets.rendering import LabelledImage
 
 _COLUMNS, _WIDTH = 5, 320
-MOST = 30
+MAX_SHEET_IMAGES = 30
 """The maximum number of images on a sheet."""
 _COLOURS = ("#ffdc00", "#00d5ff", "#ff5ec4", "#7dff5c", "#ff8a3c", "#b09bff", "#ffffff", "#4affc0")
 _IGNORED_COLOUR = "#808080"
 
 
 def contact_sheet(images: Sequence[LabelledImage], classes: Sequence[str]) -> bytes:
-    """Return a JPEG of the first `MOST` images, with the class and visible box of each object.
+    """Return a JPEG of the first `MAX_SHEET_IMAGES` images, with the class and visible box of each object.
 
     Objects that are ignored, because they are too small or too hidden, have grey boxes.
     """
     from PIL import Image, ImageDraw
 
-    samples = sorted(images, key=lambda sample: sample.index)[:MOST]
+    samples = sorted(images, key=lambda sample: sample.index)[:MAX_SHEET_IMAGES]
     thumbnails = []
-    for taken in samples:
-        image = Image.open(BytesIO(taken.data)).convert("RGB")
+    for sample in samples:
+        image = Image.open(BytesIO(sample.data)).convert("RGB")
         scale = _WIDTH / image.width
         image = image.resize((_WIDTH, max(round(image.height * scale), 1)))
         draw = ImageDraw.Draw(image)
-        for label in taken.labels:
+        for label in sample.labels:
             left, top, right, bottom = (scale * edge for edge in label.box)
-            colour = _IGNORED_COLOUR if label.ignored else _COLOURS[label.label % len(_COLOURS)]
+            colour = _IGNORED_COLOUR if label.is_ignored else _COLOURS[label.label % len(_COLOURS)]
             draw.rectangle((left, top, max(right - 1, left), max(bottom - 1, top)), outline=colour)
-            if not label.ignored:
+            if not label.is_ignored:
                 caption = f"{classes[label.label]} {label.visibility:.0%}"
                 text_box = draw.textbbox((left + 1, max(top - 11, 0)), caption)
                 draw.rectangle(text_box, fill="#000000")
                 draw.text((left + 1, max(top - 11, 0)), caption, fill=colour)
-        draw.text((3, image.height - 13), f"{taken.index:06d} {taken.split}", fill="#ffffff", stroke_width=1,
+        draw.text((3, image.height - 13), f"{sample.index:06d} {sample.split}", fill="#ffffff", stroke_width=1,
                   stroke_fill="#000000")  # fmt: skip
         thumbnails.append(image)
     height = max((image.height for image in thumbnails), default=1)

@@ -12,10 +12,10 @@ from typing import Any
 from linkwright._version import __version__
 from linkwright.files.whole_files import write_whole_file
 from linkwright.process.processors import usable_processors
-from linkwright.vision.datasets.contact_sheet import MOST, contact_sheet
-from linkwright.vision.datasets.folder import SHEET, DatasetFolder, cannot_write
-from linkwright.vision.datasets.making import IMAGES_PER_PATTERN_SET, LabelledImage, Source, Studio
+from linkwright.vision.datasets.contact_sheet import MAX_SHEET_IMAGES, contact_sheet
+from linkwright.vision.datasets.folder import SHEET, DatasetFolder, write_error
 from linkwright.vision.datasets.options import FORMATS, Options
+from linkwright.vision.datasets.rendering import IMAGES_PER_PATTERN_SET, LabelledImage, Source, Studio
 from linkwright.vision.datasets.workers import make_in_processes
 
 
@@ -26,12 +26,12 @@ class DatasetResult:
     Attributes:
         folder: the finished dataset on disk.
         added: the number of images added in this run.
-        interrupted: whether Ctrl-C stopped it early.
+        was_interrupted: whether Ctrl-C stopped it early.
     """
 
     folder: DatasetFolder
     added: int
-    interrupted: bool
+    was_interrupted: bool
 
 
 def make_dataset(
@@ -83,27 +83,27 @@ def make_dataset(
         in_this_process = workers == 1 or images <= IMAGES_PER_PATTERN_SET
         samples = map(studio.make, numbers) if in_this_process else make_in_processes(source, numbers, workers)
         sheet_samples: list[LabelledImage] = []
-        added, interrupted, write_error = 0, False, None
+        added, was_interrupted, image_error = 0, False, None
         try:
             for sample in _yield_and_close(samples):
                 folder.add(sample)
                 added += 1
-                if sample.index < folder.first_number + MOST:
+                if sample.index < folder.first_number + MAX_SHEET_IMAGES:
                     sheet_samples.append(sample)
                 progress(added)
         except KeyboardInterrupt:
-            interrupted = True
+            was_interrupted = True
         except OSError as error:
-            write_error = cannot_write(path, error)
+            image_error = write_error(path, error)
         finally:
             folder.finish(card)
-    if write_error is not None:
-        raise write_error
+    if image_error is not None:
+        raise image_error
     try:
         write_whole_file(path / SHEET, contact_sheet(sheet_samples, studio.classes))
     except OSError as error:
-        raise cannot_write(path, error) from None
-    return DatasetResult(folder, added, interrupted)
+        raise write_error(path, error) from None
+    return DatasetResult(folder, added, was_interrupted)
 
 
 def _yield_and_close(samples: Iterator[LabelledImage]) -> Iterator[LabelledImage]:

@@ -15,8 +15,8 @@ from typing import Any
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, foreign, phrase
 from linkwright.files.whole_files import write_whole_file
-from linkwright.vision.datasets.making import LabelledImage
 from linkwright.vision.datasets.options import SPLITS
+from linkwright.vision.datasets.rendering import LabelledImage
 from linkwright.vision.datasets.statistics import ClassStatistics, compute_statistics
 
 CARD = "dataset.json"
@@ -88,7 +88,7 @@ class DatasetFolder:
                 for split in SPLITS:
                     (self.path / subfolder / split).mkdir(parents=True, exist_ok=True)
         except OSError as error:
-            raise cannot_write(self.path, error) from None
+            raise write_error(self.path, error) from None
 
     def add(self, sample: LabelledImage) -> None:
         """Write an image and its labels, either both or neither.
@@ -129,7 +129,7 @@ class DatasetFolder:
             error = self._try_to_write(card)
         if error is not None:
             self._remove()
-            raise cannot_write(self.path, error)
+            raise write_error(self.path, error)
 
     def _try_to_write(self, card: Mapping[str, Any]) -> OSError | None:
         try:
@@ -242,7 +242,7 @@ class DatasetFolder:
 def _yolo_lines(sample: LabelledImage, width: int, height: int) -> str:
     lines = []
     for label in sample.labels:
-        if not label.ignored:
+        if not label.is_ignored:
             left, top, right, bottom = label.box
             centre = (left + right) / 2 / width, (top + bottom) / 2 / height
             size = (right - left) / width, (bottom - top) / height
@@ -261,10 +261,10 @@ def _coco(sample: LabelledImage, width: int, height: int) -> list[dict[str, Any]
                 "category_id": label.label + 1,
                 "bbox": [left, top, right - left, bottom - top],
                 "area": label.area,
-                "segmentation": {"size": [height, width], "counts": list(label.counts)},
-                "iscrowd": int(label.ignored),
+                "segmentation": {"size": [height, width], "counts": list(label.run_lengths)},
+                "iscrowd": int(label.is_ignored),
                 "visibility": round(label.visibility, 4),
-                "truncated": label.truncated,
+                "truncated": label.is_truncated,
                 "amodal_bbox": [full_box[0], full_box[1], full_box[2] - full_box[0], full_box[3] - full_box[1]],
             }
         )
@@ -288,7 +288,7 @@ def _occupied_folder_error(path: Path, *, is_dataset: bool) -> LinkwrightError:
     return LinkwrightError(Diagnostic("VISION205", message, hint=hint))
 
 
-def cannot_write(path: Path, error: OSError) -> LinkwrightError:
+def write_error(path: Path, error: OSError) -> LinkwrightError:
     """Return the error for a file of a dataset that cannot be written (VISION207)."""
     reason = foreign(error.strerror or error)
     message = phrase("the dataset '{folder}' cannot be written: {reason}", folder=display_path(path), reason=reason)

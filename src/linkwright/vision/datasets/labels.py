@@ -12,7 +12,7 @@ import numpy as np
 
 from linkwright.sdf.optics import Optics
 from linkwright.simulation.rendering.renderer import Channels, Pixels, axes_of
-from linkwright.vision.datasets.arranging import Shot
+from linkwright.vision.datasets.arrangement import Shot
 from linkwright.vision.datasets.stage import Prop, Stage
 
 Box = tuple[int, int, int, int]
@@ -32,9 +32,9 @@ class Label:
         full_box: the box around the whole object, without occlusion; it may reach beyond the image.
         area: the number of its visible pixels.
         visibility: the visible pixels divided by the pixels of the object without occlusion and truncation.
-        truncated: whether the object reaches beyond the image.
-        ignored: whether the object is too small or too hidden for a label.
-        counts: the run lengths of its mask by columns, alternately outside and inside, beginning with outside.
+        is_truncated: whether the object reaches beyond the image.
+        is_ignored: whether the object is too small or too hidden for a label.
+        run_lengths: the run lengths of its mask by columns, alternately outside and inside, beginning with outside.
     """
 
     label: int
@@ -42,9 +42,9 @@ class Label:
     full_box: Box
     area: int
     visibility: float
-    truncated: bool
-    ignored: bool
-    counts: tuple[int, ...]
+    is_truncated: bool
+    is_ignored: bool
+    run_lengths: tuple[int, ...]
 
 
 def label_image(stage: Stage, shot: Shot, geoms: Pixels, min_size: int, min_visible: float) -> list[Label]:
@@ -71,9 +71,9 @@ def label_image(stage: Stage, shot: Shot, geoms: Pixels, min_size: int, min_visi
         left, top, right, bottom = box
         mask = objects == number
         area = int(np.count_nonzero(mask[top:bottom, left:right]))
-        full_box, full_count, main_count = _measure_whole(stage, shot, prop, box)
+        full_box, full_count, main_count = _measure_unoccluded(stage, shot, prop, box)
         full_count = max(full_count, area)
-        main_mask = geoms[top:bottom, left:right] == prop.main
+        main_mask = geoms[top:bottom, left:right] == prop.main_geom
         is_small = min(right - left, bottom - top) < min_size or _shorter_side(main_mask) < min_size / 2
         is_truncated = (
             full_box[0] < 0 or full_box[1] < 0 or full_box[2] > geoms.shape[1] or full_box[3] > geoms.shape[0]
@@ -81,7 +81,7 @@ def label_image(stage: Stage, shot: Shot, geoms: Pixels, min_size: int, min_visi
         is_hidden = area < min_visible * full_count or int(np.count_nonzero(main_mask)) < min_visible * main_count
         is_ignored = is_small or is_hidden
         labels.append(
-            Label(prop.label, box, full_box, area, area / full_count, is_truncated, is_ignored, runs_of(mask))
+            Label(prop.label, box, full_box, area, area / full_count, is_truncated, is_ignored, run_lengths_of(mask))
         )
     return labels
 
@@ -102,7 +102,7 @@ def _shorter_side(mask: Any) -> int:
     return min(box[2] - box[0], box[3] - box[1]) if box else 0
 
 
-def runs_of(mask: Any) -> tuple[int, ...]:
+def run_lengths_of(mask: Any) -> tuple[int, ...]:
     """Return a mask as COCO's uncompressed run lengths, by columns, beginning with false pixels."""
     flat = mask.ravel(order="F")
     changes = np.flatnonzero(flat[1:] != flat[:-1]) + 1
@@ -111,19 +111,19 @@ def runs_of(mask: Any) -> tuple[int, ...]:
     return tuple([0, *counts] if flat[0] else counts)
 
 
-def _measure_whole(stage: Stage, shot: Shot, prop: Prop, visible: Box) -> tuple[Box, int, int]:
+def _measure_unoccluded(stage: Stage, shot: Shot, prop: Prop, visible: Box) -> tuple[Box, int, int]:
     """Return an object's full box, its pixel count, and the pixel count of its largest geom.
 
     The measurement ignores occlusion and truncation. An object larger than the image is rendered smaller, so its box is
     accurate only to a few pixels.
     """
-    left, top, right, bottom = _window(stage, shot, prop, visible)
+    left, top, right, bottom = _projected_bounds(stage, shot, prop, visible)
     optics = shot.optics
     scale = min(1.0, optics.width / (right - left), optics.height / (bottom - top))
     width, height = max(int((right - left) * scale), 1), max(int((bottom - top) * scale), 1)
     middle = (optics.cx - left) * scale, (optics.cy - top) * scale
     optics_of_part = Optics(width, height, optics.fx * scale, optics.fy * scale, *middle, optics.near, optics.far)
-    geoms = _with_only(stage, prop, lambda: stage.renderer.render(optics_of_part, shot.pose, Channels.GEOMS).geoms)
+    geoms = _render_alone(stage, prop, lambda: stage.renderer.render(optics_of_part, shot.pose, Channels.GEOMS).geoms)
     mask = np.isin(geoms, prop.geoms)
     box = box_of(mask)
     if box is None:
@@ -134,11 +134,11 @@ def _measure_whole(stage: Stage, shot: Shot, prop: Prop, visible: Box) -> tuple[
         max(ceil(box[2] / scale) + left, visible[2]),
         max(ceil(box[3] / scale) + top, visible[3]),
     )
-    main_pixels = np.count_nonzero(geoms == prop.main)
+    main_pixels = np.count_nonzero(geoms == prop.main_geom)
     return full_box, round(np.count_nonzero(mask) / scale**2), round(main_pixels / scale**2)
 
 
-def _window(stage: Stage, shot: Shot, prop: Prop, visible: Box) -> Box:
+def _projected_bounds(stage: Stage, shot: Shot, prop: Prop, visible: Box) -> Box:
     """Return the rectangle of the image plane that contains an object, in pixels.
 
     The rectangle reaches at most one image width and height beyond the image. It has this maximum size if part of the
@@ -147,8 +147,8 @@ def _window(stage: Stage, shot: Shot, prop: Prop, visible: Box) -> Box:
     optics, data, model = shot.optics, stage.simulation.data, stage.simulation.model
     signs = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
     local = model.geom_aabb[prop.geoms, None, :3] + signs * model.geom_aabb[prop.geoms, None, 3:]
-    turns = data.geom_xmat[prop.geoms].reshape(-1, 3, 3)
-    world_corners = np.einsum("gij,gcj->gci", turns, local) + data.geom_xpos[prop.geoms, None, :]
+    rotations = data.geom_xmat[prop.geoms].reshape(-1, 3, 3)
+    world_corners = np.einsum("gij,gcj->gci", rotations, local) + data.geom_xpos[prop.geoms, None, :]
     camera_corners = (world_corners.reshape(-1, 3) - np.array(shot.pose[:3])) @ axes_of(shot.pose)
     margin_x, margin_y = int(_MARGIN * optics.width), int(_MARGIN * optics.height)
     minimum, maximum = np.array([-margin_x, -margin_y]), np.array([optics.width + margin_x, optics.height + margin_y])
@@ -161,7 +161,7 @@ def _window(stage: Stage, shot: Shot, prop: Prop, visible: Box) -> Box:
     return left, top, right, bottom
 
 
-def _with_only(stage: Stage, prop: Prop, render: Callable[[], Any]) -> Any:
+def _render_alone(stage: Stage, prop: Prop, render: Callable[[], Any]) -> Any:
     """Return the result of `render`, called while all other objects are hidden."""
     data = stage.simulation.data
     positions = data.geom_xpos.copy()

@@ -16,7 +16,7 @@ from linkwright.simulation.rendering.renderer import Renderer
 from linkwright.simulation.scene.bodies import VISUAL_GROUP
 from linkwright.simulation.simulation import Simulation
 from linkwright.vision.datasets.classes import SceneObject, geom_boxes
-from linkwright.vision.datasets.textures import pattern
+from linkwright.vision.datasets.textures import random_pattern
 
 _PATTERNS_PER_KIND = 12
 """The number of patterns of each kind: objects, walls and ground."""
@@ -37,9 +37,9 @@ class Prop:
         name: the name of the object.
         label: the index of its class; -1 for none.
         geoms: the indices of its geoms in MuJoCo's model.
-        main: its largest geom: the one whose bounding box has the largest face.
+        main_geom: its largest geom: the one whose bounding box has the largest face.
         positions: the positions of its geoms relative to the centre of its base: shape (n, 3), in m.
-        turns: the rotation matrices of its geoms: shape (n, 3, 3).
+        rotations: the rotation matrices of its geoms: shape (n, 3, 3).
         corners: the corners of the boxes around its geoms, relative to the centre of its base: shape (n * 8, 3), in m.
         radius: the radius in m of a circle around the object, seen from above.
         is_round: whether the object is a ball, which has no upper side.
@@ -48,9 +48,9 @@ class Prop:
     name: str
     label: int
     geoms: Any
-    main: int
+    main_geom: int
     positions: Array
-    turns: Array
+    rotations: Array
     corners: Array
     radius: float
     is_round: bool
@@ -143,7 +143,7 @@ class Stage:
         """
         data = self.simulation.data
         data.geom_xpos[prop.geoms] = position + prop.positions @ rotation.T
-        data.geom_xmat[prop.geoms] = (rotation @ prop.turns).reshape(-1, 9)
+        data.geom_xmat[prop.geoms] = (rotation @ prop.rotations).reshape(-1, 9)
 
     def shape_distractor(self, geom: int, generator: np.random.Generator) -> float:
         """Give a distractor a random shape and size, and return its bounding radius in m.
@@ -219,7 +219,7 @@ class Stage:
         for kind, size in _PATTERN_SIZES.items():
             for number in range(_PATTERNS_PER_KIND):
                 texture = model.texture(f"{kind} {number}").id
-                pixels = pattern(generator, size, soft=kind == "object" or number % 2 == 0)
+                pixels = random_pattern(generator, size, soft=kind == "object" or number % 2 == 0)
                 start, faces = int(model.tex_adr[texture]), model.tex_height[texture] // size
                 model.tex_data[start : start + faces * pixels.size] = np.tile(pixels.ravel(), faces)
         self._patterns = {
@@ -316,7 +316,7 @@ class _InitialGeometry:
     """The initial geometry of an object, relative to the centre of its base."""
 
     positions: Array
-    turns: Array
+    rotations: Array
     corners: Array
     bottom: float
     is_round: bool
@@ -349,7 +349,7 @@ def _make_prop(model: Any, scene_object: SceneObject, geometry: _InitialGeometry
     radius = float(np.linalg.norm(geometry.corners[:, :2], axis=1).max())
     half_sizes = np.sort(model.geom_aabb[geoms, 3:], axis=1)
     main = int(geoms[np.argmax(half_sizes[:, 1] * half_sizes[:, 2])])
-    poses = geometry.positions, geometry.turns, geometry.corners
+    poses = geometry.positions, geometry.rotations, geometry.corners
     return Prop(scene_object.name, scene_object.label, geoms, main, *poses, radius, geometry.is_round)
 
 

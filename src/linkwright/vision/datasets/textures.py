@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 Pixels = np.ndarray[Any, np.dtype[np.uint8]]
 
 
-def pattern(generator: np.random.Generator, size: int, *, soft: bool) -> Pixels:
+def random_pattern(generator: np.random.Generator, size: int, *, soft: bool) -> Pixels:
     """Return a random square pattern.
 
     Args:
@@ -43,7 +43,7 @@ def pattern(generator: np.random.Generator, size: int, *, soft: bool) -> Pixels:
     return pixels
 
 
-def smooth(generator: np.random.Generator, cells: int, height: int, width: int) -> Any:
+def smooth_noise(generator: np.random.Generator, cells: int, height: int, width: int) -> Any:
     """Return random values from 0 to 1, interpolated from a coarse grid, shape (height, width)."""
     grid = generator.random((cells + 1, cells + 1))
     row_positions, column_positions = (
@@ -65,7 +65,7 @@ def _noise(generator: np.random.Generator, size: int) -> Any:
     for octave in range(4):
         amplitude = 0.5**octave
         shade, weight = (
-            shade + amplitude * smooth(generator, min(cells << octave, size), size, size),
+            shade + amplitude * smooth_noise(generator, min(cells << octave, size), size, size),
             weight + amplitude,
         )
     return shade / weight

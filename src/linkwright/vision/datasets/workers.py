@@ -13,7 +13,7 @@ from contextlib import suppress
 from multiprocessing.connection import Connection, wait
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
-from linkwright.vision.datasets.making import IMAGES_PER_PATTERN_SET, LabelledImage, Source, Studio
+from linkwright.vision.datasets.rendering import IMAGES_PER_PATTERN_SET, LabelledImage, Source, Studio
 
 _PATIENCE = 10.0
 """The seconds that a process has to exit before it is killed."""

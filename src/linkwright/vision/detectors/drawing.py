@@ -7,7 +7,7 @@ from zlib import crc32
 import numpy as np
 from numpy.typing import NDArray
 
-from linkwright.images.colour_words import find_rgb
+from linkwright.images.color_words import find_rgb
 from linkwright.vision.detections import Detections
 from linkwright.vision.detectors.library import load_opencv
 
@@ -18,7 +18,7 @@ _MIN_TEXT_HEIGHT = 9
 """The minimum height of capitals in pixels."""
 
 
-def colour_of(name: str) -> tuple[int, int, int]:
+def class_color(name: str) -> tuple[int, int, int]:
     """Return the colour for a class name: red, green and blue, from 0 to 255.
 
     A name that contains a colour word gets that colour. For any other name, the colour is computed from the name.
@@ -50,7 +50,7 @@ def draw_detections(image: NDArray[np.uint8], detections: Detections) -> NDArray
     scale, stroke = cv2.getFontScaleFromHeight(cv2.FONT_HERSHEY_SIMPLEX, text_height), max(1, round(text_height / 10))
     for index in reversed(range(len(detections))):  # draw the most certain detection last, so that it is not covered
         name = detections.name(index)
-        colour = colour_of(name)
+        colour = class_color(name)
         left, top, right, bottom = (int(edge) for edge in np.rint(detections.boxes[index]))
         if detections.corners is not None:
             cv2.polylines(canvas, [np.rint(detections.corners[index]).astype(np.int32)], True, colour, line_width)

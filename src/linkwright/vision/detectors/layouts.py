@@ -32,7 +32,7 @@ _IGNORED_OUTPUTS = {"": "", "detect": "", "segment": "masks", "pose": "key point
 _CORNERS_OF_CENTRES = np.array([[1, 0, -0.5, 0], [0, 1, 0, -0.5], [1, 0, 0.5, 0], [0, 1, 0, 0.5]], np.float32)
 
 
-class Form(Enum):
+class BoxArrangement(Enum):
     """The arrangement of a box's numbers in the output."""
 
     COLUMNS = "xywh and scores in columns"
@@ -60,16 +60,17 @@ class Layout:
     """The layout of a network's first output.
 
     Attributes:
-        form: the arrangement of the numbers.
+        arrangement: the arrangement of the numbers.
         classes: the number of classes; 0 if the outputs do not determine it, as for final boxes.
-        left_out: the kind of additional outputs for each box, which are ignored: ``masks``, ``key points`` or empty.
+        ignored_outputs: the kind of additional outputs for each box, which are ignored: ``masks``, ``key points`` or
+            empty.
     """
 
-    form: Form
+    arrangement: BoxArrangement
     classes: int
-    left_out: str = ""
+    ignored_outputs: str = ""
 
-    def candidates(self, output: NDArray[np.float32], threshold: float) -> Candidates:
+    def find_candidates(self, output: NDArray[np.float32], threshold: float) -> Candidates:
         """Return the boxes with at least the minimum score.
 
         An object can have several boxes, except in the final layout.
@@ -79,10 +80,10 @@ class Layout:
             threshold: the minimum score.
         """
         values = output[0]
-        if self.form is Form.FINAL:
+        if self.arrangement is BoxArrangement.FINAL:
             rows = values[values[:, 4] >= threshold]
             return Candidates(rows[:, :4].copy(), rows[:, 4].copy(), rows[:, 5].astype(np.int32))
-        if self.form is Form.COLUMNS:
+        if self.arrangement is BoxArrangement.COLUMNS:
             scores = values[4 : 4 + self.classes]
             best_scores = scores.max(axis=0)
             columns = np.flatnonzero(best_scores >= threshold)
@@ -131,7 +132,7 @@ def find_layout(
     name_count = labels if labels is not None or metadata.names is None else len(metadata.names)
     first_shape = shapes[0] if shapes else ()
     forms = (
-        _possible_forms(first_shape, size, extra_values, suppressed=metadata.suppressed)
+        _possible_forms(first_shape, size, extra_values, is_suppressed=metadata.is_suppressed)
         if len(first_shape) == 3
         else []
     )
@@ -193,17 +194,20 @@ def _extra_values(shapes: Sequence[Sequence[int]], metadata: Metadata) -> tuple[
 
 
 def _possible_forms(
-    shape: Sequence[int], size: tuple[int, int], extra_values: int, *, suppressed: bool
-) -> list[tuple[Form, int]]:
+    shape: Sequence[int], size: tuple[int, int], extra_values: int, *, is_suppressed: bool
+) -> list[tuple[BoxArrangement, int]]:
     """Return the forms that an output's shape allows, with their class counts, likeliest first."""
     batch, first, second = shape
     if batch != 1:
         return []
     cell_counts = {sum((size[0] // stride) * (size[1] // stride) for stride in strides) for strides in _STRIDE_SETS}
     row_counts = {_BOXES_PER_CELL * cells for cells in cell_counts}
-    if second == 6 + extra_values and (suppressed or first not in cell_counts | row_counts):
-        return [(Form.FINAL, 0)]
-    as_columns, as_rows = (Form.COLUMNS, first - 4 - extra_values), (Form.ROWS, second - 5 - extra_values)
+    if second == 6 + extra_values and (is_suppressed or first not in cell_counts | row_counts):
+        return [(BoxArrangement.FINAL, 0)]
+    as_columns, as_rows = (
+        (BoxArrangement.COLUMNS, first - 4 - extra_values),
+        (BoxArrangement.ROWS, second - 5 - extra_values),
+    )
     forms = [as_columns] if second in cell_counts or second > first else []
     if first in row_counts:
         forms.insert(len(forms) if second in cell_counts else 0, as_rows)

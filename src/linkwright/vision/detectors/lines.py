@@ -8,12 +8,12 @@ from numpy.typing import NDArray
 from linkwright.diagnostics import Phrase
 from linkwright.vision.detections import Detections
 from linkwright.vision.detector import Detector, Limits
-from linkwright.vision.detectors.colours import mask_of
+from linkwright.vision.detectors.colors import color_mask
 from linkwright.vision.detectors.devices import refuse_network_options
 from linkwright.vision.detectors.library import load_opencv
 from linkwright.vision.detectors.options import DetectorOptions
 from linkwright.vision.detectors.selection import select_detections
-from linkwright.vision.detectors.settings import hsv_range, number
+from linkwright.vision.detectors.settings import parse_hsv_range, read_number
 
 _DARK_RANGE = (0, 0, 0, 179, 255, 80)
 _NAMES = ("line",)
@@ -27,7 +27,7 @@ class LineDetector(Detector):
 
     Settings:
         ``colour``
-            the colour of the line as six numbers, see `hsv_range`; dark by default.
+            the colour of the line as six numbers, see `parse_hsv_range`; dark by default.
         ``part``
             the fraction of the image that is searched, from the bottom; 0.25 by default.
         ``least_area``
@@ -40,9 +40,9 @@ class LineDetector(Detector):
     def __init__(self, options: DetectorOptions) -> None:
         load_opencv()
         self._notes = refuse_network_options(options)
-        self._colour = hsv_range("colour", options.settings.get("colour", _DARK_RANGE))
-        self._part = number(options.settings, "part", 0.25, 0.01, 1.0)
-        self._least_area = number(options.settings, "least_area", 150.0, 1.0, 1e9)
+        self._colour = parse_hsv_range("colour", options.settings.get("colour", _DARK_RANGE))
+        self._searched_share = read_number(options.settings, "part", 0.25, 0.01, 1.0)
+        self._min_area = read_number(options.settings, "least_area", 150.0, 1.0, 1e9)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -58,17 +58,17 @@ class LineDetector(Detector):
         """Return the line as one detection, or no detection if it is too small."""
         cv2 = load_opencv()
         height = image.shape[0]
-        rows = round(height * self._part)
+        rows = round(height * self._searched_share)
         if not image.size or rows < 1:
             return Detections.empty(_NAMES)
         searched_region = np.ascontiguousarray(image[height - rows :])
-        mask = mask_of(cv2.cvtColor(searched_region, cv2.COLOR_RGB2HSV), self._colour)
+        mask = color_mask(cv2.cvtColor(searched_region, cv2.COLOR_RGB2HSV), self._colour)
         count, labels, statistics, _ = cv2.connectedComponentsWithStats(mask, connectivity=8)
         if count < 2:
             return Detections.empty(_NAMES)
         largest = 1 + int(statistics[1:, cv2.CC_STAT_AREA].argmax())
         left, top, width, line_height, area = statistics[largest].tolist()
-        if area < self._least_area:
+        if area < self._min_area:
             return Detections.empty(_NAMES)
         row_share = float((labels == largest).any(axis=1).mean())
         image_top = height - rows + top

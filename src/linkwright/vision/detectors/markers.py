@@ -14,7 +14,7 @@ from linkwright.vision.detectors.devices import refuse_network_options
 from linkwright.vision.detectors.library import load_opencv
 from linkwright.vision.detectors.options import DetectorOptions
 from linkwright.vision.detectors.selection import select_detections
-from linkwright.vision.detectors.settings import choice
+from linkwright.vision.detectors.settings import read_choice
 
 _PREFIX = "DICT_"
 _DEFAULT_MARKERS, _DEFAULT_TAGS = "4X4_50", "APRILTAG_36h11"
@@ -41,7 +41,7 @@ class MarkerDetector(Detector):
         settings = {
             name: str(value).removeprefix(_PREFIX) for name, value in options.settings.items() if name == "dictionary"
         }
-        dictionary_name = choice(settings, "dictionary", dictionary, dictionaries)
+        dictionary_name = read_choice(settings, "dictionary", dictionary, dictionaries)
         marker_dictionary = aruco.getPredefinedDictionary(getattr(aruco, _PREFIX + dictionary_name))
         self._names = tuple(map(str, range(len(marker_dictionary.bytesList))))
         parameters = aruco.DetectorParameters()

@@ -25,7 +25,7 @@ class Metadata:
         task: ``detect``, ``segment``, ``pose``, ``obb`` or ``classify``; empty if the file has none.
         stride: the number of pixels that must divide the height and width of the input.
         size: the height and width of its input in training, in pixels; None if the file has none.
-        suppressed: whether its boxes are final, with one box for each object.
+        is_suppressed: whether its boxes are final, with one box for each object.
         key_numbers: the number of keypoint values for each box.
     """
 
@@ -33,7 +33,7 @@ class Metadata:
     task: str = ""
     stride: int = _DEFAULT_STRIDE
     size: tuple[int, int] | None = None
-    suppressed: bool = False
+    is_suppressed: bool = False
     key_numbers: int = 0
 
     @classmethod

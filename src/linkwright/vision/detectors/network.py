@@ -14,7 +14,7 @@ from linkwright.model_files.onnx_sessions import error_reason
 from linkwright.vision.detections import Detections
 from linkwright.vision.detector import Detector, Limits
 from linkwright.vision.detectors.class_names import read_labels
-from linkwright.vision.detectors.layouts import Candidates, Form, class_count_error, find_layout
+from linkwright.vision.detectors.layouts import BoxArrangement, Candidates, class_count_error, find_layout
 from linkwright.vision.detectors.letterbox import GREY, letterbox_image, to_tensor
 from linkwright.vision.detectors.metadata import Metadata
 from linkwright.vision.detectors.options import MAX_SIZE, DetectorOptions
@@ -57,8 +57,8 @@ class NetworkDetector(Detector):
         label_count = len(labels) if labels is not None else None
         self._layout = find_layout(shapes, self._size, metadata, file, label_count, options.labels)
         self._names = self._choose_names(metadata.names, labels)
-        if self._layout.left_out:
-            ignored = phrase("masks") if self._layout.left_out == "masks" else phrase("keypoints")
+        if self._layout.ignored_outputs:
+            ignored = phrase("masks") if self._layout.ignored_outputs == "masks" else phrase("keypoints")
             self._notes.append(
                 phrase("only the boxes of '{file}' are used; its {what} are ignored", file=file.name, what=ignored)
             )
@@ -90,7 +90,7 @@ class NetworkDetector(Detector):
             wanted_classes = [index for index, name in enumerate(self._names) if name in limits.classes]
             is_wanted = np.isin(classes, wanted_classes)
             boxes, scores, classes = boxes[is_wanted], scores[is_wanted], classes[is_wanted]
-        if self._layout.form is Form.FINAL:
+        if self._layout.arrangement is BoxArrangement.FINAL:
             has_name = (classes >= 0) & (classes < len(self._names))
             kept_indices = np.flatnonzero(has_name)[np.argsort(-scores[has_name], kind="stable")][
                 : limits.max_detections
@@ -103,7 +103,7 @@ class NetworkDetector(Detector):
 
     def _candidates(self, output: NDArray[np.float32], threshold: float) -> Candidates:
         with np.errstate(invalid="ignore"):
-            candidates = self._layout.candidates(output, threshold)
+            candidates = self._layout.find_candidates(output, threshold)
         if np.isnan(output).any() or not (np.isfinite(candidates.boxes).all() and np.isfinite(candidates.scores).all()):
             message = phrase(
                 "the network in '{file}' outputs boxes or scores that are not numbers", file=self._file.name

@@ -13,7 +13,7 @@ def setting_error(name: str, value: object, hint: Phrase | None = None) -> Linkw
     return LinkwrightError(Diagnostic("VISION109", message, hint=hint))
 
 
-def number(settings: Mapping[str, object], name: str, default: float, minimum: float, maximum: float) -> float:
+def read_number(settings: Mapping[str, object], name: str, default: float, minimum: float, maximum: float) -> float:
     """Return a setting as a number within limits.
 
     Raises:
@@ -25,7 +25,7 @@ def number(settings: Mapping[str, object], name: str, default: float, minimum: f
     return float(value)
 
 
-def choice(settings: Mapping[str, object], name: str, default: str, choices: Sequence[str]) -> str:
+def read_choice(settings: Mapping[str, object], name: str, default: str, choices: Sequence[str]) -> str:
     """Return a setting that is one of several words.
 
     Raises:
@@ -38,7 +38,7 @@ def choice(settings: Mapping[str, object], name: str, default: str, choices: Seq
     return value
 
 
-def hsv_range(name: str, value: object) -> tuple[int, ...]:
+def parse_hsv_range(name: str, value: object) -> tuple[int, ...]:
     """Parse a range of colours in OpenCV's units.
 
     The six numbers are the minimum hue, saturation and value, and then the maximum of each.

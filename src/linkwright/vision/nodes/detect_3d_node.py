@@ -22,7 +22,7 @@ from linkwright.nodes.frame_poses import FramePoses
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
 from linkwright.nodes.settings import log_unknown, positive
 from linkwright.perception.nodes.depthimage_to_laserscan import read_depths
-from linkwright.vision.detectors.drawing import colour_of
+from linkwright.vision.detectors.drawing import class_color
 from linkwright.vision.nodes.detection_reading import VISION_FORMAT, YOLO_FORMAT, DetectionFormat
 from linkwright.vision.places.camera import CameraModel, make_camera_model
 from linkwright.vision.places.positions import ObjectPosition, position_from_depth, position_on_ground
@@ -80,7 +80,7 @@ class Detect3DNode(SingleNode):
         self._poses = FramePoses(node, "the positions of detections are unknown:")
         self._depth_images: deque[Any] = deque(maxlen=_MAX_DEPTH_IMAGES)
         self._cameras: dict[str, CameraModel] = {}
-        self._array = get_message(self.FORM.places)
+        self._array = get_message(self.FORM.position_type)
         self._publisher = node.create_publisher(self._array, "detections_3d", _QUEUE_DEPTH)
         self._markers = node.create_publisher(
             get_message("visualization_msgs/msg/MarkerArray"), "markers", _QUEUE_DEPTH
@@ -95,7 +95,7 @@ class Detect3DNode(SingleNode):
         node.create_subscription(
             info, "camera_info", lambda message: self._receive_camera_info("colour", message), SENSOR_DATA_QOS
         )
-        node.create_subscription(get_message(self.FORM.images), "detections", self._receive, _QUEUE_DEPTH)
+        node.create_subscription(get_message(self.FORM.image_type), "detections", self._receive, _QUEUE_DEPTH)
 
     def _receive_camera_info(self, kind: str, message: Any) -> None:
         try:
@@ -180,7 +180,7 @@ class Detect3DNode(SingleNode):
         The x axis of the box points along the view, and its z axis up.
         """
         box_pose = compose(pose, (*place.centre, *_FORWARD_IN_OPTICAL))
-        return self.FORM.placed(detection, header, box_pose, (place.depth, place.width, place.height))
+        return self.FORM.with_position(detection, header, box_pose, (place.depth, place.width, place.height))
 
     def _warn(self, reason: str) -> None:
         self._node.get_logger().warning(
@@ -200,7 +200,7 @@ def _make_markers(form: DetectionFormat, found: Any, positions: list[ObjectPosit
     marker_array = get_message("visualization_msgs/msg/MarkerArray")()
     marker_array.markers.append(marker_class(header=found.header, action=marker_class.DELETEALL))
     for number, (detection, position) in enumerate(zip(found.detections, positions, strict=True)):
-        name, _ = form.best(detection)
+        name, _ = form.best_hypothesis(detection)
         box_3d = form.box_3d(detection)
         box, label = (
             marker_class(header=found.header, ns=ns, id=number, type=shape, action=marker_class.ADD)
@@ -219,7 +219,7 @@ def _make_markers(form: DetectionFormat, found: Any, positions: list[ObjectPosit
         label.text = " ".join(filter(None, (name, detection.id, f"{distance:.1f} m")))
         for marker, alpha in ((box, 0.45), (label, 1.0)):
             colour = marker.color
-            colour.r, colour.g, colour.b = (channel / 255 for channel in colour_of(name))
+            colour.r, colour.g, colour.b = (channel / 255 for channel in class_color(name))
             colour.a = alpha
         marker_array.markers += [box, label]
     return marker_array

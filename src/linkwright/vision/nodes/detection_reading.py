@@ -23,11 +23,11 @@ class DetectionFormat(ABC):
     """
 
     def __init__(self, image_type: str, position_type: str) -> None:
-        self.images, self.places = image_type, position_type
+        self.image_type, self.position_type = image_type, position_type
 
     def read(self, message: Any) -> Detections:
         """Return the detections of a message in the same order, each with its best hypothesis."""
-        best = [self.best(detection) for detection in message.detections]
+        best = [self.best_hypothesis(detection) for detection in message.detections]
         names = tuple(dict.fromkeys(name for name, _ in best))
         return Detections(
             np.array([self.box(detection) for detection in message.detections], np.float32).reshape(-1, 4),
@@ -43,7 +43,7 @@ class DetectionFormat(ABC):
         return tracked
 
     @abstractmethod
-    def best(self, detection: Any) -> tuple[str, float]:
+    def best_hypothesis(self, detection: Any) -> tuple[str, float]:
         """Return the class and score of a detection's best hypothesis.
 
         The class is empty if there is no hypothesis.
@@ -54,7 +54,7 @@ class DetectionFormat(ABC):
         """Return the left, top, right and bottom of a detection in pixels, shape ``(4,)``."""
 
     @abstractmethod
-    def placed(self, detection: Any, header: Any, pose: Transform, size: tuple[float, float, float]) -> Any:
+    def with_position(self, detection: Any, header: Any, pose: Transform, size: tuple[float, float, float]) -> Any:
         """Return a detection with a box in metres, whose pose is in the frame of the header."""
 
     @abstractmethod
@@ -65,7 +65,7 @@ class DetectionFormat(ABC):
 class _Vision(DetectionFormat):
     """The format of vision_msgs: a detection has hypotheses with classes as strings."""
 
-    def best(self, detection: Any) -> tuple[str, float]:
+    def best_hypothesis(self, detection: Any) -> tuple[str, float]:
         if not detection.results:
             return "", 0.0
         best_hypothesis = max(
@@ -76,7 +76,7 @@ class _Vision(DetectionFormat):
     def box(self, detection: Any) -> NDArray[np.float64]:
         return _box_corners(detection.bbox.center.position, detection.bbox.size_x, detection.bbox.size_y)
 
-    def placed(self, detection: Any, header: Any, pose: Transform, size: tuple[float, float, float]) -> Any:
+    def with_position(self, detection: Any, header: Any, pose: Transform, size: tuple[float, float, float]) -> Any:
         positioned = get_message("vision_msgs/msg/Detection3D")(header=header, id=detection.id)
         _set_box(positioned.bbox, pose, size)
         for hypothesis in detection.results:
@@ -92,13 +92,13 @@ class _Vision(DetectionFormat):
 class _Yolo(DetectionFormat):
     """The format of yolo_msgs: a detection has one class, and both a 2D box and a 3D box."""
 
-    def best(self, detection: Any) -> tuple[str, float]:
+    def best_hypothesis(self, detection: Any) -> tuple[str, float]:
         return detection.class_name, float(detection.score)
 
     def box(self, detection: Any) -> NDArray[np.float64]:
         return _box_corners(detection.bbox.center.position, detection.bbox.size.x, detection.bbox.size.y)
 
-    def placed(self, detection: Any, header: Any, pose: Transform, size: tuple[float, float, float]) -> Any:
+    def with_position(self, detection: Any, header: Any, pose: Transform, size: tuple[float, float, float]) -> Any:
         positioned = copy(detection)
         positioned.bbox3d = get_message("yolo_msgs/msg/BoundingBox3D")(frame_id=header.frame_id)
         _set_box(positioned.bbox3d, pose, size)

@@ -65,7 +65,7 @@ from linkwright.vision.detectors.settings import setting_error
 from linkwright.vision.nodes.detection_messages import MESSAGE_MAKERS, image_message
 from linkwright.vision.nodes.dialects import DARKNET_ROS, OURS, YOLO_ROS, YOLOV5_ROS, YOLOV5_ROS2, Dialect
 from linkwright.vision.nodes.image_watch import ImageWatch
-from linkwright.vision.nodes.latest import LatestWorker
+from linkwright.vision.nodes.latest_worker import LatestWorker
 
 _QUEUE_DEPTH = 10
 _SECONDS_BETWEEN_ERRORS = 5.0
@@ -120,11 +120,13 @@ class DetectorNode(SingleNode):
         self._unpacker, self._ranges = Unpacker(), RangeFinder()
         self._last_image_ns: int | None = None
         self._results: deque[Callable[[], None]] = deque()
-        output = node.get_parameter(dialect.output_topic).value if dialect.output_topic else dialect.detections
-        self._detections = node.create_publisher(get_message(dialect.message), output, _QUEUE_DEPTH)
+        output = (
+            node.get_parameter(dialect.output_topic).value if dialect.output_topic else dialect.default_output_topic
+        )
+        self._detections = node.create_publisher(get_message(dialect.message_type), output, _QUEUE_DEPTH)
         message_class = get_message("sensor_msgs/msg/Image")
         self._image_publishers = [
-            node.create_publisher(message_class, topic, _QUEUE_DEPTH) for topic in dialect.debug_images
+            node.create_publisher(message_class, topic, _QUEUE_DEPTH) for topic in dialect.debug_image_topics
         ]
         node.create_service(get_service("std_srvs/srv/SetBool"), "enable", self._on_enable)
         set_classes, callback_group = get_service("yolo_msgs/srv/SetClasses"), MutuallyExclusiveCallbackGroup()
@@ -159,9 +161,9 @@ class DetectorNode(SingleNode):
         node.declare_parameter("image_transport", "raw", _READ_ONLY)
         node.declare_parameter("image_reliability", ReliabilityPolicy.BEST_EFFORT.value, _READ_ONLY)
         if dialect.image_topic:
-            node.declare_parameter(dialect.image_topic, dialect.images, _READ_ONLY)
+            node.declare_parameter(dialect.image_topic, dialect.default_image_topic, _READ_ONLY)
         if dialect.output_topic:
-            node.declare_parameter(dialect.output_topic, dialect.detections, _READ_ONLY)
+            node.declare_parameter(dialect.output_topic, dialect.default_output_topic, _READ_ONLY)
         for name in node.undeclared_overrides():
             if name in _DETECTOR_SETTINGS or name.startswith(f"{_COLOURS_PARAMETER}."):
                 node.declare_parameter(name, None, ParameterDescriptor(read_only=True, dynamic_typing=True))
@@ -190,7 +192,7 @@ class DetectorNode(SingleNode):
         )
 
     def _image_source(self, dialect: Dialect) -> ImageSource:
-        topic = self._value(dialect.image_topic) if dialect.image_topic else dialect.images
+        topic = self._value(dialect.image_topic) if dialect.image_topic else dialect.default_image_topic
         transport = self._value("image_transport")
         source = ImageSource.of(self._node.resolve_topic_name(topic), transport)
         if not source.is_supported:
@@ -364,7 +366,7 @@ class DetectorNode(SingleNode):
         self._node.get_logger().error(problem, throttle_duration_sec=_SECONDS_BETWEEN_ERRORS)
 
     def _publish(self, header: Any, detections: Detections, image: NDArray[np.uint8] | None) -> None:
-        self._detections.publish(MESSAGE_MAKERS[self.DIALECT.message](header, detections))
+        self._detections.publish(MESSAGE_MAKERS[self.DIALECT.message_type](header, detections))
         if image is None:
             return
         message = image_message(header, image)

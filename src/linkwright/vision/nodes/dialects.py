@@ -27,11 +27,11 @@ class Dialect:
         max_detections_parameter: the parameter for the maximum number of detections in an image.
         default_max_detections: the default of `max_detections_parameter`.
         image_topic: the parameter for the topic of images.
-        images: the default of `image_topic`, or the fixed topic if there is no such parameter.
+        default_image_topic: the default of `image_topic`, or the fixed topic if there is no such parameter.
         output_topic: the parameter for the topic of detections.
-        detections: the default of `output_topic`, or the fixed topic if there is no such parameter.
-        debug_images: the topics of images with boxes drawn into them.
-        message: the type of detection messages.
+        default_output_topic: the default of `output_topic`, or the fixed topic if there is no such parameter.
+        debug_image_topics: the topics of images with boxes drawn into them.
+        message_type: the type of detection messages.
     """
 
     model: str = "model"
@@ -43,15 +43,15 @@ class Dialect:
     max_detections_parameter: str = "max_det"
     default_max_detections: int = 300
     image_topic: str = "input_image_topic"
-    images: str = "image_raw"
+    default_image_topic: str = "image_raw"
     output_topic: str = ""
-    detections: str = "detections"
-    debug_images: tuple[str, ...] = ("debug_image",)
-    message: str = VISION
+    default_output_topic: str = "detections"
+    debug_image_topics: tuple[str, ...] = ("debug_image",)
+    message_type: str = VISION
 
 
 OURS = Dialect()
-YOLO_ROS = Dialect(debug_images=("debug_image", "dbg_image"), message=YOLO)
+YOLO_ROS = Dialect(debug_image_topics=("debug_image", "dbg_image"), message_type=YOLO)
 YOLOV5_ROS = Dialect(
     model="weights",
     threshold="confidence_threshold",
@@ -61,15 +61,15 @@ YOLOV5_ROS = Dialect(
     max_detections_parameter="maximum_detections",
     default_max_detections=1000,
     output_topic="output_topic",
-    debug_images=("image_out",),
+    debug_image_topics=("image_out",),
 )
 YOLOV5_ROS2 = Dialect(
     default_threshold=0.25,
     default_iou=0.45,
     image_topic="image_topic",
-    images="/image_raw",
-    detections="yolo_result",
-    debug_images=("result_img",),
+    default_image_topic="/image_raw",
+    default_output_topic="yolo_result",
+    debug_image_topics=("result_img",),
 )
 DARKNET_ROS = Dialect(
     model="network.weights",
@@ -79,7 +79,7 @@ DARKNET_ROS = Dialect(
     iou="detection.nms_threshold",
     default_iou=0.45,
     image_topic="",
-    images="~/images",
-    detections="~/detections",
-    debug_images=("~/debug_image",),
+    default_image_topic="~/images",
+    default_output_topic="~/detections",
+    debug_image_topics=("~/debug_image",),
 )

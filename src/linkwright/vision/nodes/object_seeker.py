@@ -26,8 +26,15 @@ from linkwright.nodes.settings import bad_value, log_unknown, positive
 from linkwright.nodes.velocity_topic import VelocityTopic
 from linkwright.vision.nodes.nav2_trip import Nav2Trip
 from linkwright.vision.nodes.seen_objects import SeenObject, SeenObjects
+from linkwright.vision.places.object_requests import (
+    Answer,
+    ObjectRequest,
+    Sighting,
+    answer_phrase,
+    describe_sightings,
+    parse_request,
+)
 from linkwright.vision.places.seeking import Phase, Seeker, SeekSettings, View
-from linkwright.vision.places.words import Answer, ObjectRequest, Sighting, answer_phrase, described, requested
 
 _QUEUE_DEPTH = 10
 _STEP_SECONDS = 0.05
@@ -117,7 +124,7 @@ class ObjectSeeker(SingleNode):
 
         If `language` is None, answer in the language of the message.
         """
-        request = requested(message.data)
+        request = parse_request(message.data)
         if request is None:
             self._node.get_logger().warning(f"'{message.data}' does not name an object; say 'ball' or 'red ball'")
             return
@@ -127,7 +134,7 @@ class ObjectSeeker(SingleNode):
         self._cancel_trip()
         self._request, self._target, self._start_ns = request, None, self._now_ns()
         self._seeker.begin(follow=follow)
-        self._answer(Answer.LOOKING)
+        self._answer(Answer.SEARCHING)
 
     def _stop(self) -> None:
         if self._seeker.phase is not Phase.IDLE:
@@ -158,7 +165,7 @@ class ObjectSeeker(SingleNode):
                 Sighting(seen_object.name, seen_object.colour, *_in_robot_frame(pose, seen_object))
                 for seen_object in self._seen_objects.objects
             ]
-        response.success, response.message = True, described(objects, language)
+        response.success, response.message = True, describe_sightings(objects, language)
         self._node.get_logger().info(response.message)
         return response
 
@@ -197,21 +204,21 @@ class ObjectSeeker(SingleNode):
         silence = (now_ns - last_ns) / 1e9
         pose = self._poses.pose(self._fixed, self._base, 0)
         if pose is None:
-            return View(now_ns / 1e9, 0.0, silence=inf)
+            return View(now_ns / 1e9, 0.0, detection_silence=inf)
         heading = rpy_from_quaternion(pose[3:])[2]
         self._target = self._choose_object(pose) or self._target
         free_distance = self._free_distance(now_ns)
         if self._target is None:
-            return View(now_ns / 1e9, heading, silence=silence, free=free_distance)
+            return View(now_ns / 1e9, heading, detection_silence=silence, free_distance=free_distance)
         ahead, left = _in_robot_frame(pose, self._target)
         return View(
             now_ns / 1e9,
             heading,
             bearing=atan2(left, ahead),
-            surface=hypot(ahead, left) - self._target.radius,
+            surface_distance=hypot(ahead, left) - self._target.radius,
             age=(now_ns - self._target.seen_ns) / 1e9,
-            silence=silence,
-            free=free_distance,
+            detection_silence=silence,
+            free_distance=free_distance,
         )
 
     def _choose_object(self, pose: Transform) -> SeenObject | None:
@@ -223,7 +230,7 @@ class ObjectSeeker(SingleNode):
         candidates = [
             seen_object
             for seen_object in self._seen_objects.objects
-            if self._request.matches(seen_object.name, seen_object.colour, seen_object.shape, seen_object.score)
+            if self._request.matches(seen_object.name, seen_object.colour, seen_object.aspect_ratio, seen_object.score)
         ]
         previous = self._target
         if previous is not None:
@@ -233,7 +240,7 @@ class ObjectSeeker(SingleNode):
                 for candidate in candidates
                 if hypot(candidate.x - previous.x, candidate.y - previous.y) < _MAX_SAME_OBJECT_DISTANCE
             ]
-            if same_id or nearby or self._seeker.phase is Phase.GOING:
+            if same_id or nearby or self._seeker.phase is Phase.APPROACHING:
                 candidates = same_id or nearby
         return min(candidates, key=lambda candidate: hypot(*_in_robot_frame(pose, candidate)), default=None)
 

@@ -12,7 +12,7 @@ from linkwright.images import BadImageError, RangeFinder, decode_image
 from linkwright.messages import get_message
 from linkwright.nodes.frame_poses import FramePoses
 from linkwright.vision.nodes.detection_reading import VISION_FORMAT
-from linkwright.vision.places.colours import colour_of
+from linkwright.vision.places.object_colors import object_color
 
 _QUEUE_DEPTH = 10
 _MAX_IMAGES = 10
@@ -30,7 +30,7 @@ class SeenObject:
         colour: the word for its colour; None if it is unknown.
         x, y: the position of its centre in the fixed frame, metres.
         radius: half its width, metres.
-        shape: its width divided by its height.
+        aspect_ratio: its width divided by its height.
         score: the score of its detection.
         seen_ns: the time of the image, nanoseconds.
     """
@@ -41,7 +41,7 @@ class SeenObject:
     x: float
     y: float
     radius: float
-    shape: float
+    aspect_ratio: float
     score: float
     seen_ns: int
 
@@ -91,7 +91,7 @@ class SeenObjects:
         if pixels.ndim != 3:
             return
         for detection in message.detections:
-            colour = colour_of(pixels[:, :, :3], VISION_FORMAT.box(detection)) if detection.id else None
+            colour = object_color(pixels[:, :, :3], VISION_FORMAT.box(detection)) if detection.id else None
             if colour is not None:
                 votes = self._votes.setdefault(detection.id, Counter())
                 votes[colour] += 1
@@ -113,7 +113,7 @@ class SeenObjects:
             x, y, *_ = compose(pose, (centre.x, centre.y, centre.z, 0.0, 0.0, 0.0, 1.0))
             colour_votes = self._votes.get(detection.id)
             colour = colour_votes.most_common(1)[0][0] if colour_votes else None
-            name, score = VISION_FORMAT.best(detection)
+            name, score = VISION_FORMAT.best_hypothesis(detection)
             size = detection.bbox.size
-            shape = size.y / size.z if size.z > 0 else 1.0
-            self.objects.append(SeenObject(name, detection.id, colour, x, y, size.y / 2, shape, score, time_ns))
+            aspect_ratio = size.y / size.z if size.z > 0 else 1.0
+            self.objects.append(SeenObject(name, detection.id, colour, x, y, size.y / 2, aspect_ratio, score, time_ns))

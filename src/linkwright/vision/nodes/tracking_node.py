@@ -48,17 +48,17 @@ class TrackingNode(SingleNode):
                 node.declare_parameter(name, None, _ANY_TYPE)
             self._tracker = Tracker(self._settings())
             log_unknown(node)
-        self._array = get_message(self.FORM.images)
+        self._array = get_message(self.FORM.image_type)
         self._publisher = node.create_publisher(self._array, "tracking", _QUEUE_DEPTH)
         node.create_subscription(self._array, "detections", self._receive, _QUEUE_DEPTH)
 
     def _settings(self) -> TrackerSettings:
         defaults = TrackerSettings()
         return TrackerSettings(
-            high=self._declare_share("track_high_thresh", defaults.high),
-            low=self._declare_share("track_low_thresh", defaults.low),
+            high_threshold=self._declare_share("track_high_thresh", defaults.high_threshold),
+            low_threshold=self._declare_share("track_low_thresh", defaults.low_threshold),
             new_track_score=self._declare_share("new_track_thresh", defaults.new_track_score),
-            match=self._declare_share("match_thresh", defaults.match),
+            match_threshold=self._declare_share("match_thresh", defaults.match_threshold),
             max_age=self._declare_positive("track_buffer", round(defaults.max_age * _IMAGES_PER_SECOND))
             / _IMAGES_PER_SECOND,
             min_hits=int(self._declare_positive("min_hits", defaults.min_hits)),

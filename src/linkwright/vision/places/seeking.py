@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from enum import Enum
 from math import inf, pi
 
-from linkwright.vision.places.words import Answer
+from linkwright.vision.places.object_requests import Answer
 
 _MAX_AGE_SECONDS = 0.5
 """The maximum age of a detection of an object that counts as visible now, seconds."""
@@ -24,8 +24,8 @@ class Phase(Enum):
     """The phases of seeking."""
 
     IDLE = "idle"
-    LOOKING = "looking"
-    GOING = "going"
+    SEARCHING = "looking"
+    APPROACHING = "going"
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,20 +57,20 @@ class View:
         time: the time of the step, seconds.
         heading: the robot's heading in a fixed frame, rad.
         bearing: the angle from the robot's heading to the object, rad, positive to the left; valid if it was ever seen.
-        surface: the distance from the robot's centre to the object's nearest side, metres; infinite if it was never
-            seen.
+        surface_distance: the distance from the robot's centre to the object's nearest side, metres; infinite if it was
+            never seen.
         age: seconds since the object was last seen; infinite if it was never seen.
-        silence: seconds since the last message of a detector.
-        free: the distance from the robot's centre to the nearest obstacle ahead, metres.
+        detection_silence: seconds since the last message of a detector.
+        free_distance: the distance from the robot's centre to the nearest obstacle ahead, metres.
     """
 
     time: float
     heading: float
     bearing: float = 0.0
-    surface: float = inf
+    surface_distance: float = inf
     age: float = inf
-    silence: float = 0.0
-    free: float = inf
+    detection_silence: float = 0.0
+    free_distance: float = inf
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,7 +101,7 @@ class Seeker:
         self.phase = Phase.IDLE
         self.follows_object = False
         self._heading: float | None = None
-        self._blocked_at: float | None = None
+        self._blocked_since: float | None = None
         self._turned_angle = self._turn_direction = 0.0
         self._was_found = False
 
@@ -114,7 +114,7 @@ class Seeker:
     def begin(self, *, follow: bool = False) -> None:
         """Begin to seek a new object."""
         self.stop()
-        self.phase, self.follows_object = Phase.LOOKING, follow
+        self.phase, self.follows_object = Phase.SEARCHING, follow
 
     def step(self, view: View) -> Command:
         """Return the next velocity and event.
@@ -123,12 +123,12 @@ class Seeker:
         """
         if self.phase is Phase.IDLE:
             return Command()
-        if view.silence > self.settings.lost_time:
-            return self._finish(Answer.BLIND)
-        if self.phase is Phase.LOOKING:
+        if view.detection_silence > self.settings.lost_time:
+            return self._finish(Answer.NO_DETECTIONS)
+        if self.phase is Phase.SEARCHING:
             return self._turn_and_look(view)
         if view.age > self.settings.lost_time:
-            self.phase = Phase.LOOKING
+            self.phase = Phase.SEARCHING
             self._reset()
             self._was_found = True
             return self._turn_and_look(view)
@@ -137,7 +137,7 @@ class Seeker:
     def _turn_and_look(self, view: View) -> Command:
         if view.age < _MAX_AGE_SECONDS:
             is_first = not self._was_found
-            self.phase = Phase.GOING
+            self.phase = Phase.APPROACHING
             command = self._approach(view)
             return Command(command.linear, command.angular, command.event or Answer.FOUND) if is_first else command
         if self._heading is not None:
@@ -152,7 +152,7 @@ class Seeker:
     def _approach(self, view: View) -> Command:
         settings = self.settings
         angular = max(-settings.turn_speed, min(settings.turn_speed, _TURN_GAIN * view.bearing))
-        remaining = view.surface - settings.distance
+        remaining = view.surface_distance - settings.distance
         if remaining <= _DISTANCE_TOLERANCE:
             if abs(view.bearing) > _BEARING_TOLERANCE:
                 return Command(0.0, angular)
@@ -162,14 +162,14 @@ class Seeker:
         speed = max(_MIN_SPEED, min(settings.speed, _SPEED_GAIN * remaining)) * (
             1.0 - abs(view.bearing) / _MAX_DRIVING_BEARING / 2
         )
-        if view.free < view.surface - _OBJECT_MARGIN:
-            free_distance = view.free - settings.obstacle_distance
+        if view.free_distance < view.surface_distance - _OBJECT_MARGIN:
+            free_distance = view.free_distance - settings.obstacle_distance
             if free_distance <= 0:
-                self._blocked_at = view.time if self._blocked_at is None else self._blocked_at
-                waiting_time = view.time - self._blocked_at
+                self._blocked_since = view.time if self._blocked_since is None else self._blocked_since
+                waiting_time = view.time - self._blocked_since
                 return self._finish(Answer.BLOCKED) if waiting_time > settings.blocked_time else Command(0.0, angular)
             speed = min(speed, _SPEED_GAIN * free_distance)
-        self._blocked_at = None
+        self._blocked_since = None
         return Command(speed, angular)
 
     def _finish(self, event: Answer) -> Command:
@@ -177,6 +177,6 @@ class Seeker:
         return Command(event=event)
 
     def _reset(self) -> None:
-        self._heading = self._blocked_at = None
+        self._heading = self._blocked_since = None
         self._turned_angle = self._turn_direction = 0.0
         self._was_found = False

@@ -29,19 +29,19 @@ class TrackerSettings:
     """The settings of a tracker, with ByteTrack's names and defaults where it has them.
 
     Attributes:
-        high: detections with at least this score are matched first, and only they may start a track
+        high_threshold: detections with at least this score are matched first, and only they may start a track
             (``track_high_thresh``).
-        low: detections with a lower score are ignored (``track_low_thresh``).
+        low_threshold: detections with a lower score are ignored (``track_low_thresh``).
         new_track_score: the minimum score that starts a track (``new_track_thresh``).
-        match: the maximum of 1 - IoU for two boxes of the same object (``match_thresh``).
+        match_threshold: the maximum of 1 - IoU for two boxes of the same object (``match_thresh``).
         max_age: how long a track is kept without a detection, seconds (``track_buffer``, 30 images at 30 Hz).
         min_hits: the number of consecutive images that must show an object before it gets an ID.
     """
 
-    high: float = 0.25
-    low: float = 0.1
+    high_threshold: float = 0.25
+    low_threshold: float = 0.1
     new_track_score: float = 0.25
-    match: float = 0.8
+    match_threshold: float = 0.8
     max_age: float = 1.0
     min_hits: int = 2
 
@@ -56,7 +56,7 @@ class _Track:
 
     name: str
     state: Floats
-    speed: Floats
+    velocity: Floats
     variance: Floats
     covariance: Floats
     velocity_variance: Floats
@@ -66,7 +66,7 @@ class _Track:
 
     def predict(self, seconds: float) -> None:
         noise = (_ACCELERATION_NOISE * self._box_scale()) ** 2
-        self.state = self.state + self.speed * seconds
+        self.state = self.state + self.velocity * seconds
         self.state[2:] = np.maximum(self.state[2:], 1.0)
         self.variance = (
             self.variance + 2 * seconds * self.covariance + seconds**2 * self.velocity_variance + noise * seconds**4 / 4
@@ -80,7 +80,7 @@ class _Track:
         gain, velocity_gain = self.variance / total_variance, self.covariance / total_variance
         residual = measurement - self.state
         self.state = self.state + gain * residual
-        self.speed = self.speed + velocity_gain * residual
+        self.velocity = self.velocity + velocity_gain * residual
         self.velocity_variance = self.velocity_variance - velocity_gain * self.covariance
         self.covariance = (1 - gain) * self.covariance
         self.variance = (1 - gain) * self.variance
@@ -135,12 +135,16 @@ class Tracker:
             _to_centre_form(detections.boxes), [detections.name(index) for index in range(len(detections))], time
         )
         scores = detections.scores
-        high_indices = [index for index in range(len(detections)) if scores[index] >= settings.high]
-        low_indices = [index for index in range(len(detections)) if settings.low <= scores[index] < settings.high]
+        high_indices = [index for index in range(len(detections)) if scores[index] >= settings.high_threshold]
+        low_indices = [
+            index
+            for index in range(len(detections))
+            if settings.low_threshold <= scores[index] < settings.high_threshold
+        ]
         track_by_detection = self._correct_tracks(self._tracks, high_indices, frame)
         unmatched_tracks = [track for track in self._tracks if track.id and track.seen_at != time]
         track_by_detection |= self._correct_tracks(unmatched_tracks, low_indices, frame)
-        self._tracks = [track for track in self._tracks if not self._is_gone(track, time)]
+        self._tracks = [track for track in self._tracks if not self._is_expired(track, time)]
         for index in high_indices:
             if index not in track_by_detection and scores[index] >= settings.new_track_score:
                 track_by_detection[index] = self._start_track(frame.names[index], frame.boxes[index], time)
@@ -165,11 +169,11 @@ class Tracker:
         if not tracks or not candidates:
             return []
         predicted = np.stack([track.state for track in tracks])
-        costs = 1.0 - overlaps(_to_corner_form(predicted), _to_corner_form(frame.boxes[list(candidates)]))
+        costs = 1.0 - pairwise_iou(_to_corner_form(predicted), _to_corner_form(frame.boxes[list(candidates)]))
         same_class = [[track.name == frame.names[index] for index in candidates] for track in tracks]
-        return assign(np.where(same_class, costs, np.inf), self._settings.match)
+        return assign(np.where(same_class, costs, np.inf), self._settings.match_threshold)
 
-    def _is_gone(self, track: _Track, time: float) -> bool:
+    def _is_expired(self, track: _Track, time: float) -> bool:
         return track.seen_at != time and (not track.id or time - track.seen_at > self._settings.max_age)
 
     def _start_track(self, name: str, box: Floats, time: float) -> _Track:
@@ -178,7 +182,7 @@ class Tracker:
         return _Track(name, box.copy(), np.zeros(4), variance, np.zeros(4), speed_variance, time)
 
 
-def overlaps(first: NDArray[np.floating], second: NDArray[np.floating]) -> Floats:
+def pairwise_iou(first: NDArray[np.floating], second: NDArray[np.floating]) -> Floats:
     """Return the IoU of every pair of boxes from two sets.
 
     Args:

@@ -14,35 +14,35 @@ _MIN_CONFUSION = 0.05  # the share of a class confused with another one, above w
 
 
 @dataclass(frozen=True, slots=True)
-class Examination:
+class EvaluationReport:
     """The results of a network on a set of images.
 
     Attributes:
         title: the description of the images, used as the heading.
-        figures: the results.
+        evaluation: the results.
         origin: the worlds and options of the images' dataset; empty if unknown.
     """
 
     title: str
-    figures: Evaluation
+    evaluation: Evaluation
     origin: str = ""
 
 
-def make_card(name: str, facts: Mapping[str, str], examinations: Sequence[Examination]) -> str:
+def make_card(name: str, facts: Mapping[str, str], reports: Sequence[EvaluationReport]) -> str:
     """Return the card as Markdown.
 
     Args:
         name: the name of the network.
         facts: the facts about the training, in the order of the card.
-        examinations: the results, first on the held-back images of the training dataset.
+        reports: the results, first on the held-back images of the training dataset.
     """
     lines = [f"# {name}", "", "| | |", "| --- | --- |"]
     lines += [f"| {key} | {_escape_cell(value)} |" for key, value in facts.items()]
-    for examination in examinations:
-        origin = [examination.origin, ""] if examination.origin else []
-        lines += ["", f"## {examination.title}", "", *origin, *_result_lines(examination.figures)]
+    for report in reports:
+        origin_lines = [report.origin, ""] if report.origin else []
+        lines += ["", f"## {report.title}", "", *origin_lines, *_result_lines(report.evaluation)]
     lines += ["", "## Where it fails", ""]
-    failures = [line for examination in examinations for line in _failures(examination)]
+    failures = [line for report in reports for line in _failures(report)]
     lines += failures or ["Nothing stands out in these images."]
     return "\n".join(lines) + "\n"
 
@@ -57,7 +57,7 @@ def dataset_facts(folder: Path) -> dict[str, str]:
     return {**facts, "robots and models put in": ", ".join(sorted(record.added))} if record.added else facts
 
 
-def origin(folder: Path, training_folder: Path) -> str:
+def describe_origin(folder: Path, training_folder: Path) -> str:
     """Describe the worlds of a dataset, and whether the network was also trained on them.
 
     Args:
@@ -105,7 +105,7 @@ def _read_record(folder: Path) -> _DatasetRecord | None:
     return _DatasetRecord(frozenset(worlds), "; ".join(dict.fromkeys(options)), frozenset(added))
 
 
-def table(evaluation: Evaluation) -> list[str]:
+def results_table(evaluation: Evaluation) -> list[str]:
     """Return the results of all classes as lines of a Markdown table."""
     lines = ["| class | objects | mAP50 | mAP50-95 | precision | recall |", f"| --- |{' ---: |' * 5}"]
     lines += [_table_row(class_results) for class_results in evaluation.classes]
@@ -114,7 +114,7 @@ def table(evaluation: Evaluation) -> list[str]:
     return lines
 
 
-def confusion(evaluation: Evaluation) -> list[str]:
+def confusion_table(evaluation: Evaluation) -> list[str]:
     """Return the confusion matrix as a Markdown table, with rows of labels.
 
     The columns are the detected classes.
@@ -133,7 +133,7 @@ def _result_lines(evaluation: Evaluation) -> list[str]:
     return [
         f"{evaluation.images} images. Precision and recall at a score of 0.5.",
         "",
-        *table(evaluation),
+        *results_table(evaluation),
         "",
         "| longer side | objects | recall |",
         "| --- | ---: | ---: |",
@@ -150,22 +150,21 @@ def _format_number(value: float | None) -> str:
     return "" if value is None else f"{value:.3f}"
 
 
-def _failures(examination: Examination) -> list[str]:
+def _failures(report: EvaluationReport) -> list[str]:
     """Return Markdown list items about sizes and classes that are often missed or confused."""
     lines = []
-    for name, objects, recall in examination.figures.recall_by_size:
+    for name, objects, recall in report.evaluation.recall_by_size:
         if objects and recall < _MIN_RECALL:
-            lines.append(f"- {examination.title}: of objects {name} it misses {1 - recall:.0%}.")
-    names = [class_results.name for class_results in examination.figures.classes]
-    for index, kind in enumerate(examination.figures.classes):
+            lines.append(f"- {report.title}: of objects {name} it misses {1 - recall:.0%}.")
+    names = [class_results.name for class_results in report.evaluation.classes]
+    for index, kind in enumerate(report.evaluation.classes):
         if kind.recall is not None and kind.recall < _MIN_RECALL:
-            lines.append(f"- {examination.title}: it misses {1 - kind.recall:.0%} of {kind.name}.")
-        row = examination.figures.confusion[index]
+            lines.append(f"- {report.title}: it misses {1 - kind.recall:.0%} of {kind.name}.")
+        row = report.evaluation.confusion[index]
         for other_index, count in enumerate(row[:-1].tolist()):
             if other_index != index and kind.objects and count / kind.objects >= _MIN_CONFUSION:
                 lines.append(
-                    f"- {examination.title}: it takes {count / kind.objects:.0%} of {kind.name} for "
-                    f"{names[other_index]}."
+                    f"- {report.title}: it takes {count / kind.objects:.0%} of {kind.name} for {names[other_index]}."
                 )
     return lines
 

@@ -14,7 +14,7 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, ph
 from linkwright.vision.detectors.letterbox import GREY, letterbox_image
 from linkwright.vision.detectors.library import load_opencv
 from linkwright.vision.training.options import View
-from linkwright.vision.training.reading import LabelledFile
+from linkwright.vision.training.yolo_dataset import LabelledFile
 
 _MIN_SIDE = 3.0  # an object narrower than this after augmentation is ignored
 _MIN_VISIBLE_SHARE = 0.3  # an object with a smaller share of its box left in the image is ignored
@@ -76,7 +76,7 @@ def read_labelled_images(labelled: Sequence[LabelledFile], width: int, height: i
     return LabelledImages(images, tuple(objects))
 
 
-def repeat_factors(lesson: LabelledImages, classes: int) -> NDArray[np.float64]:
+def repeat_factors(labelled_images: LabelledImages, classes: int) -> NDArray[np.float64]:
     """Return how often an epoch uses each image: once, or more often if it shows a rare class.
 
     A class is rare if the fraction f of images that show it is below the median m of these fractions. Its images are
@@ -85,8 +85,8 @@ def repeat_factors(lesson: LabelledImages, classes: int) -> NDArray[np.float64]:
     Returns:
         Shape ``(n,)``, 1 or more.
     """
-    has_class: NDArray[np.bool_] = np.zeros((len(lesson.objects), classes), np.bool_)
-    for row, objects in zip(has_class, lesson.objects, strict=True):
+    has_class: NDArray[np.bool_] = np.zeros((len(labelled_images.objects), classes), np.bool_)
+    for row, objects in zip(has_class, labelled_images.objects, strict=True):
         row[objects[objects[:, 0] >= 0, 0].astype(np.int64)] = True
     image_counts = has_class.sum(0)
     median_count = float(np.median(image_counts[image_counts > 0])) if image_counts.any() else 1.0
@@ -101,16 +101,16 @@ def repeated_indices(factors: NDArray[np.float64], generator: np.random.Generato
     return np.repeat(np.arange(len(factors)), counts)
 
 
-def augmented(
-    lesson: LabelledImages, place: int, view: View, generator: np.random.Generator
+def augment(
+    labelled_images: LabelledImages, place: int, view: View, generator: np.random.Generator
 ) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
     """Return a randomly augmented part of an image, with its objects.
 
     The part is mirrored and scaled at random; light, contrast, colours and sharpness change, and noise is added.
 
     Args:
-        lesson: the images.
-        place: the index of the image in `lesson`.
+        labelled_images: the images.
+        place: the index of the image in `labelled_images`.
         view: the size of the part in pixels, and the range of scales.
         generator: the random generator.
 
@@ -118,7 +118,7 @@ def augmented(
         The part, shape ``(height, width, 3)``, and its objects as in `LabelledImages`.
     """
     cv2 = load_opencv()
-    image, objects = lesson.images[place], lesson.objects[place]
+    image, objects = labelled_images.images[place], labelled_images.objects[place]
     height, width = image.shape[:2]
     size = view.size
     min_log_scale, max_log_scale = np.log(view.scales)

@@ -7,7 +7,7 @@ from importlib import import_module
 from linkwright.diagnostics import missing_extra
 
 
-def need_pytorch() -> None:
+def require_pytorch() -> None:
     """Check that PyTorch and its ONNX exporter are installed.
 
     Raises:

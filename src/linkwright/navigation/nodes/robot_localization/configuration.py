@@ -13,7 +13,7 @@ from linkwright.graph import Node, Parameter, ParameterType
 from linkwright.navigation.estimation.estimator import Timing
 from linkwright.navigation.estimation.kalman import Control, Settings
 from linkwright.navigation.estimation.motion_model import SIZE, Matrix
-from linkwright.navigation.estimation.readings import GRAVITY, Used
+from linkwright.navigation.estimation.readings import GRAVITY, UsedFlags
 from linkwright.nodes.settings import bad_value, positive
 
 KINDS = ("odom", "pose", "twist", "imu")
@@ -63,7 +63,7 @@ class SensorSettings:
     name: str
     kind: str
     topic: str
-    used: Used
+    used: UsedFlags
     differential: bool
     relative: bool
     queue_size: int
@@ -83,20 +83,20 @@ class Configuration:
     frequency: float
     two_d: bool
     frames: Frames
-    publish_tf: bool
-    publish_acceleration: bool
+    publishes_tf: bool
+    publishes_acceleration: bool
     permit_corrected: bool
     transform_offset_ns: int
     reset_on_time_jump: bool
     gravity: float
-    diagnostics: bool
-    enabled: bool
+    publishes_diagnostics: bool
+    is_initially_enabled: bool
     timing: Timing
     filter: Settings
     sensors: tuple[SensorSettings, ...]
 
 
-def configuration_of(node: Node) -> Configuration:
+def read_configuration(node: Node) -> Configuration:
     """Declare and read the parameters of a node.
 
     Raises:
@@ -111,36 +111,36 @@ def configuration_of(node: Node) -> Configuration:
     for name, default in (("debug", False), ("debug_out_file", "robot_localization_debug.txt")):
         declare(name, default)
     declare("transform_timeout", 0.0)  # The parameter has no effect, because lookups never wait.
-    sensors = tuple(_sensors(node))
+    sensors = tuple(_read_sensors(node))
     return Configuration(
         frequency=frequency,
         two_d=declare("two_d_mode", False).value,
-        frames=_frames(node),
-        publish_tf=declare("publish_tf", True).value,
-        publish_acceleration=declare("publish_acceleration", False).value,
+        frames=_read_frames(node),
+        publishes_tf=declare("publish_tf", True).value,
+        publishes_acceleration=declare("publish_acceleration", False).value,
         permit_corrected=declare("permit_corrected_publication", False).value,
         transform_offset_ns=_nanoseconds(declare("transform_time_offset", 0.0).value),
         reset_on_time_jump=declare("reset_on_time_jump", False).value,
         gravity=declare("gravitational_acceleration", GRAVITY).value,
-        diagnostics=declare("print_diagnostics", False).value,
-        enabled=not declare("disabled_at_startup", False).value,
+        publishes_diagnostics=declare("print_diagnostics", False).value,
+        is_initially_enabled=not declare("disabled_at_startup", False).value,
         timing=Timing(
             sensor_timeout_ns=_nanoseconds(timeout),
             predict_to_now=declare("predict_to_current_time", False).value,
             history_ns=_nanoseconds(abs(history_seconds)) if smooths_lagged_data else None,
         ),
         filter=Settings(
-            noise=_covariance(node, "process_noise_covariance", Settings().noise),
-            initial_covariance=_covariance(node, "initial_estimate_covariance", Settings().initial_covariance),
-            initial_state=np.array(_numbers(node, "initial_state", (SIZE,)) or [0.0] * SIZE),
-            dynamic_noise=declare("dynamic_process_noise_covariance", False).value,
-            control=_control(node, sensors),
+            noise=_read_covariance(node, "process_noise_covariance", Settings().noise),
+            initial_covariance=_read_covariance(node, "initial_estimate_covariance", Settings().initial_covariance),
+            initial_state=np.array(_read_numbers(node, "initial_state", (SIZE,)) or [0.0] * SIZE),
+            uses_dynamic_noise=declare("dynamic_process_noise_covariance", False).value,
+            control=_read_control(node, sensors),
         ),
         sensors=sensors,
     )
 
 
-def _frames(node: Node) -> Frames:
+def _read_frames(node: Node) -> Frames:
     def name(parameter: str, default: str) -> str:
         value: str = node.declare_parameter(parameter, default).value
         return value.removeprefix("/")
@@ -165,7 +165,7 @@ def _frames(node: Node) -> Frames:
     return frames
 
 
-def _sensors(node: Node) -> Iterator[SensorSettings]:
+def _read_sensors(node: Node) -> Iterator[SensorSettings]:
     for kind in KINDS:
         number = 0
         while True:
@@ -175,18 +175,18 @@ def _sensors(node: Node) -> Iterator[SensorSettings]:
             if topic is None:
                 node.undeclare_parameter(name)
                 break
-            yield _sensor(node, kind, name, topic)
+            yield _read_sensor(node, kind, name, topic)
             number += 1
 
 
-def _sensor(node: Node, kind: str, name: str, topic: str) -> SensorSettings:
+def _read_sensor(node: Node, kind: str, name: str, topic: str) -> SensorSettings:
     pose, twist, acceleration = _PROVIDED_QUANTITIES[kind]
 
     def declare(suffix: str, default: bool | float) -> bool | float:
         value: bool | float = node.declare_parameter(f"{name}_{suffix}", default).value
         return value
 
-    used = _flags(node, f"{name}_config", SIZE) or (False,) * SIZE
+    used = _read_flags(node, f"{name}_config", SIZE) or (False,) * SIZE
     provided_flags = (*[pose] * 6, *[twist] * 6, *[acceleration] * 3)
     if kind == "imu":
         provided_flags = (*[False] * 3, *[True] * 3, *[False] * 3, *[True] * 6)
@@ -224,7 +224,7 @@ _CONTROL_TIMEOUT = 0.2
 _THRESHOLDS = ("pose_rejection_threshold", "twist_rejection_threshold")
 
 
-def _control(node: Node, sensors: Sequence[SensorSettings]) -> Control | None:
+def _read_control(node: Node, sensors: Sequence[SensorSettings]) -> Control | None:
     """Return the response to commanded velocities, or None if they are not used.
 
     All parameters are declared even if unused, so that they are not reported as unknown.
@@ -232,11 +232,11 @@ def _control(node: Node, sensors: Sequence[SensorSettings]) -> Control | None:
     uses_control: bool = node.declare_parameter("use_control", False).value
     timeout: float = node.declare_parameter("control_timeout", _CONTROL_TIMEOUT).value
     node.declare_parameter("stamped_control", False)
-    used = _flags(node, "control_config", 6)
-    acceleration_limits = _numbers(node, "acceleration_limits", (6,)) or [1.0] * 6
-    acceleration_gains = _numbers(node, "acceleration_gains", (6,)) or [1.0] * 6
-    deceleration_limits = _numbers(node, "deceleration_limits", (6,)) or acceleration_limits
-    deceleration_gains = _numbers(node, "deceleration_gains", (6,)) or acceleration_gains
+    used = _read_flags(node, "control_config", 6)
+    acceleration_limits = _read_numbers(node, "acceleration_limits", (6,)) or [1.0] * 6
+    acceleration_gains = _read_numbers(node, "acceleration_gains", (6,)) or [1.0] * 6
+    deceleration_limits = _read_numbers(node, "deceleration_limits", (6,)) or acceleration_limits
+    deceleration_gains = _read_numbers(node, "deceleration_gains", (6,)) or acceleration_gains
     if not uses_control:
         return None
     for index, axis in enumerate("XYZ"):
@@ -260,18 +260,18 @@ def _control(node: Node, sensors: Sequence[SensorSettings]) -> Control | None:
     )
 
 
-def _covariance(node: Node, name: str, default: Matrix) -> Matrix:
+def _read_covariance(node: Node, name: str, default: Matrix) -> Matrix:
     """Return a covariance from a parameter, or the default if the parameter is not set.
 
     The parameter has all 225 numbers or the 15 numbers of the diagonal.
     """
-    numbers = _numbers(node, name, (SIZE * SIZE, SIZE))
+    numbers = _read_numbers(node, name, (SIZE * SIZE, SIZE))
     if numbers is None:
         return default
     return np.diag(numbers) if len(numbers) == SIZE else np.array(numbers).reshape(SIZE, SIZE)
 
 
-def _numbers(node: Node, name: str, lengths: tuple[int, ...]) -> list[float] | None:
+def _read_numbers(node: Node, name: str, lengths: tuple[int, ...]) -> list[float] | None:
     node.declare_parameter(name, ParameterType.DOUBLE_ARRAY)
     numbers = node.get_parameter_or(name, Parameter(name)).value
     if numbers is None:
@@ -280,7 +280,7 @@ def _numbers(node: Node, name: str, lengths: tuple[int, ...]) -> list[float] | N
     return [float(number) for number in numbers]
 
 
-def _flags(node: Node, name: str, length: int) -> Used | None:
+def _read_flags(node: Node, name: str, length: int) -> UsedFlags | None:
     node.declare_parameter(name, ParameterType.BOOL_ARRAY)
     flags = node.get_parameter_or(name, Parameter(name)).value
     if flags is None:

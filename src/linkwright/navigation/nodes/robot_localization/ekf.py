@@ -24,8 +24,8 @@ from linkwright.navigation.estimation.estimator import Estimator
 from linkwright.navigation.estimation.kalman import ExtendedKalmanFilter, KalmanFilter, UnscentedKalmanFilter
 from linkwright.navigation.estimation.motion_model import ACCELERATION, ANGLES, POSE, POSITION, SIZE, TWIST
 from linkwright.navigation.estimation.readings import PoseReader
-from linkwright.navigation.nodes.robot_localization.configuration import configuration_of
-from linkwright.navigation.nodes.robot_localization.sources import Source, Surroundings
+from linkwright.navigation.nodes.robot_localization.configuration import read_configuration
+from linkwright.navigation.nodes.robot_localization.sources import Source, SourceContext
 from linkwright.nodes.diagnostic_updater import DiagnosticUpdater, Health, Level
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
 from linkwright.nodes.settings import log_unknown
@@ -47,29 +47,29 @@ class EkfNode(SingleNode):
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
         with handle_start_errors(self._node):
-            self._configuration = configuration_of(self._node)
+            self._configuration = read_configuration(self._node)
             self._filter = self._make_filter()
             log_unknown(self._node)
         self._estimator = Estimator(self._filter, self._configuration.timing)
-        self._is_enabled = self._configuration.enabled
+        self._is_enabled = self._configuration.is_initially_enabled
         self._is_toggled_on = True
         self._last_published_ns = -1
         self._clock = self._node.get_clock()
-        self._around = Surroundings(self._node, self._configuration, self._estimator, self._on_old_message)
-        self._sources = [Source(sensor, self._around) for sensor in self._configuration.sensors]
-        self._open()
+        self._context = SourceContext(self._node, self._configuration, self._estimator, self._on_old_message)
+        self._sources = [Source(sensor, self._context) for sensor in self._configuration.sensors]
+        self._create_interfaces()
 
     def _make_filter(self) -> KalmanFilter:
         return ExtendedKalmanFilter(self._configuration.filter)
 
-    def _open(self) -> None:
+    def _create_interfaces(self) -> None:
         node, pose = self._node, get_message("geometry_msgs/msg/PoseWithCovarianceStamped")
         self._publisher = node.create_publisher(get_message("nav_msgs/msg/Odometry"), "odometry/filtered", 10)
         self._tf_publisher = node.create_publisher(TFMessage, "/tf", TF_QOS)
-        if self._configuration.publish_acceleration:
+        if self._configuration.publishes_acceleration:
             kind = get_message("geometry_msgs/msg/AccelWithCovarianceStamped")
             self._acceleration_publisher = node.create_publisher(kind, "accel/filtered", 10)
-        if self._configuration.diagnostics:
+        if self._configuration.publishes_diagnostics:
             DiagnosticUpdater(node, "Filter diagnostic updater", self._health)
         if self._configuration.filter.control is not None:
             is_stamped: bool = node.get_parameter("stamped_control").value
@@ -95,7 +95,7 @@ class EkfNode(SingleNode):
     # --- time --------------------------------------------------------------------------------------------------------
 
     def _on_time_jump(self) -> None:
-        if self._filter.initialized:
+        if self._filter.is_initialized:
             self._node.get_logger().warning("Time has jumped: the filter restarts.")
         self._reset()
 
@@ -106,11 +106,11 @@ class EkfNode(SingleNode):
     def _reset(self) -> None:
         self._estimator.clear()
         self._filter.reset()
-        self._around.poses.buffer.clear()
-        self._around.ignored_until_ns = -1
+        self._context.poses.buffer.clear()
+        self._context.ignored_until_ns = -1
         self._last_published_ns = -1
         for source in self._sources:
-            source.forget(accept_older=True)
+            source.reset(accept_older=True)
 
     def _update(self) -> None:
         now_ns = self._clock.now_ns()
@@ -125,7 +125,7 @@ class EkfNode(SingleNode):
         else:
             self._estimator.clear()
             self._filter.time_ns = now_ns
-        if self._filter.initialized:
+        if self._filter.is_initialized:
             self._publish()
 
     # --- results -----------------------------------------------------------------------------------------------------
@@ -145,10 +145,10 @@ class EkfNode(SingleNode):
         roll, pitch, yaw = (float(angle) for angle in kalman.state[ANGLES])
         x, y, z = (float(coordinate) for coordinate in kalman.state[POSITION])
         pose: Transform = (x, y, z, *quaternion_from_rpy((roll, pitch, yaw)))
-        if configuration.publish_tf:
+        if configuration.publishes_tf:
             self._publish_transform(pose)
         self._publisher.publish(self._odometry_message(pose))
-        if configuration.publish_acceleration:
+        if configuration.publishes_acceleration:
             self._acceleration_publisher.publish(self._acceleration_message())
 
     def _publish_transform(self, base_in_world: Transform) -> None:
@@ -156,7 +156,7 @@ class EkfNode(SingleNode):
         parent, child, pose = frames.world, frames.output, base_in_world
         if frames.world == frames.map:
             try:
-                odom_in_base, _ = self._around.poses.buffer.lookup(frames.base, frames.odom, 0)
+                odom_in_base, _ = self._context.poses.buffer.lookup(frames.base, frames.odom, 0)
             except TransformException as error:
                 self._node.get_logger().error(
                     f"Could not obtain transform from {frames.odom}->{frames.base}: {error}", throttle_duration_sec=5.0
@@ -193,7 +193,7 @@ class EkfNode(SingleNode):
         return message
 
     def _health(self) -> Health:
-        if not self._filter.initialized:
+        if not self._filter.is_initialized:
             return Health(Level.WARN, "No measurement has been received yet.")
         return Health(Level.OK, "The robot_localization state estimation node appears to be functioning properly.")
 
@@ -221,7 +221,7 @@ class EkfNode(SingleNode):
     def _set_pose(self, message: Any) -> None:
         frames, stamp_ns = self._configuration.frames, message.header.stamp.nanoseconds
         frame = message.header.frame_id or frames.world
-        sensor = self._around.poses.pose(frames.world, frame, stamp_ns)
+        sensor = self._context.poses.pose(frames.world, frame, stamp_ns)
         if sensor is None:
             return
         position, orientation = message.pose.pose.position, message.pose.pose.orientation
@@ -236,8 +236,8 @@ class EkfNode(SingleNode):
         assert reading is not None, "only a differential sensor has no first reading"
         self._estimator.clear()
         for source in self._sources:
-            source.forget(accept_older=False)
-        self._around.ignored_until_ns = stamp_ns
+            source.reset(accept_older=False)
+        self._context.ignored_until_ns = stamp_ns
         self._filter.state = reading.values
         self._filter.covariance = np.eye(SIZE) * _INITIAL_VARIANCE
         self._filter.covariance[POSE, POSE] = reading.covariance[POSE, POSE]

@@ -33,7 +33,7 @@ from linkwright.graph import SENSOR_DATA_QOS, STATIC_TF_PUBLISHER_QOS, Graph, Pa
 from linkwright.messages import TFMessage, TransformBatch, get_message, get_service
 from linkwright.navigation.estimation.geodesy import (
     TangentPlane,
-    Zone,
+    UtmZone,
     convergence,
     degrees_from_utm,
     utm_from_degrees,
@@ -65,7 +65,7 @@ class NavsatTransformNode(SingleNode):
             datum = self._declare_parameters()
             log_unknown(self._node)
         self._poses = FramePoses(self._node, "Could not obtain transform:")
-        self._zone: Zone | None = None
+        self._zone: UtmZone | None = None
         self._plane: TangentPlane | None = None
         self._grid_in_map: Transform | None = None
         """The pose of the earth's grid in the map, or None until it is known."""
@@ -76,7 +76,7 @@ class NavsatTransformNode(SingleNode):
         self._odometry: Any = None
         self._has_new_fix = self._has_new_odometry = False
         self._world_frame, self._base_frame = "odom", "base_link"
-        self._open()
+        self._create_interfaces()
         if self._has_datum and datum is not None:
             self._set_datum(datum[0], datum[1], 0.0, quaternion_from_rpy((0.0, 0.0, datum[2])))
 
@@ -90,7 +90,7 @@ class NavsatTransformNode(SingleNode):
         self._zero_altitude: bool = declare("zero_altitude", False).value
         self._publishes_fixes: bool = declare("publish_filtered_gps", True).value
         self._uses_odometry_yaw: bool = declare("use_odometry_yaw", False).value
-        self._local: bool = declare("use_local_cartesian", False).value
+        self._uses_local_cartesian: bool = declare("use_local_cartesian", False).value
         self._has_datum: bool = declare("wait_for_datum", False).value
         self._frequency = positive(node, "frequency", declare("frequency", 10.0).value)
         for name in ("delay", "transform_timeout"):
@@ -104,7 +104,7 @@ class NavsatTransformNode(SingleNode):
             raise bad_value("datum", list(datum), node.get_name())
         return [float(number) for number in datum]
 
-    def _open(self) -> None:
+    def _create_interfaces(self) -> None:
         node = self._node
         self._publisher = node.create_publisher(get_message("nav_msgs/msg/Odometry"), "odometry/gps", 10)
         if self._publishes_fixes:
@@ -165,9 +165,9 @@ class NavsatTransformNode(SingleNode):
         self._has_datum = True
         self._grid_in_map = None
         self._first_fix, self._first_pose, self._heading = (latitude, longitude, altitude), IDENTITY, heading
-        self._place_map()
+        self._locate_map()
 
-    def _place_map(self) -> None:
+    def _locate_map(self) -> None:
         """Compute the pose of the earth's grid in the map if all inputs are known.
 
         The inputs are the first fix, the first odometry and the heading.
@@ -176,7 +176,7 @@ class NavsatTransformNode(SingleNode):
             return
         latitude, longitude, altitude = self._first_fix
         yaw_correction = self._yaw_offset
-        if self._local:
+        if self._uses_local_cartesian:
             self._plane = TangentPlane(latitude, longitude, altitude)
         else:
             self._zone = self._zone or zone_from_degrees(latitude, longitude)
@@ -197,7 +197,7 @@ class NavsatTransformNode(SingleNode):
 
     def _send_transform(self) -> None:
         assert self._grid_in_map is not None, "the map was placed on the earth"
-        parent, child, pose = self._world_frame, "local_enu" if self._local else "utm", self._grid_in_map
+        parent, child, pose = self._world_frame, "local_enu" if self._uses_local_cartesian else "utm", self._grid_in_map
         if self._grid_is_parent:
             parent, child, pose = child, parent, invert(pose)
         x, y, z, *rotation = pose
@@ -213,25 +213,25 @@ class NavsatTransformNode(SingleNode):
         pose = self._poses.pose(self._base_frame, frame, self._fix.header.stamp.nanoseconds)
         return (0.0, 0.0, 0.0) if pose is None else pose[:3]
 
-    def _grid_from_geodetic(self, place: Vector3) -> Vector3:
+    def _grid_from_geodetic(self, geodetic: Vector3) -> Vector3:
         """Convert a geodetic position (degrees and metres) to a point of the grid, in metres."""
         if self._plane is not None:
-            return self._plane.point_from_geodetic(*place)
-        assert self._zone is not None, "`_place_map` sets it"
-        easting, northing = utm_from_degrees(place[0], place[1], self._zone)
-        return easting, northing, place[2]
+            return self._plane.point_from_geodetic(*geodetic)
+        assert self._zone is not None, "`_locate_map` sets it"
+        easting, northing = utm_from_degrees(geodetic[0], geodetic[1], self._zone)
+        return easting, northing, geodetic[2]
 
     def _geodetic_from_grid(self, point: Vector3) -> Vector3:
         """Convert a point of the grid, in metres, to a geodetic position (degrees and metres)."""
         if self._plane is not None:
             return self._plane.geodetic_from_point(point)
-        assert self._zone is not None, "`_place_map` sets it"
+        assert self._zone is not None, "`_locate_map` sets it"
         latitude, longitude = degrees_from_utm(point[0], point[1], self._zone)
         return latitude, longitude, point[2]
 
-    def _map_from_geodetic(self, place: Vector3) -> Vector3:
+    def _map_from_geodetic(self, geodetic: Vector3) -> Vector3:
         assert self._grid_in_map is not None, "the map was placed on the earth"
-        return compose(self._grid_in_map, (*self._grid_from_geodetic(place), 0.0, 0.0, 0.0, 1.0))[:3]
+        return compose(self._grid_in_map, (*self._grid_from_geodetic(geodetic), 0.0, 0.0, 0.0, 1.0))[:3]
 
     def _geodetic_from_map(self, point: Vector3) -> Vector3:
         assert self._grid_in_map is not None, "the map was placed on the earth"
@@ -241,7 +241,7 @@ class NavsatTransformNode(SingleNode):
 
     def _update(self) -> None:
         if self._grid_in_map is None:
-            self._place_map()
+            self._locate_map()
             return
         if self._has_new_fix and self._has_new_odometry:
             self._publisher.publish(self._fix_as_odometry(self._grid_in_map))
@@ -294,14 +294,16 @@ class NavsatTransformNode(SingleNode):
         response.map_points = [self._point_message(ll_point) for ll_point in request.ll_points]
         return response
 
-    def _point_message(self, place: Any) -> Any:
+    def _point_message(self, geodetic: Any) -> Any:
         point = get_message("geometry_msgs/msg/Point")()
-        if self._ready():
-            point.x, point.y, point.z = self._map_from_geodetic((place.latitude, place.longitude, place.altitude))
+        if self._check_transform():
+            point.x, point.y, point.z = self._map_from_geodetic(
+                (geodetic.latitude, geodetic.longitude, geodetic.altitude)
+            )
         return point
 
     def _on_to_ll(self, request: Any, response: Any) -> Any:
-        if self._ready():
+        if self._check_transform():
             point, position = request.map_point, response.ll_point
             position.latitude, position.longitude, position.altitude = self._geodetic_from_map(
                 (point.x, point.y, point.z)
@@ -315,22 +317,22 @@ class NavsatTransformNode(SingleNode):
             self._zone = zone
             if self._grid_in_map is not None:
                 self._grid_in_map = None
-                self._place_map()
+                self._locate_map()
         else:
             self._node.get_logger().error(f"'{request.utm_zone}' is not a UTM zone, such as 31U")
         return response
 
-    def _ready(self) -> bool:
+    def _check_transform(self) -> bool:
         if self._grid_in_map is None:
             self._node.get_logger().error("No transform available (yet)", throttle_duration_sec=5.0)
         return self._grid_in_map is not None
 
 
-def _parse_zone(text: str) -> Zone | None:
+def _parse_zone(text: str) -> UtmZone | None:
     number, letter = text[:-1], text[-1:].upper()
     if not number.isdecimal() or not 1 <= int(number) <= 60 or letter not in _ZONE_LETTERS or not letter:
         return None
-    return Zone(int(number), letter >= "N")
+    return UtmZone(int(number), letter >= "N")
 
 
 def _pose(odometry: Any) -> Transform:

@@ -40,7 +40,7 @@ _NOT_MEASURED = -1.0
 """The first number of a covariance for a quantity that the IMU does not measure."""
 
 
-class Surroundings:
+class SourceContext:
     """The node, configuration and estimator that the sensors share.
 
     Args:
@@ -76,16 +76,16 @@ class Source:
 
     Args:
         settings: the settings of the sensor.
-        surroundings: the objects shared with other sensors.
+        context: the objects shared with other sensors.
     """
 
-    def __init__(self, settings: SensorSettings, surroundings: Surroundings) -> None:
+    def __init__(self, settings: SensorSettings, context: SourceContext) -> None:
         self._settings = settings
-        self._around = surroundings
-        two_d = surroundings.configuration.two_d
+        self._context = context
+        two_d = context.configuration.two_d
         self._pose = PoseReader(settings.used, settings.differential, settings.relative, two_d)
         self._two_d = two_d
-        self._frames = surroundings.configuration.frames
+        self._frames = context.configuration.frames
         self._latest_ns = -1
         if any(settings.used):
             readers = {
@@ -94,30 +94,30 @@ class Source:
                 "twist": self._read_twist_message,
                 "imu": self._read_imu,
             }
-            surroundings.node.create_subscription(
+            context.node.create_subscription(
                 get_message(_TYPES[settings.kind]),
                 settings.topic,
                 lambda message: self._receive(message, readers[settings.kind]),
                 QoSProfile(settings.queue_size, ReliabilityPolicy.BEST_EFFORT),
             )
 
-    def forget(self, *, accept_older: bool) -> None:
+    def reset(self, *, accept_older: bool) -> None:
         """Treat the next pose as the first pose.
 
         If `accept_older` is set, also accept messages with older stamps.
         """
-        self._pose.forget()
+        self._pose.reset()
         if accept_older:
             self._latest_ns = -1
 
     def _receive(self, message: Any, read: Callable[[Any, int], None]) -> None:
         stamp_ns: int = message.header.stamp.nanoseconds
-        if stamp_ns <= self._around.ignored_until_ns:
+        if stamp_ns <= self._context.ignored_until_ns:
             return
         if stamp_ns < self._latest_ns:
-            self._around.on_old_message()
+            self._context.on_old_message()
             if stamp_ns < self._latest_ns:
-                self._around.node.get_logger().warning(
+                self._context.node.get_logger().warning(
                     f"The {self._settings.name} message has a timestamp before that of the previous message received, "
                     "this message will be ignored. This may indicate a bad timestamp.",
                     throttle_duration_sec=5.0,
@@ -140,7 +140,7 @@ class Source:
         if not any(self._settings.used[POSE]):
             return
         world = self._frames.world
-        sensor = self._around.poses.pose(world, world if self._settings.differential or not frame else frame, stamp_ns)
+        sensor = self._context.poses.pose(world, world if self._settings.differential or not frame else frame, stamp_ns)
         if sensor is None:
             return
         position = message.pose.position
@@ -163,7 +163,7 @@ class Source:
     ) -> None:
         mounting = self._mounting(frame, stamp_ns)
         if mounting is not None:
-            rates, used = self._around.filter.state[RATES], self._settings.used
+            rates, used = self._context.filter.state[RATES], self._settings.used
             reading = read_twist(linear, angular, covariance, mounting, rates, used, two_d=self._two_d)
             self._add(reading, "twist", stamp_ns, self._settings.twist_threshold)
 
@@ -191,7 +191,7 @@ class Source:
         acceleration = _vector(message.linear_acceleration)
         if self._settings.remove_gravity:
             attitude = self._attitude(message, mounting)
-            acceleration = subtract_gravity(acceleration, attitude, self._around.configuration.gravity)
+            acceleration = subtract_gravity(acceleration, attitude, self._context.configuration.gravity)
         covariance = _matrix(message.linear_acceleration_covariance, 3)
         reading = read_acceleration(acceleration, covariance, mounting, self._settings.used, two_d=self._two_d)
         self._add(reading, "acceleration", stamp_ns, self._settings.acceleration_threshold)
@@ -200,18 +200,18 @@ class Source:
         """Return the orientation from an IMU's message, or the estimate if the IMU measures none."""
         if _is_measured(message.orientation_covariance):
             return _orientation(message.orientation)
-        roll, pitch, yaw = (float(angle) for angle in self._around.filter.state[ANGLES])
+        roll, pitch, yaw = (float(angle) for angle in self._context.filter.state[ANGLES])
         return quaternion_multiply(quaternion_from_rpy((roll, pitch, yaw)), mounting[3:])
 
     def _mounting(self, frame: str, stamp_ns: int) -> Transform | None:
         base = self._frames.base
-        return self._around.poses.pose(base, frame or base, stamp_ns)
+        return self._context.poses.pose(base, frame or base, stamp_ns)
 
     def _add(self, reading: Reading | None, quantity: str, stamp_ns: int, threshold: float) -> None:
         if reading is None or not any(reading.used):
             return
-        kalman = self._around.filter
-        self._around.estimator.add(
+        kalman = self._context.filter
+        self._context.estimator.add(
             Measurement(
                 f"{self._settings.name}_{quantity}",
                 stamp_ns,

@@ -20,14 +20,14 @@ from typing import ClassVar
 from linkwright.graph import Graph, Node
 from linkwright.messages.distribution import is_before_iron
 from linkwright.navigation.nodes.managed import ManagedNode
-from linkwright.navigation.nodes.slam_toolbox.parameters import settings_of
+from linkwright.navigation.nodes.slam_toolbox.parameters import read_settings
 from linkwright.navigation.nodes.slam_toolbox.services import ToolboxServices
 from linkwright.navigation.nodes.slam_toolbox.toolbox import Toolbox
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, create_node_with_class, handle_start_errors
 from linkwright.nodes.settings import log_unknown
 
 
-class _Managed(ManagedNode):
+class _ManagedToolbox(ManagedNode):
     """A slam_toolbox node as a managed node, as in Jazzy."""
 
     kind: type[AsyncSlamToolbox]
@@ -35,7 +35,7 @@ class _Managed(ManagedNode):
     def declare(self) -> None:
         """Declare ``use_lifecycle_manager``, and disable the bond if its value is false."""
         if not self.declare_parameter("use_lifecycle_manager", False).value:
-            self._beats = 0.0
+            self._heartbeat_period = 0.0
 
     def configure(self) -> None:
         """Read the parameters, and create the toolbox and its services.
@@ -70,14 +70,14 @@ class AsyncSlamToolbox(SingleNode):
     """
 
     DEFAULT_NAME: ClassVar[str] = "slam_toolbox"
-    KEEPS_ALL: ClassVar[bool] = False
+    KEEPS_ALL_SCANS: ClassVar[bool] = False
     LOCALIZES: ClassVar[bool] = False
-    SWITCHES: ClassVar[bool] = False
+    CAN_SWITCH: ClassVar[bool] = False
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         self._work: tuple[Toolbox, ToolboxServices] | None = None
         if not is_before_iron():
-            kind = type("Managed", (_Managed,), {"kind": type(self)})
+            kind = type("Managed", (_ManagedToolbox,), {"kind": type(self)})
             node, _ = create_node_with_class(kind, graph, options, self.DEFAULT_NAME)
             self._node = node
             node.autostart()
@@ -93,22 +93,22 @@ class AsyncSlamToolbox(SingleNode):
     @classmethod
     def open(cls, node: Node) -> tuple[Toolbox, ToolboxServices]:
         """Read the parameters of a node, and create its toolbox and services."""
-        toolbox = Toolbox(node, settings_of(node), keeps_all=cls.KEEPS_ALL, localizes=cls.LOCALIZES)
-        return toolbox, ToolboxServices(toolbox, has_queue=cls.KEEPS_ALL, can_switch=cls.SWITCHES)
+        toolbox = Toolbox(node, read_settings(node), keeps_all_scans=cls.KEEPS_ALL_SCANS, localizes=cls.LOCALIZES)
+        return toolbox, ToolboxServices(toolbox, has_queue=cls.KEEPS_ALL_SCANS, can_switch=cls.CAN_SWITCH)
 
     def close(self) -> None:
         """Close the node."""
         if self._work is not None:
             self._work[0].stop()
         elif isinstance(self._node, ManagedNode):
-            self._node.leave()
+            self._node.shut_down()
         super().close()
 
 
 class SyncSlamToolbox(AsyncSlamToolbox):
     """The running sync node, which queues scans and processes all of them."""
 
-    KEEPS_ALL = True
+    KEEPS_ALL_SCANS = True
 
 
 class LocalizationSlamToolbox(AsyncSlamToolbox):
@@ -120,4 +120,4 @@ class LocalizationSlamToolbox(AsyncSlamToolbox):
 class MapAndLocalizationSlamToolbox(AsyncSlamToolbox):
     """The running map_and_localization node, which a service switches to localization."""
 
-    SWITCHES = True
+    CAN_SWITCH = True

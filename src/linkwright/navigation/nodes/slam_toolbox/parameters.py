@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from linkwright.graph import Node, Parameter, ParameterType
-from linkwright.navigation.nodes.plugins import value_of
+from linkwright.navigation.nodes.plugins import get_or_declare
 from linkwright.navigation.slam.poses import Floats
 from linkwright.navigation.slam.search import Search
 from linkwright.navigation.slam.settings import MapperSettings
@@ -89,7 +89,7 @@ class _ParameterReader:
         self._node = node
 
     def _value(self, name: str, default: object) -> Any:
-        return value_of(self._node, name, default)
+        return get_or_declare(self._node, name, default)
 
     def flag(self, name: str, default: bool) -> bool:
         return bool(self._value(name, default))
@@ -114,7 +114,7 @@ class _ParameterReader:
             self._value(name, default)
 
 
-def settings_of(node: Node) -> Settings:
+def read_settings(node: Node) -> Settings:
     """Read the parameters of a node, and declare the missing ones.
 
     Raises:

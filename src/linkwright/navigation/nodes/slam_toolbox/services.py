@@ -12,7 +12,7 @@ from linkwright.geometry.single import normalized, rpy_from_quaternion
 from linkwright.messages import get_message, get_service
 from linkwright.navigation.maps.map_files import MapSaveSettings, save_map
 from linkwright.navigation.nodes.slam_toolbox.toolbox import Toolbox
-from linkwright.navigation.slam.storage import path_of, save_graph
+from linkwright.navigation.slam.storage import graph_path, save_graph
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 
@@ -69,14 +69,14 @@ class ToolboxServices:
 
     def _on_pause(self, _request: Any, response: Any) -> Any:
         is_paused = not self._toolbox.node.get_parameter("paused_new_measurements").value
-        self._toolbox.pause(is_paused)
+        self._toolbox.set_paused(is_paused)
         state_text = "pause taking new measurements." if is_paused else "actively taking new measurements."
         self._logger.info(f"SlamToolbox: Toggled to {state_text}")
         response.status = True
         return response
 
     def _on_serialize(self, request: Any, response: Any) -> Any:
-        path = path_of(request.filename)
+        path = graph_path(request.filename)
         try:
             save_graph(self._toolbox.mapper, path)
         except OSError as error:
@@ -126,7 +126,7 @@ class ToolboxServices:
 
     def _on_reset(self, request: Any, response: Any) -> Any:
         self._toolbox.reset()
-        self._toolbox.pause(bool(request.pause_new_measurements))
+        self._toolbox.set_paused(bool(request.pause_new_measurements))
         self._logger.info("Reset SLAM")
         response.result = response.RESULT_SUCCESS
         return response

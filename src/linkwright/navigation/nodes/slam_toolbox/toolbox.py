@@ -36,7 +36,7 @@ from linkwright.navigation.slam.occupancy import OccupancyMap
 from linkwright.navigation.slam.poses import Floats, compose, inverse
 from linkwright.navigation.slam.scan import PlanarScan, planar_scan
 from linkwright.navigation.slam.steps import Steps
-from linkwright.navigation.slam.storage import load_graph, path_of
+from linkwright.navigation.slam.storage import graph_path, load_graph
 
 _LOOKUP_PERIOD = 0.05
 """The seconds between lookups of a transform that a scan waits for, if no transforms are published."""
@@ -50,7 +50,7 @@ class Toolbox:
     Args:
         node: the node.
         settings: the parameters.
-        keeps_all: whether scans that arrive during a computation are queued instead of dropped.
+        keeps_all_scans: whether scans that arrive during a computation are queued instead of dropped.
         localizes: whether the robot is only localized, without changing the map.
 
     Attributes:
@@ -64,20 +64,20 @@ class Toolbox:
         LinkwrightError: NAV101, SciPy is not installed; NAV501, the initial map cannot be read.
     """
 
-    def __init__(self, node: Node, settings: Settings, *, keeps_all: bool, localizes: bool) -> None:
+    def __init__(self, node: Node, settings: Settings, *, keeps_all_scans: bool, localizes: bool) -> None:
         for subpackage in ("ndimage", "sparse", "sparse.linalg", "spatial"):
             load_scipy(subpackage)  # If SciPy is missing, NAV101 is raised here and not at the first scan.
         self.node, self.settings, self.localizes = node, settings, localizes
         self.mapper = self._new_mapper()
         self.queue: deque[tuple[PlanarScan, Floats]] = deque()
-        self._keeps_all = keeps_all
+        self._keeps_all_scans = keeps_all_scans
         self._pending_scan: tuple[Any, int] | None = None
         self._work: Steps[Outcome | None] | None = None
         self._processed_odometry: Floats | None = None
         self._map_to_odom: Floats = np.zeros(3)
         self._latest_stamp_ns: int | None = None
         self._scan_count = 0
-        self._active: list[Any] = []
+        self._is_active: list[Any] = []
         self._has_published = False
         if settings.map_file_name:
             self.load(settings.map_file_name, settings.start)
@@ -101,7 +101,7 @@ class Toolbox:
         """Subscribe to scans, and start publishing."""
         node, settings = self.node, self.settings
         scan_type = get_message("sensor_msgs/msg/LaserScan")
-        self._active = [
+        self._is_active = [
             node.create_subscription(scan_type, settings.scan_topic, self._on_scan, SENSOR_DATA_QOS),
             node.create_timer(settings.transform_period or _LOOKUP_PERIOD, self._on_timer),
             node.create_timer(settings.map_update_interval, self.publish_map),
@@ -112,15 +112,15 @@ class Toolbox:
             backward_jump, post_callback=lambda _: self._jump_guard.trigger()
         )
         if self.mapper.scans and self._work is None:
-            self._begin(self._redraw())
+            self._start_work(self._redraw())
 
     def stop(self) -> None:
         """Stop mapping, and keep the map."""
-        if self._active:
+        if self._is_active:
             self._jump_handle.unregister()
-        for endpoint in self._active:
+        for endpoint in self._is_active:
             endpoint.destroy()
-        self._active = []
+        self._is_active = []
         self._pending_scan = None
         self.queue.clear()
 
@@ -171,13 +171,13 @@ class Toolbox:
             LinkwrightError: NAV501, the graph cannot be read.
         """
         mapper = self._new_mapper()
-        load_graph(mapper, path_of(name))
+        load_graph(mapper, graph_path(name))
         mapper.begin_session(start)
         self._drop_work()
         self.queue.clear()
         self.mapper, self._has_published = mapper, False
-        if self._active:
-            self._begin(self._redraw())
+        if self._is_active:
+            self._start_work(self._redraw())
 
     def start_session(self, pose: Floats) -> None:
         """Start a session at a pose, of shape (3,), in the map.
@@ -236,7 +236,7 @@ class Toolbox:
         if self._processed_odometry is not None and self.node.get_parameter("paused_new_measurements").value:
             return
         is_busy = self._work is not None
-        if is_busy and not self._keeps_all:
+        if is_busy and not self._keeps_all_scans:
             return
         last_queued = (self.queue[-1][1], self.queue[-1][0].stamp_ns) if self.queue else None
         if not self.mapper.should_process(odometry, message.header.stamp.nanoseconds, last_queued):
@@ -272,9 +272,11 @@ class Toolbox:
             )
             return
         self._processed_odometry = odometry
-        self._begin(self.mapper.localize(scan, odometry) if self.localizes else self.mapper.process(scan, odometry))
+        self._start_work(
+            self.mapper.localize(scan, odometry) if self.localizes else self.mapper.process(scan, odometry)
+        )
 
-    def _begin(self, work: Steps[Any]) -> None:
+    def _start_work(self, work: Steps[Any]) -> None:
         self._work = work
         self._step_guard.trigger()
 
@@ -305,7 +307,7 @@ class Toolbox:
     def _publish_outcome(self, outcome: Outcome) -> None:
         assert self._processed_odometry is not None, "a scan was processed"
         self._map_to_odom = compose(outcome.pose, inverse(self._processed_odometry))
-        if outcome.loops:
+        if outcome.loop_count:
             self.node.get_logger().info(
                 f"closed a loop after {len(self.mapper.scans)} scans", throttle_duration_sec=_WARNING_PERIOD
             )
@@ -358,9 +360,9 @@ class Toolbox:
         self._latest_stamp_ns, self._processed_odometry = None, None
         self.reset()
 
-    def pause(self, paused: bool) -> None:
+    def set_paused(self, is_paused: bool) -> None:
         """Pause or resume the processing of scans."""
-        self.node.set_parameters([Parameter("paused_new_measurements", value=paused)])
+        self.node.set_parameters([Parameter("paused_new_measurements", value=is_paused)])
 
 
 def _planar_pose(pose: Transform) -> Floats:

@@ -40,7 +40,7 @@ class _YoloOutput(nn.Module):
         ).transpose(1, 2)
 
 
-def to_onnx(
+def export_to_onnx(
     network: Network,
     names: tuple[str, ...],
     width: int,
@@ -76,7 +76,7 @@ def to_onnx(
             output_names=["output0"],
         )
     model = onnx.load_from_string(file.getvalue())
-    _halve(model)
+    _halve_precision(model)
     entries = {
         "task": "detect",
         "stride": str(max(STRIDES)),
@@ -93,7 +93,7 @@ def to_onnx(
     return data
 
 
-def _halve(model: Any) -> None:
+def _halve_precision(model: Any) -> None:
     """Store weights as 16-bit floats that the graph casts back to 32 bits."""
     casts = []
     for weights in model.graph.initializer:

@@ -37,7 +37,7 @@ class Assignment:
     is_ignored: Tensor
 
 
-def overlaps(first: Tensor, second: Tensor) -> tuple[Tensor, Tensor]:
+def pairwise_iou(first: Tensor, second: Tensor) -> tuple[Tensor, Tensor]:
     """Return the IoU and the generalised IoU of pairs of boxes.
 
     Args:
@@ -76,7 +76,7 @@ def assign(boxes: Tensor, logits: Tensor, centres: Tensor, objects: Tensor) -> A
     class_indices = objects[..., 0].clamp(0).long()
     object_boxes = objects[..., 1:]
     _, cells, classes = logits.shape
-    iou, _ = overlaps(object_boxes[:, :, None], boxes[:, None])
+    iou, _ = pairwise_iou(object_boxes[:, :, None], boxes[:, None])
     scores = logits.sigmoid().transpose(1, 2).gather(1, class_indices[..., None].expand(-1, -1, cells))
     alignment = scores**_SCORE_POWER * iou**_OVERLAP_POWER
     half_sizes = ((object_boxes[..., 2:] - object_boxes[..., :2]) / 2).clamp(_MIN_HALF_SIZE)
@@ -117,7 +117,7 @@ def loss(boxes: Tensor, logits: Tensor, centres: Tensor, objects: Tensor) -> tup
     weights = torch.where(targets.scores > 0, targets.scores, 0.75 * logits.sigmoid().detach() ** 2)
     score_loss = (score_loss * weights * ~targets.is_ignored[..., None]).sum() / normalizer
     box_weights = targets.scores.sum(2)[targets.is_assigned]
-    _, generalised_iou = overlaps(boxes[targets.is_assigned], targets.boxes[targets.is_assigned])
+    _, generalised_iou = pairwise_iou(boxes[targets.is_assigned], targets.boxes[targets.is_assigned])
     box_loss = ((1 - generalised_iou) * box_weights).sum() / normalizer
     total = _BOX_WEIGHT * box_loss + _SCORE_WEIGHT * score_loss
     return total, torch.stack((box_loss, score_loss)).detach()

@@ -29,7 +29,7 @@ DECLARED = {
 }
 
 
-def included(context, file, *names):
+def include_action(context, file, *names):
     """Return the action that includes a launch file with the named configurations."""
     arguments = context.launch_configurations
     source = PythonLaunchDescriptionSource(str(HERE / "launch" / file))
@@ -52,11 +52,11 @@ def start(context):
     composition_names = (*shared_names, "use_composition", "container_name")
     localization = []
     if is_true(context, "use_localization"):
-        mapping = included(context, "slam_launch.py", *shared_names)
+        mapping = include_action(context, "slam_launch.py", *shared_names)
         localization = [
             mapping
             if is_true(context, "slam")
-            else included(context, "localization_launch.py", "map", *composition_names)
+            else include_action(context, "localization_launch.py", "map", *composition_names)
         ]
     return [
         GroupAction(
@@ -64,7 +64,7 @@ def start(context):
                 PushRosNamespace(context.launch_configurations["namespace"]),
                 *([container] if is_true(context, "use_composition") else []),
                 *localization,
-                included(context, "navigation_launch.py", *composition_names),
+                include_action(context, "navigation_launch.py", *composition_names),
             ]
         )
     ]

@@ -1,0 +1,64 @@
+import { button, coalesced, h } from "../../dom";
+import { icon } from "../../icons";
+import type { StepCheck } from "../../protocol";
+import type { CourseState } from "../../state/course";
+import { languageTag, strings } from "../../strings";
+import { keyText, SHORTCUTS } from "../../widgets/shortcuts";
+import type { Panel } from "../panel";
+import { localText } from "./local-text";
+
+/** The results of the checks of the shown step. */
+export class ChecksPanel implements Panel {
+  readonly id = "checks";
+  readonly icon = "check";
+  readonly element: HTMLElement;
+  private readonly empty = h("p", { class: "empty" }, strings.learning.off);
+  private readonly status = h("span", { class: "checks-status", role: "status" });
+  private readonly list = h("ul", { class: "checks-list" });
+  private readonly next: HTMLButtonElement;
+  private readonly content: HTMLElement;
+
+  constructor(private readonly state: CourseState) {
+    const words = strings.learning;
+    const check = button(`${words.checkHint} (${keyText(SHORTCUTS.checkStep)})`, () => state.check(), "tool framed", words.check);
+    this.next = button(`${words.nextHint} (${keyText(SHORTCUTS.nextStep)})`, () => state.move(1), "tool framed primary", words.nextStep);
+    this.content = h(
+      "div",
+      { class: "checks" },
+      h("header", { class: "checks-head" }, this.status, h("span", { class: "spacer" }), check, this.next),
+      h("div", { class: "scroll", role: "group", tabIndex: 0, aria: { label: words.checks } }, this.list),
+    );
+    this.element = h("div", { class: "panel checks-panel" }, this.empty, this.content);
+    state.changed.on(coalesced(() => this.update()));
+    this.update();
+  }
+
+  private update(): void {
+    const { state } = this;
+    const { results } = state;
+    this.empty.hidden = state.isAvailable;
+    this.content.hidden = !state.isAvailable;
+    this.status.textContent = this.statusText();
+    this.element.classList.toggle("running", results?.is_running === true);
+    this.element.classList.toggle("passed", state.isPassed);
+    this.next.hidden = !state.isPassed || state.neighbor(1) === undefined;
+    this.list.replaceChildren(...(results?.checks ?? []).map((check) => row(check)));
+  }
+
+  private statusText(): string {
+    const words = strings.learning;
+    const { results } = this.state;
+    if (results === null || results.is_running) return words.checking;
+    if (results.checked_at === null) return "";
+    const time = new Date(results.checked_at * 1000).toLocaleTimeString(languageTag);
+    const passedCount = results.checks.filter(({ is_passed: isPassed }) => isPassed).length;
+    return this.state.isPassed ? words.allPassed(time) : words.somePassed(passedCount, results.checks.length, time);
+  }
+}
+
+function row({ title, is_passed: isPassed, message }: StepCheck): HTMLElement {
+  const mark = isPassed ? icon("check", "level-ok") : icon("close", "level-error");
+  const state = h("span", { class: "hidden-text" }, isPassed ? strings.learning.passed : strings.learning.missing);
+  const text = message === null ? null : h("p", { class: "check-message" }, localText(message));
+  return h("li", { class: "step-check" }, mark, h("div", {}, state, localText(title), text));
+}

@@ -1,0 +1,146 @@
+import { button, coalesced, h } from "../../dom";
+import { icon } from "../../icons";
+import type { CourseState } from "../../state/course";
+import { strings } from "../../strings";
+import { Dialog } from "../../widgets/dialog";
+import { keyText, SHORTCUTS } from "../../widgets/shortcuts";
+import { nameOf } from "../place";
+import type { Panel } from "../panel";
+import { lessonText } from "./lesson-text";
+import { localText } from "./local-text";
+import { Outline } from "./outline";
+
+/** The text of the shown step, its files, answer, hints and solution, and the way to other steps. */
+export class LessonPanel implements Panel {
+  readonly id = "lesson";
+  readonly icon = "lesson";
+  readonly element: HTMLElement;
+  private readonly empty = h("p", { class: "empty" }, strings.learning.off);
+  private readonly place = h("span", { class: "lesson-place" });
+  private readonly text = h("div", { class: "lesson-body scroll", tabIndex: 0 });
+  private readonly problem = h("div", { class: "lesson-problem", role: "alert" });
+  private readonly answer = h("input", { class: "field lesson-answer" });
+  private readonly outline: Outline;
+  private readonly outlineToggle: HTMLButtonElement;
+  private readonly back: HTMLButtonElement;
+  private readonly next: HTMLButtonElement;
+  private readonly hint: HTMLButtonElement;
+  private readonly solution: HTMLButtonElement;
+  private readonly course: HTMLElement;
+  /** What is shown, so that a new result does not scroll the text. */
+  private shown = "";
+  private isOutlineShown = false;
+
+  constructor(private readonly state: CourseState) {
+    const words = strings.learning;
+    this.outline = new Outline(state, () => this.showOutline(false));
+    this.outlineToggle = button(words.outlineHint, () => this.showOutline(!this.isOutlineShown), "tool framed", icon("tree"), words.outline);
+    this.back = button(`${words.backHint} (${keyText(SHORTCUTS.previousStep)})`, () => state.move(-1), "tool framed", words.back);
+    this.next = button(`${words.nextHint} (${keyText(SHORTCUTS.nextStep)})`, () => state.move(1), "tool framed", words.next);
+    this.hint = button(words.hintHint, () => state.takeHint(), "tool framed", icon("bulb"), words.hint);
+    this.solution = button(words.solutionHint, () => this.askForSolution(), "tool framed", words.solution);
+    this.answer.setAttribute("aria-label", words.answer);
+    this.answer.addEventListener("keydown", (event) => {
+      event.stopPropagation();
+      if (event.key === "Enter" && !event.isComposing) this.sendAnswer();
+    });
+    this.course = h(
+      "div",
+      { class: "lesson" },
+      h("header", { class: "lesson-head" }, this.outlineToggle, this.place),
+      this.outline.element,
+      this.text,
+      this.problem,
+      h("footer", { class: "lesson-foot" }, this.back, this.hint, this.solution, h("span", { class: "spacer" }), this.next),
+    );
+    this.element = h("div", { class: "panel lesson-panel" }, this.empty, this.course);
+    this.showOutline(false);
+    state.changed.on(coalesced(() => this.update()));
+    this.update();
+  }
+
+  /** Returns what is shown, for tests. */
+  inspect(): object {
+    return { step: this.state.step?.address ?? "", checks: this.state.results, problem: this.state.problem };
+  }
+
+  private update(): void {
+    const { state } = this;
+    const { step } = state;
+    this.empty.hidden = step !== null;
+    this.course.hidden = step === null;
+    if (step === null) return;
+    const words = strings.learning;
+    const passedCount = state.steps.filter(({ is_passed: isPassed }) => isPassed).length;
+    this.place.textContent = words.place(localText(step.lesson), passedCount, state.steps.length);
+    this.back.disabled = state.neighbor(-1) === undefined;
+    this.next.disabled = state.neighbor(1) === undefined;
+    this.next.classList.toggle("primary", state.isPassed);
+    this.hint.hidden = step.hint_count === 0;
+    this.hint.disabled = step.hints.length >= step.hint_count;
+    this.hint.lastChild?.replaceWith(words.hintOf(step.hints.length, step.hint_count));
+    this.solution.hidden = step.solution.length === 0;
+    this.problem.hidden = state.problem === null;
+    this.problem.textContent = state.problem ? `${state.problem.message} ${state.problem.hint}`.trim() : "";
+    if (this.isOutlineShown) this.outline.draw();
+    this.drawText();
+  }
+
+  private drawText(): void {
+    const { step } = this.state;
+    if (step === null) return;
+    const key = `${step.address} ${step.hints.length}`;
+    if (key === this.shown) return;
+    const isSame = this.shown.startsWith(`${step.address} `);
+    this.shown = key;
+    const hints = step.hints.map((hint) => lessonText(localText(hint), "lesson-text lesson-hint"));
+    this.text.replaceChildren(
+      h("h2", {}, localText(step.title)),
+      ...(localText(step.introduction) === "" ? [] : [lessonText(localText(step.introduction), "lesson-text lesson-introduction")]),
+      lessonText(localText(step.body), "lesson-text"),
+      ...this.fileRow(step.files),
+      ...this.answerRow(step.unit, step.answer),
+      ...hints,
+    );
+    if (isSame) hints.at(-1)?.scrollIntoView({ block: "nearest" });
+    else this.text.scrollTop = 0;
+  }
+
+  private fileRow(files: readonly string[]): HTMLElement[] {
+    if (files.length === 0) return [];
+    const words = strings.learning;
+    const buttons = files.map((path) => button(words.openFile(path), () => this.state.fileRequested.emit(path), "tool framed", icon("file"), nameOf(path)));
+    return [h("div", { class: "lesson-row" }, h("span", { class: "toolbar-label" }, words.files), ...buttons)];
+  }
+
+  private answerRow(unit: string | null, answer: string | null): HTMLElement[] {
+    if (unit === null) return [];
+    const words = strings.learning;
+    this.answer.value = answer ?? "";
+    const send = button(words.answerHint, () => this.sendAnswer(), "tool framed primary", words.sendAnswer);
+    return [h("div", { class: "lesson-row" }, h("span", { class: "toolbar-label" }, words.answer), this.answer, unit === "1" ? null : h("span", {}, unit), send)];
+  }
+
+  private sendAnswer(): void {
+    if (this.answer.value.trim() !== "") this.state.answer(this.answer.value);
+  }
+
+  private showOutline(isShown: boolean): void {
+    this.isOutlineShown = isShown;
+    this.outline.element.hidden = !isShown;
+    this.text.hidden = isShown;
+    this.outlineToggle.setAttribute("aria-expanded", String(isShown));
+    if (isShown) this.outline.draw();
+  }
+
+  private askForSolution(): void {
+    const words = strings.learning;
+    const folder = this.state.course?.folder ?? "";
+    const files = (this.state.step?.solution ?? []).map((path) => path.slice(folder.length + 1));
+    const list = h("ul", {}, ...files.map((path) => h("li", {}, path)));
+    new Dialog(words.solutionTitle, [h("p", {}, words.solutionText), list], [
+      { label: strings.shell.cancel },
+      { label: words.solutionTake, run: () => (this.state.takeSolution(), undefined), main: true },
+    ]).open();
+  }
+}

@@ -1,0 +1,104 @@
+import type { Connection } from "../connection/connection";
+import type { Course, CourseProblem, CourseStep, CourseStepItem, StepChecks } from "../protocol";
+import { Signal } from "../signal";
+
+/** The course of the learner: its outline, the shown step, the results of its checks, and the page's requests. */
+export class CourseState {
+  /** The outline, the step, the results or the problem has changed. */
+  readonly changed = new Signal();
+  /** The program shows a course now, or shows none any more. */
+  readonly availabilityChanged = new Signal();
+  /** Emitted with the absolute path of a file that the learner wants to edit. */
+  readonly fileRequested = new Signal<string>();
+  course: Course | null = null;
+  step: CourseStep | null = null;
+  checks: StepChecks | null = null;
+  /** Why the last request was not carried out. */
+  problem: CourseProblem | null = null;
+  /** Whether the connection is new, and the server has not sent a course yet. */
+  private isUnknown = true;
+
+  constructor(private readonly connection: Connection) {
+    connection.on("hello", () => (this.isUnknown = true));
+    connection.on("course", (course) => {
+      this.isUnknown = false;
+      const isNew = this.course === null;
+      this.course = course;
+      if (isNew) this.availabilityChanged.emit();
+      this.changed.emit();
+    });
+    // The last message to a page that opens: a program without a course has sent no `course` before it.
+    connection.on("frame_table", () => {
+      if (this.isUnknown && this.course !== null) {
+        this.course = this.step = this.checks = this.problem = null;
+        this.availabilityChanged.emit();
+        this.changed.emit();
+      }
+      this.isUnknown = false;
+    });
+    connection.on("course_step", (step) => {
+      this.step = step;
+      this.changed.emit();
+    });
+    connection.on("step_checks", (checks) => {
+      this.checks = checks;
+      this.changed.emit();
+    });
+    connection.on("course_problem", (problem) => {
+      this.problem = problem.message === "" ? null : problem;
+      this.changed.emit();
+    });
+  }
+
+  get isAvailable(): boolean {
+    return this.course !== null;
+  }
+
+  /** The steps of all lessons in order. */
+  get steps(): readonly CourseStepItem[] {
+    return this.course?.lessons.flatMap(({ steps }) => steps) ?? [];
+  }
+
+  /** The results of the shown step; null before they are known. */
+  get results(): StepChecks | null {
+    return this.checks?.address === this.step?.address ? this.checks : null;
+  }
+
+  /** Whether all checks of the shown step passed when they ran last. */
+  get isPassed(): boolean {
+    const { checks, checked_at: checkedAt } = this.results ?? { checks: [], checked_at: null };
+    return checkedAt !== null && checks.every(({ is_passed: isPassed }) => isPassed);
+  }
+
+  /** Returns the step that is `count` steps after the shown one, or undefined. */
+  neighbor(count: number): CourseStepItem | undefined {
+    const at = this.steps.findIndex(({ address }) => address === this.step?.address);
+    return at < 0 ? undefined : this.steps[at + count];
+  }
+
+  open(address: string): void {
+    this.connection.send({ type: "open_step", address });
+  }
+
+  /** Opens the step that is `count` steps after the shown one, if there is one. */
+  move(count: number): void {
+    const step = this.neighbor(count);
+    if (step) this.open(step.address);
+  }
+
+  check(): void {
+    this.connection.send({ type: "check_step" });
+  }
+
+  answer(answer: string): void {
+    this.connection.send({ type: "answer_step", answer });
+  }
+
+  takeHint(): void {
+    this.connection.send({ type: "take_hint" });
+  }
+
+  takeSolution(): void {
+    this.connection.send({ type: "take_solution" });
+  }
+}

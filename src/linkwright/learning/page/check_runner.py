@@ -1,0 +1,62 @@
+"""The runner of a step's checks: one process at a time."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+from pathlib import Path
+
+from linkwright.learning.checks.results import StepResult
+from linkwright.learning.checks.running import CheckProcess
+from linkwright.learning.course import Step
+
+
+class CheckRunner:
+    """A runner of checks on the event loop.
+
+    A request ends the checks that still run, because the learner's files have changed since.
+
+    Args:
+        workspace: the learner's workspace.
+        on_result: called with a step and its results.
+    """
+
+    def __init__(self, workspace: Path, on_result: Callable[[Step, StepResult], object]) -> None:
+        self._workspace = workspace
+        self._on_result = on_result
+        self._process: CheckProcess | None = None
+        self._task: asyncio.Task[None] | None = None
+        self._requested: tuple[Step, str | None] | None = None
+
+    @property
+    def is_running(self) -> bool:
+        """Whether checks run or are about to run."""
+        return self._task is not None
+
+    def request(self, step: Step, answer: str | None) -> None:
+        """Run the checks of a step as soon as possible."""
+        self._requested = step, answer
+        if self._process is not None:
+            self._process.cancel()
+        if self._task is None:
+            self._task = asyncio.get_running_loop().create_task(self._work())
+
+    def close(self) -> None:
+        """End the checks that run."""
+        self._requested = None
+        if self._process is not None:
+            self._process.cancel()
+        if self._task is not None:
+            self._task.cancel()
+
+    async def _work(self) -> None:
+        while self._requested is not None:
+            step, answer = self._requested
+            self._requested = None
+            self._process = CheckProcess(step, self._workspace, answer=answer)
+            result = await asyncio.to_thread(self._process.run)
+            self._process = None
+            if self._requested is None:
+                self._task = None
+                self._on_result(step, result)
+                return

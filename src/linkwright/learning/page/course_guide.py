@@ -1,0 +1,202 @@
+"""The guide of a course: shows steps, checks them when files are saved, and carries out requests of pages."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import time
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+from linkwright.diagnostics import LinkwrightError, foreign
+from linkwright.graph import Logger
+from linkwright.learning.checks.results import CheckResult, StepResult
+from linkwright.learning.classroom import REPLACED_FOLDER, Classroom
+from linkwright.learning.course import Step
+from linkwright.learning.page.check_runner import CheckRunner
+from linkwright.learning.page.guide import Guide, Publish, problem_of
+from linkwright.learning.page.step_html import step_html
+from linkwright.learning.progress import PROGRESS_FILE
+from linkwright.page.protocol import learning as messages
+from linkwright.page.protocol.message import PageMessage, ServerMessage
+
+_DEBOUNCE_MS = 400
+"""The longest time, in ms, for which changes of files are collected before the checks run."""
+
+_UNWATCHED_FOLDERS = frozenset({"build", "install", "log", "__pycache__", REPLACED_FOLDER})
+"""Folders of the workspace whose files are generated."""
+
+
+class CourseGuide(Guide):
+    """The guide of a learner through a course, on the running event loop.
+
+    Args:
+        room: the course in the learner's workspace.
+        publish: sends a message to all pages.
+        logger: logs why files are not watched.
+        on_changed: called with the robot's file that is to be shown beside the step, when a step is opened and when
+            files of the workspace have changed; None if no step has named one yet.
+    """
+
+    def __init__(
+        self, room: Classroom, publish: Publish, logger: Logger, on_changed: Callable[[Path | None], object]
+    ) -> None:
+        self._room = room
+        self._publish = publish
+        self._logger = logger
+        self._on_changed = on_changed
+        self._runner = CheckRunner(room.workspace, self._show_result)
+        self._results: dict[str, messages.StepChecks] = {}
+        self._step = room.current_step
+        self._watch = asyncio.get_running_loop().create_task(self._watch_files(room.workspace))
+        self._handlers: Mapping[type[PageMessage], Callable[[Any], object]] = {
+            messages.OpenStep: lambda message: self._open(room.course.find_step(message.address)),
+            messages.CheckStep: lambda _: self._check(),
+            messages.AnswerStep: self._answer,
+            messages.TakeHint: self._take_hint,
+            messages.TakeSolution: self._take_solution,
+        }
+        self._open(self._step)
+
+    def opening_messages(self) -> list[ServerMessage]:
+        """Return the course, its shown step and the results of its checks."""
+        return [self._course(), self._shown_step(), self._checks()]
+
+    def handle(self, message: PageMessage) -> None:
+        """Carry out a request of a page."""
+        self._handlers[type(message)](message)
+
+    def close(self) -> None:
+        """Stop watching files and running checks."""
+        self._watch.cancel()
+        self._runner.close()
+
+    def _open(self, step: Step) -> None:
+        self._room.open_step(step)
+        self._step = step
+        self._publish(self._course())
+        self._publish(self._shown_step())
+        self._on_changed(self._room.shown_file(step))
+        self._check()
+
+    def _check(self) -> None:
+        self._runner.request(self._step, self._room.progress.step(self._step.address).answer)
+        self._publish(self._checks())
+
+    def _answer(self, message: messages.AnswerStep) -> None:
+        self._room.answer(self._step, message.answer.strip())
+        self._publish(self._shown_step())
+        self._check()
+
+    def _take_hint(self, _: messages.TakeHint) -> None:
+        self._room.take_hint(self._step)
+        self._publish(self._shown_step())
+
+    def _take_solution(self, _: messages.TakeSolution) -> None:
+        self._room.take_solution(self._step)
+        self._on_changed(self._room.shown_file(self._step))
+        self._check()
+
+    def _show_result(self, step: Step, result: StepResult) -> None:
+        items = [_check_item(check) for check in result.checks]
+        self._results[step.address] = messages.StepChecks(
+            step.address, is_running=False, checks=items, checked_at=time.time()
+        )
+        try:
+            self._room.note_result(step, result)
+        except LinkwrightError as error:
+            self._publish(problem_of(error))
+        self._publish(self._checks())
+        self._publish(self._course())
+
+    def _course(self) -> messages.Course:
+        room = self._room
+        lessons = [
+            messages.CourseLesson(
+                lesson.id,
+                lesson.title.texts,
+                [
+                    messages.CourseStepItem(
+                        step.address, step.title.texts, is_passed=room.progress.step(step.address).passed is not None
+                    )
+                    for step in lesson.steps
+                ],
+            )
+            for lesson in room.course.lessons
+        ]
+        return messages.Course(room.course.title.texts, str(room.workspace), lessons)
+
+    def _shown_step(self) -> messages.CourseStep:
+        room = self._room
+        step, noted = self._step, room.progress.step(self._step.address)
+        folder = step.lesson.folder
+        is_first = step.id == step.lesson.steps[0].id
+        hint_count = len(step.text("").hints)
+        solution, shown_file = room.solution_files(step), room.shown_file(step)
+        return messages.CourseStep(
+            step.address,
+            lesson=step.lesson.title.texts,
+            title=step.title.texts,
+            introduction={
+                language: step_html(text.introduction, folder) if is_first else ""
+                for language, text in step.lesson.texts.items()
+            },
+            body={language: step_html(text.body, folder) for language, text in step.texts.items()},
+            hints=[
+                {language: step_html(text.hints[index], folder) for language, text in step.texts.items()}
+                for index in range(min(noted.hints, hint_count))
+            ],
+            hint_count=hint_count,
+            files=[str(path) for path in solution if path == shown_file or path.name in step.text("").body],
+            solution=[str(path) for path in solution],
+            unit=step.unit,
+            answer=noted.answer,
+        )
+
+    def _checks(self) -> messages.StepChecks:
+        known = self._results.get(self._step.address)
+        return messages.StepChecks(
+            self._step.address,
+            is_running=self._runner.is_running,
+            checks=[] if known is None else known.checks,
+            checked_at=None if known is None else known.checked_at,
+        )
+
+    async def _watch_files(self, workspace: Path) -> None:
+        """Check the shown step when files of the workspace have changed."""
+        import watchfiles
+
+        try:
+            async for changes in watchfiles.awatch(workspace, watch_filter=None, debounce=_DEBOUNCE_MS):
+                paths = [Path(path) for _, path in changes]
+                self._follow([path for path in paths if _is_watched(path, workspace)])
+        except (OSError, RuntimeError) as error:
+            reason = foreign(str(error))
+            self._logger.warning(f"The files of the workspace are not watched: {reason}")
+
+    def _follow(self, paths: list[Path]) -> None:
+        if any(path.name == PROGRESS_FILE for path in paths):
+            try:
+                self._room.reload()
+            except LinkwrightError as error:
+                self._publish(problem_of(error))
+            self._publish(self._course())
+            self._publish(self._shown_step())
+        if any(path.name != PROGRESS_FILE for path in paths):
+            self._on_changed(self._room.shown_file(self._step))
+            self._check()
+
+
+def _is_watched(path: Path, workspace: Path) -> bool:
+    """Return whether a change of a path may change the result of a check."""
+    try:
+        parts = path.relative_to(os.path.realpath(workspace)).parts
+    except ValueError:
+        parts = path.relative_to(workspace).parts if path.is_relative_to(workspace) else ()
+    return bool(parts) and not any(part.startswith(".") or part in _UNWATCHED_FOLDERS for part in parts)
+
+
+def _check_item(check: CheckResult) -> messages.StepCheck:
+    message = None if check.message is None else check.message.texts
+    return messages.StepCheck(check.title.texts, is_passed=check.passed, message=message)

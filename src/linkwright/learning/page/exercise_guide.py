@@ -1,0 +1,158 @@
+"""The guide of an exercise: its text, the state of its judge in the running world, and scores of the program."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import sys
+import time
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, foreign, phrase
+from linkwright.diagnostics.translation import LANGUAGES
+from linkwright.graph import Node
+from linkwright.learning.judging.exercise import Exercise
+from linkwright.learning.judging.world import STATUS_TOPIC
+from linkwright.learning.local_text import LocalText
+from linkwright.learning.page.guide import Guide, Publish
+from linkwright.learning.page.step_html import step_html
+from linkwright.messages import String
+from linkwright.page.protocol import learning as messages
+from linkwright.page.protocol.message import PageMessage, ServerMessage
+
+_PASS_SCORE = 50.0
+_NO_STATE = phrase("the world has not sent the state of the judge yet")
+
+
+class ExerciseGuide(Guide):
+    """The guide of a learner through an exercise, on the running event loop.
+
+    The first check shows the state of the judge in the world that runs in real time. A request to check judges the
+    program with several seeds, in a process of its own, and shows a check for each.
+
+    Args:
+        exercise: the exercise.
+        program: the learner's program.
+        publish: sends a message to all pages.
+        node: the node that subscribes to the state of the judge.
+    """
+
+    def __init__(self, exercise: Exercise, program: Path, publish: Publish, node: Node) -> None:
+        self._exercise = exercise
+        self._program = program
+        self._publish = publish
+        self._state: Mapping[str, Any] | None = None
+        self._scores: list[messages.StepCheck] = []
+        self._judged_at: float | None = None
+        self._task: asyncio.Task[None] | None = None
+        node.create_subscription(String, STATUS_TOPIC, self._receive, 10)
+
+    def opening_messages(self) -> list[ServerMessage]:
+        """Return the exercise as a course of one step, and the state of the judge."""
+        return [self._course(), self._step(), self._checks()]
+
+    def handle(self, message: PageMessage) -> None:
+        """Judge the program if a page requests it, and ignore other requests, which an exercise does not offer."""
+        if not isinstance(message, messages.CheckStep) or self._task is not None:
+            return
+        if not self._program.is_file():
+            message_text = phrase("there is no program '{path}'", path=display_path(self._program))
+            raise LinkwrightError(Diagnostic("LEARN142", message_text))
+        self._scores, self._judged_at = [], None
+        self._task = asyncio.get_running_loop().create_task(self._judge())
+        self._publish(self._checks())
+
+    def close(self) -> None:
+        """End the judge."""
+        if self._task is not None:
+            self._task.cancel()
+
+    def _receive(self, message: String) -> None:
+        self._state = json.loads(message.data)
+        self._publish(self._checks())
+
+    async def _judge(self) -> None:
+        words = [sys.executable, "-m", "linkwright", "learn", "judge", str(self._exercise.folder), str(self._program)]
+        process = await asyncio.create_subprocess_exec(
+            *words, "--json", stdout=asyncio.subprocess.PIPE, stderr=asyncio.subprocess.PIPE
+        )
+        try:
+            output, errors = await process.communicate()
+        except asyncio.CancelledError:
+            process.kill()
+            raise
+        self._task, self._judged_at = None, time.time()
+        try:
+            self._scores = [self._score(run) for run in json.loads(output)["runs"]]
+        except (ValueError, KeyError):
+            reason = foreign((errors.decode(errors="replace").strip().splitlines() or [""])[-1])
+            message = phrase("the program cannot be judged: {reason}", reason=reason)
+            self._publish(messages.CourseProblem(message, ""))
+        self._publish(self._checks())
+
+    def _course(self) -> messages.Course:
+        item = messages.CourseStepItem(self._exercise.id, self._exercise.title.texts, is_passed=False)
+        lesson = messages.CourseLesson(self._exercise.id, self._exercise.title.texts, [item])
+        return messages.Course(self._exercise.title.texts, str(self._program.parent), [lesson])
+
+    def _step(self) -> messages.CourseStep:
+        folder = self._exercise.folder
+        return messages.CourseStep(
+            self._exercise.id,
+            lesson=self._exercise.title.texts,
+            title=self._exercise.title.texts,
+            introduction={},
+            body={language: step_html(_without_title(self._exercise.text(language)), folder) for language in LANGUAGES},
+            hints=[],
+            hint_count=0,
+            files=[str(self._program)],
+            solution=[],
+            unit=None,
+            answer=None,
+        )
+
+    def _checks(self) -> messages.StepChecks:
+        return messages.StepChecks(
+            self._exercise.id,
+            is_running=self._task is not None,
+            checks=[self._live(), *self._scores],
+            checked_at=self._judged_at,
+        )
+
+    def _live(self) -> messages.StepCheck:
+        """Return the state of the judge in the world that runs now."""
+        if self._state is None:
+            name = LocalText.from_phrase(_NO_STATE).texts
+            return messages.StepCheck(name, is_passed=False, message=None)
+        return messages.StepCheck(
+            self._figure(self._state), is_passed=self._state["is_solved"], message=_reasons(self._state)
+        )
+
+    def _score(self, run: Mapping[str, Any]) -> messages.StepCheck:
+        """Return the result of a judged run."""
+        figures = self._figure(run)
+        titles = {language: f"{run['seed']}: {text} · {run['score']:g}" for language, text in figures.items()}
+        return messages.StepCheck(titles, is_passed=run["score"] >= _PASS_SCORE, message=_reasons(run))
+
+    def _figure(self, state: Mapping[str, Any]) -> dict[str, str]:
+        value = f"{state['figure']:.{self._exercise.figure.decimals}f} {state['unit']}".strip()
+        return {language: f"{name} {value}" for language, name in state["name"].items()}
+
+
+def _reasons(state: Mapping[str, Any]) -> dict[str, str] | None:
+    """Return the reasons of a judge, and the last line of the program's error."""
+    reasons = state["reasons"]
+    lines = (state.get("error") or "").rstrip().splitlines()[-1:]
+    texts = {
+        language: " ".join([*(reason.get(language) or reason["en"] for reason in reasons), *lines])
+        for language in LANGUAGES
+    }
+    return texts if any(texts.values()) else None
+
+
+def _without_title(text: str) -> str:
+    """Return a Markdown text without its first heading, which the page shows itself."""
+    first, _, rest = text.lstrip().partition("\n")
+    return rest if first.startswith("# ") else text

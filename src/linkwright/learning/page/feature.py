@@ -1,0 +1,53 @@
+"""The page feature of courses and exercises, which passes requests of pages to a guide."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from linkwright.diagnostics import LinkwrightError, phrase
+from linkwright.learning.page.guide import Guide, problem_of
+from linkwright.page.audience import Page
+from linkwright.page.protocol.learning import CourseProblem
+from linkwright.page.protocol.message import ServerMessage
+from linkwright.panels.page_feature import FeatureHost, PageFeature
+
+_START_HINT = phrase("start it with `linkwright learn`")
+
+
+class CourseFeature(PageFeature):
+    """The feature of a course or an exercise, which refuses all requests before `show`."""
+
+    def __init__(self, viewer: FeatureHost) -> None:
+        super().__init__(viewer)
+        self._guide: Guide | None = None
+
+    def show(self, guide: Guide) -> None:
+        """Show what a guide has in the pages, and pass it their requests."""
+        self._guide = guide
+        for message in guide.opening_messages():
+            self.context.pages.publish(message)
+
+    def opening_messages(self) -> list[ServerMessage]:
+        """Return the messages of the guide."""
+        return [] if self._guide is None else self._guide.opening_messages()
+
+    def receive(self, page: Page, message: Any) -> None:
+        """Carry out a request, or report why not."""
+        if self._guide is None:
+            page.send(CourseProblem(phrase("this program was started without a course"), _START_HINT))
+            return
+        if not page.is_here:
+            problem = phrase("the course can be used only in pages on the machine of the program")
+            page.send(CourseProblem(problem, ""))
+            return
+        try:
+            self._guide.handle(message)
+        except LinkwrightError as error:
+            page.send(problem_of(error))
+        else:
+            page.send(CourseProblem("", ""))
+
+    def close(self) -> None:
+        """Close the guide."""
+        if self._guide is not None:
+            self._guide.close()

@@ -1,0 +1,64 @@
+"""The texts of lessons as HTML for pages."""
+
+from __future__ import annotations
+
+from base64 import b64encode
+from functools import lru_cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from linkwright.page.files import IMAGE_TYPES
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from markdown_it import MarkdownIt
+    from markdown_it.token import Token
+
+MAX_IMAGE_BYTES = 400_000
+"""The maximum size of an image in the text of a lesson, because pages receive images as part of the text."""
+
+
+def step_html(text: str, folder: Path) -> str:
+    """Return the HTML of a Markdown text.
+
+    HTML in the text is shown as text. An image is part of the HTML if it is a file below the lesson's folder; other
+    images are replaced with their descriptions.
+
+    Args:
+        text: the Markdown.
+        folder: the folder of the lesson, which the paths of images refer to.
+    """
+    return _renderer().render(text, {"folder": folder}) if text else ""
+
+
+@lru_cache(maxsize=1)
+def _renderer() -> MarkdownIt:
+    from markdown_it import MarkdownIt
+
+    renderer = MarkdownIt("commonmark", {"html": False}).enable("table")
+    renderer.add_render_rule("image", _render_image)
+    return renderer
+
+
+def _render_image(renderer: Any, tokens: Sequence[Token], index: int, options: Any, env: Any) -> str:
+    token = tokens[index]
+    address = _data_address(env["folder"], str(token.attrGet("src") or ""))
+    description = renderer.renderInlineAsText(token.children or [], options, env)
+    token.attrSet("alt", description)
+    if address is None:
+        return renderer.renderInline(token.children or [], options, env)  # type: ignore[no-any-return]
+    token.attrSet("src", address)
+    return renderer.renderToken(tokens, index, options, env)  # type: ignore[no-any-return]
+
+
+def _data_address(folder: Path, name: str) -> str | None:
+    """Return an image of a lesson as a data address, or None if the name is not that of an image of the lesson."""
+    try:
+        path = (folder / name).resolve(strict=True)
+        is_inside = path.is_relative_to(folder.resolve(strict=True))
+    except (OSError, RuntimeError, ValueError):
+        return None
+    if not is_inside or path.suffix.lower() not in IMAGE_TYPES or path.stat().st_size > MAX_IMAGE_BYTES:
+        return None
+    return f"data:{IMAGE_TYPES[path.suffix.lower()]};base64,{b64encode(path.read_bytes()).decode()}"

@@ -1,0 +1,114 @@
+"""The course of a learner: its steps, their texts, the results of checks, hints and solutions.
+
+The server owns the course and the learner's progress. All pages show the same step. Texts of courses are sent in all
+their languages, by the language's tag, and the page selects one.
+"""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from linkwright.page.protocol.message import PageMessage, Record, ServerMessage
+
+
+class CourseStepItem(Record):
+    """A step in the outline of a course. `address` is ``LESSON/STEP``."""
+
+    address: str
+    title: dict[str, str]
+    is_passed: bool
+
+
+class CourseLesson(Record):
+    """A lesson in the outline of a course."""
+
+    id: str
+    title: dict[str, str]
+    steps: list[CourseStepItem]
+
+
+class Course(ServerMessage):
+    """The outline of the course, with the learner's progress.
+
+    It is sent when a page opens, and again when the progress changes. `folder` is the learner's workspace.
+    """
+
+    title: dict[str, str]
+    folder: str
+    lessons: list[CourseLesson]
+
+
+class CourseStep(ServerMessage):
+    """The step that is shown.
+
+    Texts are HTML without scripts. `introduction` is that of the lesson for its first step, or empty. `hints` are the
+    hints that the learner has taken, of `hint_count` hints. `solution` are the files that the solution writes, and
+    `files` those of them that the page shows or the text mentions, both as absolute paths. `unit` is the unit of the
+    number that the step asks for, or None if it asks for none. `answer` is the learner's answer as text.
+    """
+
+    address: str
+    lesson: dict[str, str]
+    title: dict[str, str]
+    introduction: dict[str, str]
+    body: dict[str, str]
+    hints: list[dict[str, str]]
+    hint_count: int
+    files: list[str]
+    solution: list[str]
+    unit: str | None
+    answer: str | None
+
+
+class StepCheck(Record):
+    """The result of one check. `message` is what is not yet so, or None if the check is satisfied."""
+
+    title: dict[str, str]
+    is_passed: bool
+    message: dict[str, str] | None
+
+
+class StepChecks(ServerMessage):
+    """The last results of the checks of a step, and whether the checks run.
+
+    `checks` is empty before the first results. `checked_at` is the time of the results in seconds since the epoch, or
+    None if there are none.
+    """
+
+    address: str
+    is_running: bool
+    checks: list[StepCheck]
+    checked_at: float | None
+
+
+class CourseProblem(ServerMessage):
+    """The reason why the last request of a page was not carried out, and a hint, each of which may be empty."""
+
+    NEWEST_OF: ClassVar[tuple[str, ...]] = ()
+
+    message: str
+    hint: str
+
+
+class OpenStep(PageMessage):
+    """A request to show a step."""
+
+    address: str
+
+
+class CheckStep(PageMessage):
+    """A request to run the checks of the shown step again."""
+
+
+class AnswerStep(PageMessage):
+    """The learner's answer to the shown step."""
+
+    answer: str
+
+
+class TakeHint(PageMessage):
+    """A request for one more hint for the shown step."""
+
+
+class TakeSolution(PageMessage):
+    """A request to copy the solution of the shown step into the workspace."""

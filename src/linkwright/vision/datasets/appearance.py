@@ -1,0 +1,136 @@
+"""The random appearance of an image: lights, colours, patterns, backdrop, camera effects."""
+
+from __future__ import annotations
+
+import colorsys
+from typing import Any
+
+import numpy as np
+
+from linkwright.geometry.arrays import Array
+from linkwright.sdf.lights import Light
+from linkwright.vision.datasets.arrangement import Shot
+from linkwright.vision.datasets.stage import Stage
+from linkwright.vision.datasets.textures import Pixels, smooth_noise
+
+_NOISE_VALUES = 1 << 21
+"""The number of noise values. They are drawn once, and each image uses them from a different offset."""
+
+
+def set_lights(stage: Stage, generator: np.random.Generator) -> None:
+    """Replace the lights of a world with one to three random lights.
+
+    All lights are directional. With a nearby light, OpenGL's rendering of an infinite plane would depend on the
+    previous frame.
+    """
+    lights = []
+    for number in range(int(generator.integers(1, 4))):
+        intensity = 1.0 if number == 0 else 0.5
+        colour = _tinted_white(generator, 0.25) * generator.uniform(0.3, 1.0) * intensity
+        red, green, blue = (float(channel) for channel in colour)
+        diffuse = red, green, blue, 1.0
+        x, y, z = (float(component) for component in generator.normal(size=3))
+        direction = x, y, -abs(z) - 0.2
+        lights.append(Light(f"light {number}", "directional", diffuse=diffuse, direction=direction))
+    ambient = _tinted_white(generator, 0.15) * generator.uniform(0.1, 0.55)
+    stage.light(lights, ambient, generator.random(3))
+
+
+def paint_surfaces(stage: Stage, shot: Shot, generator: np.random.Generator) -> None:
+    """Recolour all objects and surroundings.
+
+    Most objects keep their colour or get a similar one.
+    """
+    for prop in shot.placed_props:
+        choice, new_colours = generator.random(), {}
+        is_textured = generator.random() < 0.3
+        number = int(generator.integers(1 << 16))
+        for geom in prop.geoms:
+            original_colour = tuple(float(channel) for channel in stage.original_colour(geom)[:3])
+            if original_colour not in new_colours:
+                new_colours[original_colour] = _similar_colour(original_colour, choice, generator)
+            if not stage.has_material(geom):
+                stage.paint(geom, new_colours[original_colour], "object" if is_textured else "", number)
+    for geom in stage.distractors:
+        is_patterned = generator.random() < 0.5
+        stage.paint(geom, generator.random(3), "wall" if is_patterned else "", int(generator.integers(1 << 16)))
+    for kind, geoms in (("wall", shot.structures), ("ground", stage.ground)):
+        is_uniform = generator.random() < 0.7
+        colour, is_patterned, number = _random_surface(generator)
+        for geom in geoms:
+            if not is_uniform:
+                colour, is_patterned, number = _random_surface(generator)
+            stage.paint(geom, colour, kind if is_patterned else "", number)
+
+
+def fill_backdrop(colour: Pixels, geoms: Any, generator: np.random.Generator) -> None:
+    """Fill the empty parts of an image with a random backdrop: a gradient with clouds."""
+    is_empty = geoms < 0
+    if not is_empty.any():
+        return
+    height, width = geoms.shape
+    top_colour, bottom_colour = generator.uniform(0.2, 1.0, 3), generator.uniform(0.2, 1.0, 3)
+    blend = np.linspace(0.0, 1.0, height)[:, None]
+    if generator.random() < 0.5:
+        blend = 0.5 * blend + 0.5 * smooth_noise(generator, int(generator.integers(2, 12)), height, width)
+    blend = np.broadcast_to(blend, (height, width))[is_empty].astype(np.float32)
+    for channel in range(3):
+        colour[..., channel][is_empty] = (
+            255 * (top_colour[channel] + (bottom_colour[channel] - top_colour[channel]) * blend)
+        ).astype(np.uint8)
+
+
+class Camera:
+    """The effects of a lens and a sensor: exposure, white balance, blur and noise."""
+
+    def __init__(self) -> None:
+        self._noise = np.random.default_rng(0).standard_normal(_NOISE_VALUES, dtype=np.float32)
+
+    def develop(self, colour: Pixels, generator: np.random.Generator) -> Pixels:
+        """Return an image with random effects of lens and sensor."""
+        gain, gamma = np.exp(generator.normal(0.0, 0.18)), np.exp(generator.normal(0.0, 0.15))
+        balance = np.exp(generator.normal(0.0, 0.05, 3))
+        levels = np.linspace(0.0, 1.0, 256)[:, None] ** gamma * gain * balance
+        lookup_table = np.clip(np.round(levels * 255), 0, 255).astype(np.uint8)
+        developed = np.empty_like(colour)
+        for channel in range(3):
+            developed[..., channel] = lookup_table[:, channel].take(colour[..., channel])
+        if generator.random() < 0.35:
+            developed = _blurred(developed, float(generator.uniform(0.3, 1.6)))
+        if generator.random() < 0.7:
+            strength = np.float32(generator.uniform(0.5, 9.0))
+            start = int(generator.integers(_NOISE_VALUES - developed.size)) if developed.size < _NOISE_VALUES else 0
+            noise = np.resize(self._noise[start:], developed.size).reshape(developed.shape)
+            developed = np.clip(developed + strength * noise, 0, 255).astype(np.uint8)
+        return developed
+
+
+def _blurred(colour: Pixels, radius: float) -> Pixels:
+    from PIL import Image, ImageFilter
+
+    blurred: Pixels = np.asarray(Image.fromarray(colour).filter(ImageFilter.GaussianBlur(radius)))
+    return blurred
+
+
+def _tinted_white(generator: np.random.Generator, max_saturation: float) -> Array:
+    """Return white with a random tint, as red, green and blue with a maximum of 1."""
+    return np.array(colorsys.hsv_to_rgb(generator.random(), generator.uniform(0.0, max_saturation), 1.0))
+
+
+def _similar_colour(colour: tuple[float, ...], choice: float, generator: np.random.Generator) -> Array:
+    """Return a colour for an object: the same, one with a similar hue, or a random one."""
+    hue, saturation, value = colorsys.rgb_to_hsv(*colour)
+    if choice < 0.45:
+        return np.array(colour)
+    if choice < 0.85:
+        hue = (hue + generator.normal(0.0, 0.02)) % 1.0
+        saturation = float(np.clip(saturation * generator.uniform(0.7, 1.2), 0.0, 1.0))
+        value = float(np.clip(value * generator.uniform(0.6, 1.2) + generator.uniform(0.0, 0.05), 0.0, 1.0))
+    else:
+        hue, saturation, value = generator.random(), generator.uniform(0.0, 1.0), generator.uniform(0.1, 1.0)
+    return np.array(colorsys.hsv_to_rgb(hue, saturation, value))
+
+
+def _random_surface(generator: np.random.Generator) -> tuple[Array, bool, int]:
+    colour = np.array(colorsys.hsv_to_rgb(generator.random(), generator.beta(1.0, 2.5), generator.uniform(0.25, 1.0)))
+    return colour, bool(generator.random() < 0.6), int(generator.integers(1 << 16))

@@ -1,0 +1,261 @@
+"""The random arrangement of the camera and the objects for an image."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import atan2, cos, exp, log, pi, radians, sin, tan
+
+import numpy as np
+
+from linkwright.geometry.arrays import Array
+from linkwright.geometry.single import Transform, quaternion_from_rpy
+from linkwright.sdf.optics import Optics
+from linkwright.vision.datasets.options import Options
+from linkwright.vision.datasets.stage import Prop, Stage
+
+_MAX_TRIES = 20
+_STEPS = 40
+_MIN_DISTANCE, _MAX_DISTANCE = 0.3, 12.0
+"""The minimum and maximum distance of objects from the camera, in m."""
+_MIN_LENGTH, _MAX_LENGTH = 0.045, 0.5
+"""The minimum and maximum length of an object, as fractions of the image width: 30 to 320 of 640 pixels."""
+_FAR_CLIP = 30.0
+"""The far clip distance, in m."""
+_OCCLUDED_SHARE = 0.15
+"""The fraction of objects that may be placed behind structures."""
+_CAMERA_CLEARANCE = 0.12
+"""The minimum distance of the camera from any object or structure, in m."""
+
+
+@dataclass(frozen=True)
+class Shot:
+    """A camera pose with the objects and structures of an image.
+
+    Attributes:
+        optics: the camera's projection.
+        pose: the camera's pose; the camera looks along x, with z up.
+        placed_props: the objects that were placed; some may be out of view.
+        structures: the geoms of the surroundings that are not hidden.
+    """
+
+    optics: Optics
+    pose: Transform
+    placed_props: tuple[Prop, ...]
+    structures: tuple[int, ...]
+
+
+class _Ground:
+    """The occupied areas of the ground, as rectangles and circles seen from above."""
+
+    def __init__(self, stage: Stage, geoms: list[int]) -> None:
+        data = stage.simulation.data
+        horizontal_z = np.abs(data.geom_xmat[geoms].reshape(-1, 3, 3)[:, 2, :2]).max(initial=0.0, axis=1)
+        is_upright = horizontal_z < 1e-3
+        half = stage.simulation.model.geom_aabb[geoms, 3:5]
+        centres = stage.simulation.model.geom_aabb[geoms, :2]
+        axes = data.geom_xmat[geoms].reshape(-1, 3, 3)[:, :2, :2]
+        bounds = stage.boxes[geoms]
+        self._half_sizes = np.where(is_upright[:, None], half, (bounds[:, 1, :2] - bounds[:, 0, :2]) / 2)
+        self._axes = np.where(is_upright[:, None, None], axes, np.eye(2))
+        rotated_centres = data.geom_xpos[geoms, :2] + np.einsum("gij,gj->gi", axes, centres)
+        self._centers = np.where(is_upright[:, None], rotated_centres, (bounds[:, 0, :2] + bounds[:, 1, :2]) / 2)
+        self._occupied_circles: list[tuple[float, float, float]] = []
+
+    def is_free(self, x: float, y: float, radius: float) -> bool:
+        """Return whether a circle overlaps no structure and no occupied circle."""
+        if any((x - a) ** 2 + (y - b) ** 2 < (radius + other) ** 2 for a, b, other in self._occupied_circles):
+            return False
+        if not len(self._half_sizes):
+            return True
+        local = np.einsum("gji,gj->gi", self._axes, np.array([x, y]) - self._centers)
+        outside = np.maximum(np.abs(local) - self._half_sizes, 0.0)
+        return bool((np.hypot(outside[:, 0], outside[:, 1]) > radius).all())
+
+    def has_line_of_sight(self, start: tuple[float, float], end: tuple[float, float]) -> bool:
+        """Return whether no structure blocks the line between two points."""
+        steps = np.linspace(start, end, _STEPS)[:, None] - self._centers
+        beyond = np.abs(np.einsum("gji,sgj->sgi", self._axes, steps)) - self._half_sizes
+        return not (beyond < 0.0).all(axis=2).any()
+
+    def occupy(self, x: float, y: float, radius: float) -> None:
+        """Mark a circle as occupied."""
+        self._occupied_circles.append((x, y, radius))
+
+
+def arrange(stage: Stage, options: Options, generator: np.random.Generator) -> Shot:
+    """Place a camera, objects and distractors at random, and return the resulting shot.
+
+    Args:
+        stage: the world, after `Stage.begin`.
+        options: the options of the dataset.
+        generator: the random generator.
+    """
+    structures = _choose_structures(stage, generator)
+    ground = _Ground(stage, structures)
+    field = radians(generator.uniform(45.0, 100.0))
+    focal = options.width / (2 * tan(field / 2))
+    optics = Optics(options.width, options.height, focal, focal, options.width / 2, options.height / 2, 0.03, _FAR_CLIP)
+    x, y, heading = _choose_camera_pose(stage, ground, generator)
+    height = stage.floor + (exp(generator.uniform(log(0.08), log(0.8))) if generator.random() < 0.7 else
+                            generator.uniform(0.6, 2.5))  # fmt: skip
+    ground.occupy(x, y, _CAMERA_CLEARANCE)
+    placed_props, target = [], None
+    for prop in _choose_props(stage, options, generator):
+        position = _find_free_position(
+            stage, ground, prop.radius, (x, y, heading), field, generator, _distance_range(prop, focal, options)
+        )
+        if position is not None:
+            _place_prop(stage, prop, position, generator)
+            placed_props.append(prop)
+            target = target or (position, float(prop.corners[:, 2].max()))
+    for geom in stage.distractors:
+        if generator.random() < 0.35:
+            radius = stage.shape_distractor(geom, generator)
+            position = _find_free_position(
+                stage, ground, radius, (x, y, heading), field, generator, (_MIN_DISTANCE, _MAX_DISTANCE)
+            )
+            if position is not None:
+                height_above_floor = generator.uniform(0.0, 1.5) if generator.random() < 0.2 else 0.0
+                rotation = (
+                    _random_rotation(generator)
+                    if generator.random() < 0.5
+                    else _yaw_rotation(generator.uniform(-pi, pi))
+                )
+                stage.put_distractor(geom, np.array([*position, stage.floor + height_above_floor]), rotation)
+    if target is None:
+        pitch = generator.uniform(-0.1, 0.5)
+    else:
+        (target_x, target_y), target_height = target
+        distance = max(float(np.hypot(target_x - x, target_y - y)), 0.1)
+        vertical_field = 2 * atan2(options.height / 2, focal)
+        pitch = (
+            atan2(height - stage.floor - target_height / 2, distance) + generator.uniform(-0.3, 0.3) * vertical_field
+        )
+    roll = generator.normal(0.0, radians(12.0 if generator.random() < 0.1 else 1.5))
+    pose = x, y, height, *quaternion_from_rpy((float(roll), float(np.clip(pitch, -1.0, 1.5)), heading))
+    return Shot(optics, pose, tuple(placed_props), tuple(structures))
+
+
+def _choose_structures(stage: Stage, generator: np.random.Generator) -> list[int]:
+    """Hide some of the structures at random, and return the geoms of the others."""
+    visible_geoms = []
+    for geoms in stage.structures.values():
+        if generator.random() < 0.25:
+            stage.hide(geoms)
+        else:
+            visible_geoms += geoms
+    return visible_geoms
+
+
+def _choose_camera_pose(stage: Stage, ground: _Ground, generator: np.random.Generator) -> tuple[float, float, float]:
+    """Return the camera's x and y in m and heading in rad, with free space ahead if possible."""
+    minimum, maximum = stage.area
+    x = y = heading = 0.0
+    for _ in range(_MAX_TRIES):
+        x, y = (float(coordinate) for coordinate in generator.uniform(minimum, maximum))
+        heading = float(generator.uniform(-pi, pi))
+        clearance = generator.uniform(0.8, 2.5)
+        distances = (share * clearance for share in (0.0, 0.25, 0.5, 0.75, 1.0))
+        is_free = (
+            ground.is_free(x + distance * cos(heading), y + distance * sin(heading), _CAMERA_CLEARANCE)
+            for distance in distances
+        )
+        if all(is_free):
+            break
+    return x, y, heading
+
+
+def _choose_props(stage: Stage, options: Options, generator: np.random.Generator) -> list[Prop]:
+    """Return randomly chosen objects.
+
+    Each class is equally likely, regardless of its number of objects. In 4 % of the images, there are no objects.
+    """
+    if generator.random() < 0.04:
+        return []
+    by_class: dict[int, list[Prop]] = {}
+    for prop in stage.props:
+        by_class.setdefault(prop.label, []).append(prop)
+    chosen: list[Prop] = []
+    for _ in range(int(generator.integers(1, options.max_objects + 1))):
+        classes = [label for label, props in by_class.items() if props]
+        if not classes:
+            break
+        props = by_class[classes[int(generator.integers(len(classes)))]]
+        chosen.append(props.pop(int(generator.integers(len(props)))))
+    return chosen
+
+
+def _distance_range(prop: Prop, focal: float, options: Options) -> tuple[float, float]:
+    """Return the range of distances in m at which an object has a suitable size in an image."""
+    spans = np.sort(prop.corners.max(axis=0) - prop.corners.min(axis=0))
+    nearest = max(focal * spans[2] / (_MAX_LENGTH * options.width), _MIN_DISTANCE)
+    farthest = min(spans[2] / (_MIN_LENGTH * options.width), spans[1] / (1.2 * max(options.min_size, 1))) * focal
+    return float(min(nearest, _MAX_DISTANCE / 2)), float(np.clip(farthest, 1.5 * nearest, _MAX_DISTANCE))
+
+
+def _find_free_position(
+    stage: Stage,
+    ground: _Ground,
+    radius: float,
+    camera: tuple[float, float, float],
+    field: float,
+    generator: np.random.Generator,
+    distances: tuple[float, float],
+) -> tuple[float, float] | None:
+    """Return a free position, usually in view of the camera, or None if none was found.
+
+    The position is marked as occupied.
+    """
+    x, y, heading = camera
+    minimum, maximum = stage.area
+    nearest, may_be_hidden = distances[0] + radius, generator.random() < _OCCLUDED_SHARE
+    for _ in range(_MAX_TRIES):
+        if generator.random() < 0.9:
+            bearing = heading + generator.uniform(-0.45, 0.45) * field
+            distance = exp(generator.uniform(log(nearest), log(max(distances[1], nearest * 1.5))))
+            position = x + distance * cos(bearing), y + distance * sin(bearing)
+        else:
+            first, second = generator.uniform(minimum, maximum)
+            position = float(first), float(second)
+        is_inside = bool((minimum < position).all() and (position < maximum).all())
+        is_visible = may_be_hidden or ground.has_line_of_sight((x, y), position)
+        if is_inside and is_visible and ground.is_free(*position, radius):
+            ground.occupy(*position, radius)
+            return position
+    return None
+
+
+def _place_prop(stage: Stage, prop: Prop, place: tuple[float, float], generator: np.random.Generator) -> None:
+    """Place an object at a position: usually upright, sometimes lying or above the ground."""
+    rotation = _yaw_rotation(generator.uniform(-pi, pi))
+    if prop.is_round or generator.random() < 0.08:
+        rotation = _random_rotation(generator)
+    elif generator.random() < 0.06:
+        rotation = rotation @ np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
+    corners = prop.corners @ rotation.T
+    minimum, maximum = corners.min(axis=0), corners.max(axis=0)
+    height_above_floor = generator.uniform(0.1, 0.9) if generator.random() < 0.06 else 0.0
+    centre = (minimum + maximum) / 2
+    is_tilted = rotation[2, 2] < 1.0 - 1e-9
+    offset = -centre[:2] if is_tilted else np.zeros(2)
+    height = -float(minimum[2])
+    if prop.is_round:  # the bounding box of a rotated ball is larger than the ball
+        center = (prop.corners.min(axis=0) + prop.corners.max(axis=0)) / 2
+        height = float(center[2] - (rotation @ center)[2])
+    stage.place_prop(
+        prop,
+        np.array([place[0] + offset[0], place[1] + offset[1], stage.floor + height + height_above_floor]),
+        rotation,
+    )
+
+
+def _yaw_rotation(angle: float) -> Array:
+    rotation: Array = np.array([[cos(angle), -sin(angle), 0.0], [sin(angle), cos(angle), 0.0], [0.0, 0.0, 1.0]])
+    return rotation
+
+
+def _random_rotation(generator: np.random.Generator) -> Array:
+    orthogonal, triangle = np.linalg.qr(generator.normal(size=(3, 3)))
+    orthogonal = orthogonal * np.sign(np.diag(triangle))
+    rotation: Array = orthogonal * np.linalg.det(orthogonal)
+    return rotation

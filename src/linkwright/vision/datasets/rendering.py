@@ -1,0 +1,236 @@
+"""The rendering of single images with their labels."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from io import BytesIO
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, missing_extra, phrase
+from linkwright.packages import PackageFinder
+from linkwright.sdf.models import Model
+from linkwright.simulation.rendering.renderer import Channels
+from linkwright.simulation.server.worlds import load_world
+from linkwright.simulation.simulation import Simulation
+from linkwright.vision.datasets.appearance import Camera, fill_backdrop, paint_surfaces, set_lights
+from linkwright.vision.datasets.arrangement import arrange
+from linkwright.vision.datasets.classes import ClassRules, default_rules, find_objects, original_name, read_classes
+from linkwright.vision.datasets.labels import Label, label_image
+from linkwright.vision.datasets.options import SPLITS, Options
+from linkwright.vision.datasets.stage import Stage
+
+IMAGES_PER_PATTERN_SET = 50
+"""The number of consecutive images that use the same patterns."""
+_SPLIT_BLOCK = 20
+"""The number of consecutive images over which the fractions of the splits hold."""
+_PATTERN_STREAM, _IMAGE_STREAM, _SPLIT_STREAM = range(3)
+"""Independent streams of random numbers for patterns, images and splits."""
+
+
+@dataclass(frozen=True, slots=True)
+class Source:
+    """The worlds and options of a dataset.
+
+    Attributes:
+        worlds: the files or the names of worlds.
+        added: the files of robots or models to add to each world.
+        classes: the file of class rules; None for one class per model.
+        options: how images are made.
+    """
+
+    worlds: tuple[str, ...]
+    added: tuple[str, ...]
+    classes: str | None
+    options: Options
+
+
+@dataclass(frozen=True, slots=True)
+class LabelledImage:
+    """An image with its labels.
+
+    Attributes:
+        index: the number of the image.
+        split: ``train``, ``val`` or ``test``.
+        data: the encoded image file.
+        labels: the labels of its objects.
+    """
+
+    index: int
+    split: str
+    data: bytes
+    labels: tuple[Label, ...]
+
+
+class Studio:
+    """The renderer and labeller of the images of a dataset.
+
+    An image depends only on its number and the seed.
+
+    Args:
+        source: the worlds and options.
+
+    Attributes:
+        classes: the names of the classes.
+        unused: the names of classes that have no object in any world.
+        worlds: the files of the worlds.
+        render_method: the rendering method, for the card.
+
+    Raises:
+        LinkwrightError: VISION202 there is nothing to label; VISION204 Pillow is missing; an error in a world.
+    """
+
+    def __init__(self, source: Source) -> None:
+        self._options = source.options
+        self._image = _load_pillow()
+        worlds = [load_world(name) for name in source.worlds]
+        self.worlds = tuple(world.path for world in worlds)
+        added_models = [_load_model(Path(path)) for path in source.added]
+        simulations = [Simulation(world.world, world.finder) for world in worlds]
+        for simulation in simulations:
+            for model in added_models:
+                simulation.spawn(model, _free_name(model.name, simulation))
+            simulation.refresh()
+        rules = default_rules(simulations) if source.classes is None else read_classes(Path(source.classes))
+        self.classes = tuple(rules.patterns)
+        _share_models(simulations, rules)
+        objects = [find_objects(simulation, rules) for simulation in simulations]
+        for path, world_objects in zip(source.worlds, objects, strict=True):
+            if not world_objects:
+                raise _no_objects_error(path, source.classes)
+        used_labels = {scene_object.label for found in objects for scene_object in found}
+        self.unused = tuple(name for number, name in enumerate(self.classes) if number not in used_labels)
+        self._stages = [
+            Stage(simulation, found, self._options.copies, self._options.distractors)
+            for simulation, found in zip(simulations, objects, strict=True)
+        ]
+        self.render_method = self._stages[0].renderer.method
+        self._pattern_sets: dict[int, int] = {}
+        self._camera = Camera()
+
+    def make(self, index: int) -> LabelledImage:
+        """Render the image with a number, and return it with its labels."""
+        options, stage_index = self._options, index % len(self._stages)
+        stage, pattern_set = self._stages[stage_index], index // IMAGES_PER_PATTERN_SET
+        if self._pattern_sets.get(stage_index) != pattern_set:
+            stage.set_patterns(np.random.default_rng((options.seed, _PATTERN_STREAM, pattern_set, stage_index)))
+            self._pattern_sets[stage_index] = pattern_set
+        generator = np.random.default_rng((options.seed, _IMAGE_STREAM, index))
+        stage.begin()
+        shot = arrange(stage, options, generator)
+        if "lights" not in options.fixed_properties:
+            set_lights(stage, generator)
+        if "colours" not in options.fixed_properties:
+            paint_surfaces(stage, shot, generator)
+        image = stage.renderer.render(shot.optics, shot.pose, Channels.COLOR | Channels.GEOMS)
+        assert image.color is not None
+        assert image.geoms is not None
+        labels = label_image(stage, shot, image.geoms, options.min_size, options.min_visible)
+        colour = image.color
+        if "lights" not in options.fixed_properties:
+            fill_backdrop(colour, image.geoms, generator)
+        if "lens" not in options.fixed_properties:
+            colour = self._camera.develop(colour, generator)
+        return LabelledImage(index, split_of(index, options), self._encode(colour, generator), tuple(labels))
+
+    def close(self) -> None:
+        """Release the renderers."""
+        for stage in self._stages:
+            stage.close()
+
+    def _encode(self, colour: Any, generator: np.random.Generator) -> bytes:
+        file = BytesIO()
+        image = self._image.fromarray(colour)
+        if self._options.form == "png":
+            image.save(file, "PNG", compress_level=1)
+        else:
+            quality = 92 if "lens" in self._options.fixed_properties else int(generator.integers(60, 96))
+            image.save(file, "JPEG", quality=quality)
+        return file.getvalue()
+
+
+def split_of(index: int, options: Options) -> str:
+    """Return the split of an image.
+
+    The fractions of the splits hold for each block of twenty consecutive images.
+    """
+    block, position = divmod(index, _SPLIT_BLOCK)
+    order = np.random.default_rng((options.seed, _SPLIT_STREAM, block)).permutation(_SPLIT_BLOCK)
+    share = (int(order[position]) + 0.5) / _SPLIT_BLOCK
+    for name, end in zip(SPLITS, np.cumsum(options.splits).tolist(), strict=True):
+        if share < end:
+            return name
+    return SPLITS[0]
+
+
+def _load_model(path: Path) -> Model:
+    from linkwright.descriptions.conversion import as_sdf
+
+    converted = as_sdf(path, PackageFinder(start=[path.absolute().parent, Path.cwd()]), folder=Path.cwd())
+    if converted.sdf is None:
+        raise LinkwrightError(*converted.diagnostics)
+    model = converted.sdf.models[0] if converted.sdf.models else None
+    if model is None or not any(link.visuals for link in model.links):
+        message = phrase("'{path}' has no model with visuals", path=str(path))
+        hint = phrase("add URDF or xacro whose links have an <inertial>, or SDF with a <model>")
+        raise LinkwrightError(Diagnostic("VISION203", message, hint=hint))
+    return model
+
+
+def _share_models(simulations: Sequence[Simulation], rules: ClassRules) -> None:
+    """Add the labelled models of each world to all other worlds."""
+    models_by_world = [dict(simulation.scene.models) for simulation in simulations]
+    for simulation in simulations:
+        model_names = {original_name(scene_model.model) for scene_model in simulation.scene.models.values()}
+        for models in models_by_world:
+            for name, held in models.items():
+                model_name = original_name(held.model)
+                if (
+                    model_name not in model_names
+                    and name not in simulation.scene.models
+                    and _is_labelled(name, held.model, rules)
+                ):
+                    simulation.spawn(held.model, name, held.pose)
+                    model_names.add(model_name)
+        simulation.refresh()
+
+
+def _is_labelled(name: str, model: Model, rules: ClassRules) -> bool:
+    """Return whether a model, or each of its visuals, has a class in the rules."""
+    if rules.class_number(name, original_name(model)) is not None:
+        return True
+    parts = [f"{name}::{link.name}::{visual.name}" for link in model.links for visual in link.visuals]
+    return bool(parts) and all(rules.class_number(part) is not None for part in parts)
+
+
+def _free_name(name: str, simulation: Simulation) -> str:
+    number, candidate = 2, name
+    while candidate in simulation.scene.models:
+        candidate, number = f"{name}_{number}", number + 1
+    return candidate
+
+
+def _no_objects_error(world: str, classes: str | None) -> LinkwrightError:
+    message = phrase("there is no object to label in the world '{world}'", world=world)
+    hint = (
+        phrase(
+            "choose models or visuals with --classes, or add models with --add: the world contains "
+            "only surroundings, such as ground and walls"
+        )
+        if classes is None
+        else phrase(
+            "change the patterns in '{file}', which match no name of a model or visual in the world", file=classes
+        )
+    )
+    return LinkwrightError(Diagnostic("VISION202", message, hint=hint))
+
+
+def _load_pillow() -> Any:
+    try:
+        from PIL import Image  # imported here because it is an extra
+    except ModuleNotFoundError as error:
+        raise missing_extra("VISION204", error) from None
+    return Image

@@ -1,0 +1,108 @@
+"""The classroom in the page: a learner's way through two steps, in both languages, with mouse and keyboard."""
+
+from __future__ import annotations
+
+import shutil
+import sys
+from pathlib import Path
+
+import pytest
+
+from linkwright.learning.course import find_course
+from tests.browser.axe import violations
+from tests.browser.conftest import becomes, until
+
+pytestmark = [
+    pytest.mark.browser,
+    pytest.mark.skipif(sys.platform == "win32", reason="pseudoterminals of POSIX"),
+]
+
+ROBOT = find_course("example") / "01-one-link/solution/one-link/robot.urdf"
+CHECKS = "lw.panels.lesson.checks"
+WORDS = {
+    "en": {"next": "Next step", "hint": "Hint 1 of 2", "box": "A box"},
+    "zh": {"next": "下一步", "hint": "提示 1/2", "box": "一个方块"},
+}
+
+
+@pytest.fixture
+def workspace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.setenv("SHELL", "/bin/bash")
+    monkeypatch.setenv("HOME", str(tmp_path))
+    return tmp_path / "ws"
+
+
+def open_classroom(start, open_page, workspace: Path, **options):
+    page = open_page(start("learn", str(workspace), "--course", "example"), wait=False, **options)
+    until(page, f"{CHECKS}?.checked_at && !{CHECKS}.is_running")
+    return page
+
+
+def is_passed(step: str) -> str:
+    return (
+        f"lw.panels.lesson.step === '01-one-link/{step}' && {CHECKS}?.checks.length > 0 && "
+        f"{CHECKS}.checks.every(check => check.is_passed)"
+    )
+
+
+@pytest.mark.parametrize("language", ["en", "zh"])
+def test_a_learner_walks_through_two_steps(start, open_page, workspace, language):
+    words = WORDS[language]
+    page = open_classroom(start, open_page, workspace)
+    if language == "zh":
+        page.get_by_role("button", name="中文").click()
+        page.wait_for_selector("text=一个方块")
+    assert page.locator(".lesson-body h2").inner_text() == words["box"]
+    until(page, f"{CHECKS}?.checks.some(check => !check.is_passed)")
+    page.get_by_role("button", name=words["hint"]).click()
+    page.wait_for_selector(".lesson-hint")
+    page.get_by_role("button", name="robot.urdf").click()  # creates the file
+    until(page, "lw.panels.source.editor?.file?.endsWith('robot.urdf')")
+    page.locator(".cm-content").click()
+    page.keyboard.insert_text(ROBOT.read_text())
+    page.keyboard.press("Control+s")
+    until(page, is_passed("one-link"))
+    until(page, "lw.ready && lw.robots?.length !== 0")
+    page.get_by_role("button", name=words["next"]).last.click()
+    until(page, "lw.panels.lesson.step === '01-one-link/mass'")
+    page.locator(".lesson-answer").fill("12.5")
+    page.locator(".lesson-answer").press("Enter")
+    until(page, is_passed("mass"))
+    page.keyboard.press("Alt+PageUp")
+    until(page, "lw.panels.lesson.step === '01-one-link/one-link'")
+    assert "hints: 1" in (workspace / "learn.yaml").read_text()
+
+
+def test_the_solution_is_taken_after_a_question(start, open_page, workspace):
+    page = open_classroom(start, open_page, workspace)
+    page.get_by_role("button", name="Solution").click()
+    assert page.locator("dialog li").all_inner_texts() == ["robot.urdf"]
+    page.get_by_role("button", name="Take the solution").click()
+    until(page, is_passed("one-link"))
+    assert (workspace / "robot.urdf").read_text() == ROBOT.read_text()
+
+
+def test_work_in_the_terminal_is_checked(start, open_page, workspace):
+    page = open_classroom(start, open_page, workspace)
+    until(page, "/[$#] *$/.test(lw.panels.terminal.text ?? '')")
+    page.locator(".terminal-screen:visible .xterm-helper-textarea").focus()
+    page.keyboard.type(f"cp {ROBOT} .\n")
+    until(page, is_passed("one-link"))
+    page.keyboard.press("Alt+PageDown")
+    until(page, "lw.panels.lesson.step === '01-one-link/mass'")
+
+
+def test_the_classroom_fits_a_small_screen_and_is_accessible(start, open_page, workspace):
+    workspace.mkdir()
+    shutil.copy(ROBOT, workspace)
+    page = open_classroom(start, open_page, workspace, size=(1024, 700))
+    for selector in (".lesson-body", ".checks-list", ".terminal-place", ".source-panel", ".canvas-box"):
+        box = page.locator(selector).bounding_box()
+        assert box is not None, selector
+        assert box["width"] >= 200, selector
+        assert box["x"] + box["width"] <= 1024, selector
+    page.get_by_role("button", name="Steps").click()
+    becomes(lambda: page.locator(".outline-step").count(), 2)
+    page.locator(".outline-step").last.click()
+    until(page, "lw.panels.lesson.step === '01-one-link/mass'")
+    assert violations(page) == []

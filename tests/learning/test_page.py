@@ -1,0 +1,222 @@
+"""A course as pages see it: steps, checks when files change, hints, answers, solutions, and hostile requests."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import AsyncIterator, Callable
+from contextlib import asynccontextmanager
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from linkwright.cli import main
+from linkwright.cli.command import _begins_without_verb
+from linkwright.cli.learn.verb import VERBS
+from linkwright.learning.classroom import Classroom, open_classroom, workspace_at
+from linkwright.learning.course import find_course
+from linkwright.learning.page.course_guide import CourseGuide
+from linkwright.learning.page.feature import CourseFeature
+from linkwright.learning.page.step_html import step_html
+from tests.viewer.scene import page, world
+
+ROBOT = find_course("example") / "01-one-link/solution/one-link/robot.urdf"
+WRONG = '<robot name="r"><link name="bux"/></robot>'
+
+
+class Shown:
+    """The files that the feature shows beside its steps."""
+
+    def __init__(self) -> None:
+        self.paths: list[Path | None] = []
+
+
+def show_course(scene: Any, room: Classroom, on_changed: Callable[[Path | None], object]) -> None:
+    context = scene.viewer.context
+    guide = CourseGuide(room, context.pages.publish, context.node.get_logger(), on_changed)
+    scene.viewer.add_feature(CourseFeature).show(guide)
+
+
+@asynccontextmanager
+async def classroom(workspace: Path, shown: Shown | None = None) -> AsyncIterator[Any]:
+    workspace.mkdir(exist_ok=True)  # noqa: ASYNC240 - nothing else runs
+    async with world() as scene:
+        room = open_classroom(workspace, "example")
+        show_course(scene, room, (shown or Shown()).paths.append)
+        async with page(scene.viewer) as client:
+            yield client
+
+
+async def results(client: Any, *, step: str = "01-one-link/one-link") -> dict[str, Any]:
+    """The next results of a step."""
+    message: dict[str, Any] = await client.until("step_checks", address=step, is_running=False)
+    return message
+
+
+async def until_passed(client: Any) -> dict[str, Any]:
+    while True:
+        message = await results(client)
+        if message["checks"] and all(check["is_passed"] for check in message["checks"]):
+            return message
+
+
+async def test_a_saved_file_is_checked_and_the_progress_is_shown(tmp_path):
+    shown = Shown()
+    async with classroom(tmp_path / "ws", shown) as client:
+        first = await results(client)
+        assert [check["is_passed"] for check in first["checks"]] == [False, False]
+        assert first["checks"][0]["message"] == {
+            "en": "'ws' has no file 'robot.urdf'",
+            "zh": "“ws”中没有文件“robot.urdf”",
+        }
+        shutil.copy(ROBOT, tmp_path / "ws")
+        await until_passed(client)
+        course = await client.until("course")
+        assert [step["is_passed"] for step in course["lessons"][0]["steps"]] == [True, False]
+    assert set(shown.paths) == {tmp_path / "ws" / "robot.urdf"}
+
+
+async def test_a_page_that_opens_receives_the_course_the_step_and_the_last_results(tmp_path):
+    async with world() as scene:
+        workspace = tmp_path / "ws"
+        workspace.mkdir()
+        room = open_classroom(workspace, "example")
+        show_course(scene, room, lambda _: None)
+        async with page(scene.viewer) as client:
+            await results(client)
+        async with page(scene.viewer) as client:
+            opened = await client.opened()
+    assert opened["course"]["folder"] == str(workspace)
+    assert opened["course_step"]["title"] == {"en": "A box", "zh": "一个方块"}
+    assert "<p>Each heading" in opened["course_step"]["body"]["en"]
+    assert opened["step_checks"]["checks"]
+
+
+async def test_the_newest_check_wins(tmp_path):
+    async with classroom(tmp_path / "ws") as client:
+        await client.send("check_step")
+        (tmp_path / "ws" / "robot.urdf").write_text(WRONG)
+        shutil.copy(ROBOT, tmp_path / "ws")
+        await until_passed(client)
+
+
+async def test_hints_come_one_by_one_and_the_solution_keeps_what_it_replaces(tmp_path):
+    workspace = tmp_path / "ws"
+    async with classroom(workspace) as client:
+        (workspace / "robot.urdf").write_text(WRONG)
+        for count in (1, 2):
+            await client.send("take_hint")
+            while len((await client.until("course_step"))["hints"]) < count:
+                pass
+        await client.send("take_hint")
+        assert len((await client.until("course_step"))["hints"]) == 2
+        await client.send("take_solution")
+        await until_passed(client)
+    (kept,) = (workspace / "replaced").rglob("robot.urdf")
+    assert kept.read_text() == WRONG
+    assert "solution: true" in (workspace / "learn.yaml").read_text()
+
+
+async def test_an_answer_is_checked(tmp_path):
+    async with classroom(tmp_path / "ws") as client:
+        await client.send("open_step", address="01-one-link/mass")
+        assert (await client.until("course_step", address="01-one-link/mass"))["unit"] == "kg"
+        await client.send("answer_step", answer=" 12.5 ")
+        while not all(check["is_passed"] for check in (await results(client, step="01-one-link/mass"))["checks"]):
+            pass
+
+
+async def test_progress_that_another_program_writes_is_shown(tmp_path):
+    async with classroom(tmp_path / "ws") as client:
+        await results(client)
+        other = open_classroom(tmp_path / "ws")
+        other.answer(other.course.find_step("mass"), "3")
+        other.take_hint(other.course.find_step("one-link"))
+        while not (await client.until("course_step"))["hints"]:
+            pass
+        await client.send("take_hint")
+        while len((await client.until("course_step"))["hints"]) < 2:
+            pass
+    assert "answer: '3'" in (tmp_path / "ws" / "learn.yaml").read_text()
+
+
+async def test_wrong_requests_are_answered_with_the_reason(tmp_path):
+    async with classroom(tmp_path / "ws") as client:
+        await client.send("open_step", address="01-one-link/bax")
+        problem = await client.until("course_problem")
+        assert problem["message"] == "the course 'example' has no step '01-one-link/bax'"
+        await client.send("answer_step", answer="1")
+        assert "does not ask for a number" in (await client.until("course_problem"))["message"]
+
+
+async def test_a_program_without_a_course_and_pages_elsewhere_are_refused(tmp_path, monkeypatch):
+    refusal = "the course can be used only in pages on the machine of the program"
+    async with world() as scene, page(scene.viewer) as client:
+        await client.send("take_solution")
+        assert (await client.until("course_problem"))["message"] == "this program was started without a course"
+    monkeypatch.setattr("linkwright.page.server.is_from_here", lambda _: False)
+    async with classroom(tmp_path / "ws") as client:
+        await client.send("take_solution")
+        assert (await client.until("course_problem"))["message"] == refusal
+    assert not (tmp_path / "ws" / "robot.urdf").exists()
+
+
+def test_the_text_of_a_lesson_becomes_safe_html_with_its_own_images_only(tmp_path):
+    lesson = tmp_path / "lesson"
+    (lesson / "images").mkdir(parents=True)
+    (lesson / "images" / "a.png").write_bytes(b"PNG")
+    (tmp_path / "secret.png").write_bytes(b"secret")
+    (lesson / "link.png").symlink_to(tmp_path / "secret.png")
+    html = step_html("<script>x</script> ![a picture](images/a.png)\n\n| a | b |\n| - | - |\n| 1 | 2 |", lesson)
+    assert "&lt;script&gt;" in html
+    assert '<img src="data:image/png;base64,UE5H" alt="a picture"' in html
+    assert "<td>1</td>" in html
+    hostile = ("../secret.png", "link.png", "images/none.png", "/etc/passwd", "images", "http://a.b/c.png", "%00.png")
+    for name in hostile:
+        assert step_html(f"![words](<{name}>)", lesson) == "<p>words</p>\n", name
+    assert step_html("[a](javascript:alert)", lesson) == "<p>[a](javascript:alert)</p>\n"
+
+
+def test_the_workspace_is_the_one_at_hand_or_an_empty_folder_or_a_new_one(tmp_path):
+    assert workspace_at(tmp_path) == tmp_path
+    (tmp_path / "file").touch()
+    assert workspace_at(tmp_path) == tmp_path / "robot_ws"
+    assert workspace_at(tmp_path, "example") == tmp_path / "example_ws"
+    (tmp_path / "learn.yaml").write_text("course: example\n")
+    (tmp_path / "src" / "deep").mkdir(parents=True)
+    assert workspace_at(tmp_path / "src" / "deep") == tmp_path
+
+
+def test_a_file_is_shown_from_the_step_that_names_it_on(tmp_path):
+    room: Classroom = open_classroom(tmp_path, "robot")
+    steps = room.course.steps
+    assert room.shown_file(steps[0]) is None
+    assert room.shown_file(steps[1]) == tmp_path / "src/my_robot_description/urdf/mbot_base.urdf"
+    assert room.shown_file(steps[3]) == room.shown_file(steps[1])
+
+
+@pytest.mark.parametrize(
+    ("words", "is_default"),
+    [
+        ([], True),
+        (["--no-open"], True),
+        (["my_folder"], True),
+        (["check"], False),
+        (["chek"], False),
+        (["--help"], False),
+        (["./list"], True),
+    ],
+)
+def test_the_classroom_opens_without_a_verb(words, is_default):
+    assert _begins_without_verb(words, VERBS) == is_default
+
+
+def test_a_misspelt_verb_is_no_folder(capsys):
+    assert main(["learn", "lst"]) == 2
+    assert "there is no command 'lst'; did you mean 'list'" in capsys.readouterr().err
+
+
+def test_a_folder_that_cannot_be_created_is_an_error(tmp_path, capsys):
+    (tmp_path / "file").touch()
+    assert main(["learn", str(tmp_path / "file" / "ws"), "--no-open"]) == 1
+    assert "LEARN111" in capsys.readouterr().err

@@ -1,0 +1,64 @@
+"""A detector for tests that needs no network and no library: everything of one colour in an image, in one box."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from linkwright.graph import SENSOR_DATA_QOS, Graph
+from linkwright.images import RangeFinder, decode_image
+from linkwright.messages import get_message
+from linkwright.vision.places.object_colors import COLOURS, classify_colours
+
+_LEAST_PIXELS = 60
+
+
+class ColourDetector:
+    """A node that finds one object: all pixels of a colour.
+
+    Args:
+        graph: where it lives.
+        colour: one of `COLOURS`.
+        name: the class of what it finds.
+    """
+
+    def __init__(self, graph: Graph, colour: str = "red", name: str = "ball") -> None:
+        self._colour, self._name = COLOURS.index(colour), name
+        self.node = graph.create_node("colour_detector")
+        self._array = get_message("vision_msgs/msg/Detection2DArray")
+        self._publisher = self.node.create_publisher(self._array, "/yolo/detections", 10)
+        self._ranges = RangeFinder()
+        self.subscription = self.node.create_subscription(
+            get_message("sensor_msgs/msg/Image"), "/camera/image_raw", self._see, SENSOR_DATA_QOS
+        )
+
+    def _see(self, image: Any) -> None:
+        pixels = decode_image(image, self._ranges).pixels[:, :, :3]
+        names = classify_colours(pixels.reshape(-1, 3)).reshape(pixels.shape[:2])
+        rows, columns = np.nonzero(names == self._colour)
+        found = self._array(header=image.header)
+        if len(rows) >= _LEAST_PIXELS:
+            left, right = np.percentile(columns, [1, 99])
+            top, bottom = np.percentile(rows, [1, 99])
+            found.detections.append(detection(image.header, left, top, right + 1, bottom + 1, self._name))
+        self._publisher.publish(found)
+
+
+def detection(header: Any, left: float, top: float, right: float, bottom: float, name: str, score: float = 0.9) -> Any:
+    """A vision_msgs/msg/Detection2D of a box."""
+    made = get_message("vision_msgs/msg/Detection2D")(header=header)
+    made.bbox.center.position.x, made.bbox.center.position.y = (left + right) / 2, (top + bottom) / 2
+    made.bbox.size_x, made.bbox.size_y = float(right - left), float(bottom - top)
+    result = get_message("vision_msgs/msg/ObjectHypothesisWithPose")()
+    result.hypothesis.class_id, result.hypothesis.score = name, score
+    made.results = [result]
+    return made
+
+
+def yolo_detection(left: float, top: float, right: float, bottom: float, name: str, score: float) -> Any:
+    """A yolo_msgs/msg/Detection of a box, of class 4."""
+    made = get_message("yolo_msgs/msg/Detection")(class_id=4, class_name=name, score=score)
+    made.bbox.center.position.x, made.bbox.center.position.y = (left + right) / 2, (top + bottom) / 2
+    made.bbox.size.x, made.bbox.size.y = float(right - left), float(bottom - top)
+    return made

@@ -1,0 +1,50 @@
+"""The worker that looks at the latest only."""
+
+from __future__ import annotations
+
+import threading
+
+from linkwright.vision.nodes.latest_worker import LatestWorker
+from tests.waiting import SECONDS, wait_until
+
+
+def test_what_comes_while_it_works_waits_and_only_the_latest_of_it():
+    done: list[int] = []
+    begun, proceed = threading.Event(), threading.Event()
+
+    def work(item: int) -> None:
+        begun.set()
+        assert proceed.wait(SECONDS)
+        done.append(item)
+
+    worker = LatestWorker(lambda: work, "slow")
+    worker.offer(0)
+    assert begun.wait(SECONDS)
+    for item in range(1, 50):
+        worker.offer(item)
+    proceed.set()
+    wait_until(lambda: len(done) == 2)
+    worker.close()
+    assert done == [0, 49]
+
+
+def test_at_its_end_the_work_at_hand_is_waited_for_and_the_rest_left():
+    done: list[int] = []
+    begun, proceed = threading.Event(), threading.Event()
+
+    def work(item: int) -> None:
+        begun.set()
+        assert proceed.wait(SECONDS)
+        done.append(item)
+
+    worker = LatestWorker(lambda: work, "slow")
+    worker.offer(0)
+    assert begun.wait(SECONDS)
+    worker.offer(1)
+    closing = threading.Thread(target=worker.close)
+    closing.start()
+    wait_until(lambda: not worker.has_pending_item)
+    proceed.set()
+    closing.join(SECONDS)
+    worker.offer(2)
+    assert done == [0]

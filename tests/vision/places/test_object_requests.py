@@ -1,0 +1,130 @@
+"""Objects in words, in English and Chinese."""
+
+from __future__ import annotations
+
+import pytest
+
+from linkwright.vision.places.object_requests import (
+    Answer,
+    Sighting,
+    answer_phrase,
+    describe_sightings,
+    name_with_colour,
+    parse_request,
+)
+
+
+@pytest.mark.parametrize(
+    ("text", "noun", "colour"),
+    [
+        ("ball", "ball", None),
+        ("the red ball", "ball", "red"),
+        ("Gray Boxes.", "crate", "grey"),
+        ("the football", "ball", None),
+        ("traffic cone", "cone", None),
+        ("yellow", "", "yellow"),
+        ("the blue one", "", "blue"),
+        ("glass", "glass", None),
+        ("people", "person", None),
+        ("go to the ball", "ball", None),
+        ("Please drive over to the  red ball!", "ball", "red"),
+        ("find me a blue box", "crate", "blue"),
+        ("look for something", "something", None),
+        ("follow the yellow one", "", "yellow"),
+        ("go", "go", None),
+        ("去红色的球", "ball", "red"),
+        ("请走到那个球那里", "ball", None),
+        ("找蓝色的箱子", "crate", "blue"),
+        ("球", "ball", None),
+        ("红色的球", "ball", "red"),
+        ("那个蓝色的箱子", "crate", "blue"),
+        ("绿球。", "ball", "green"),
+        ("黄色的东西", "", "yellow"),
+        ("茶壶", "茶壶", None),
+    ],
+)
+def test_what_somebody_asks_for(text, noun, colour):
+    found = parse_request(text)
+    assert (found.noun, found.colour) == (noun, colour)
+    assert found.language == ("en" if text.isascii() else "zh")
+
+
+@pytest.mark.parametrize("text", ["", "  ", "the", "。"])
+def test_nothing_is_asked_for(text):
+    assert parse_request(text) is None
+
+
+@pytest.mark.parametrize(
+    ("asked", "name", "colour", "is_it"),
+    [
+        ("ball", "ball", "red", True),
+        ("ball", "sports ball", None, True),
+        ("ball", "crate", "red", False),
+        ("red ball", "ball", "red", True),
+        ("red ball", "ball", "blue", False),
+        ("red ball", "ball", None, False),
+        ("red ball", "red_ball", "white", True),
+        ("红色的球", "red", None, True),
+        ("ball", "red", "red", False),
+        ("red", "crate", "red", True),
+        ("箱子", "box", None, True),
+        ("sign", "stop sign", None, True),
+        ("stop sign", "stop_sign", "red", True),
+    ],
+)
+def test_whether_this_is_it(asked, name, colour, is_it):
+    assert parse_request(asked).matches(name, colour) is is_it
+
+
+def test_a_patch_of_a_colour_is_a_ball_if_it_is_as_wide_as_high():
+    assert parse_request("red ball").matches("red", None, 1.1)
+    assert not parse_request("red ball").matches("red", None, 0.4)
+    assert parse_request("red ball").matches("ball", "red", 0.4), "a class counts whatever part of the thing is seen"
+    assert parse_request("red").matches("red", None, 0.4)
+
+
+def test_a_round_patch_of_any_colour_is_a_ball_and_a_square_one_is_none():
+    assert parse_request("ball").matches("orange", None, 1.0, 0.79)
+    assert not parse_request("ball").matches("orange", None, 1.0, 0.99)
+    assert not parse_request("ball").matches("orange", None, 0.5, 0.79)
+    assert not parse_request("crate").matches("orange", None, 1.0, 0.79)
+
+
+def test_what_is_said_of_it_has_no_verb():
+    assert parse_request("go to the ball").text == "ball"
+    assert parse_request("去红色的球那里").text == "红色的球"
+
+
+def test_an_answer_names_the_thing_in_its_own_language():
+    assert answer_phrase(Answer.SEARCHING, parse_request("red ball"), "en") == "I am looking for the red ball."
+    assert answer_phrase(Answer.SEARCHING, parse_request("traffic_cone"), "zh") == "我在找锥桶。"
+    assert answer_phrase(Answer.ARRIVED, parse_request("red ball"), "zh") == "我到红色的球这里了。"
+    assert answer_phrase(Answer.FOUND, parse_request("红球"), "zh") == "我看到红球了，正在过去。"
+    assert answer_phrase(Answer.LOST, parse_request("红球"), "en") == "I have lost the red ball."
+
+
+def test_what_is_seen_in_a_sentence():
+    seen = [
+        Sighting("crate", None, 3.0, 2.0),
+        Sighting("crate", None, 3.2, 2.2),
+        Sighting("ball", "red", 1.2, -0.1),
+        Sighting("orange", None, 0.5, 1.5),
+    ]
+    assert (
+        describe_sightings(seen, "en")
+        == "I see a red ball 1.2 m ahead, an orange thing 1.6 m to the left and two crates."
+    )
+    assert describe_sightings(seen, "zh") == "我看到前方1.2米处有一个红色的球，左边1.6米处有一个橙色的东西和两个箱子。"
+    assert describe_sightings([], "en") == "I see no objects."
+    assert describe_sightings([], "zh") == "我什么也没看到。"
+    assert describe_sightings([Sighting("person", None, -1.0, 0.0)], "en") == "I see a person 1.0 m behind me."
+    balls = [Sighting("red", None, 1.0, 0.0), Sighting("red", "red", 2.0, 0.0)]
+    assert describe_sightings(balls, "en") == "I see two red things.", "things of one name are counted together"
+    people = [Sighting("person", None, 1.0, 0.0)] * 12
+    assert describe_sightings(people, "en") == "I see 12 people."
+
+
+def test_names():
+    assert name_with_colour("traffic cone", "orange", "zh") == "橙色的锥桶"
+    assert name_with_colour("red_ball", "blue", "en") == "red ball"
+    assert name_with_colour("teapot", None, "zh") == "teapot"

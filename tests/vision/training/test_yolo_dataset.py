@@ -1,0 +1,202 @@
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.vision.training.images import (
+    LabelledImages,
+    augment,
+    read_image,
+    read_labelled_images,
+    repeat_factors,
+    repeated_indices,
+)
+from linkwright.vision.training.options import Options, View
+from linkwright.vision.training.yolo_dataset import open_dataset
+from tests.vision.training.images_of_shapes import NAMES, write_shapes
+
+VIEW = View((64, 64), (0.42, 1.1))
+
+
+@pytest.fixture
+def shapes(tmp_path):
+    return write_shapes(tmp_path / "shapes", 3)
+
+
+def problem(function, *words):
+    with pytest.raises(LinkwrightError) as caught:
+        function(*words)
+    return caught.value.diagnostics[0]
+
+
+def test_a_dataset_is_read(shapes):
+    dataset = open_dataset(shapes)
+    assert dataset.names == NAMES
+    images = dataset.read("train")
+    assert [image.path.name for image in images] == ["000.png", "001.png", "002.png"]
+    assert images[0].classes.tolist() == [0, 1]
+    assert not images[0].ignored.any()
+    assert (images[0].boxes >= 0).all()
+    assert (images[0].boxes <= 1).all()
+
+
+def test_the_boxes_are_where_the_colours_are(shapes):
+    for each in open_dataset(shapes).read("train"):
+        left, top, right, bottom = np.rint(each.boxes[0] * 96).astype(int)
+        red = read_image(each)[..., 0] > 200
+        assert (np.flatnonzero(red.any(0))[[0, -1]] == (left, right - 1)).all()
+        assert (np.flatnonzero(red.any(1))[[0, -1]] == (top, bottom - 1)).all()
+
+
+def test_what_coco_says_of_a_crowd_is_ignored(shapes):
+    (shapes / "annotations").mkdir()
+    content = {
+        "images": [{"id": 7, "file_name": "001.png", "width": 96, "height": 48}],
+        "categories": [{"id": 2, "name": "square"}, {"id": 1, "name": "disc"}],
+        "annotations": [
+            {"image_id": 7, "category_id": 2, "bbox": [24, 12, 48, 24], "iscrowd": 1},
+            {"image_id": 7, "category_id": 1, "bbox": [0, 0, 9, 9], "iscrowd": 0},
+        ],
+    }
+    (shapes / "annotations" / "instances_train.json").write_text(json.dumps(content))
+    image = open_dataset(shapes).read("train")[1]
+    assert image.ignored.tolist() == [False, False, True]
+    assert image.classes[2] == 1
+    assert image.boxes[2].tolist() == [0.25, 0.25, 0.75, 0.75]
+
+
+def test_a_image_without_labels_has_nothing_in_it(shapes):
+    (shapes / "labels" / "train" / "002.txt").unlink()
+    assert open_dataset(shapes).read("train")[2].boxes.shape == (0, 4)
+
+
+def test_the_yaml_file_itself_may_be_named(shapes):
+    assert open_dataset(shapes / "data.yaml").names == NAMES
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        ("train: images/train\n", "'names' must be a list of names, or a mapping from 0, 1, ... to names"),
+        (
+            "train: images/train\nnames: {0: a, 2: b}\n",
+            "'names' must be a list of names, or a mapping from 0, 1, ... to names",
+        ),
+        ("names: [a]\n", "neither 'train' nor 'val'"),
+        ("- 1\n", "not a mapping of names to values"),
+        ("names: [a\n", "is not a dataset"),
+    ],
+)
+def test_what_is_no_dataset_is_said(tmp_path, content, message):
+    (tmp_path / "data.yaml").write_text(content)
+    found = problem(open_dataset, tmp_path)
+    assert found.code == "VISION302"
+    assert message in str(found.message)
+
+
+def test_folders_that_are_not_there_or_empty_are_no_datasets(tmp_path):
+    assert "does not exist" in str(problem(open_dataset, tmp_path / "none").message)
+    assert "it contains no YAML file" in str(problem(open_dataset, tmp_path).message)
+
+
+def test_a_part_that_is_not_there_is_said(shapes):
+    found = problem(open_dataset(shapes).read, "test")
+    assert found.code == "VISION303"
+    assert "'train' and 'val'" in str(found.hint)
+
+
+def test_a_part_without_images_is_said(shapes):
+    for path in (shapes / "images" / "train").iterdir():
+        path.unlink()
+    assert problem(open_dataset(shapes).read, "train").code == "VISION303"
+
+
+@pytest.mark.parametrize(
+    ("line", "message"),
+    [
+        ("0 0.5 0.5 0.1", "five numbers"),
+        ("0 0.5 0.5 0.1 b", "five numbers"),
+        ("2 0.5 0.5 0.1 0.1", "the class 2 is not one of the 2"),
+        ("0.5 0.5 0.5 0.1 0.1", "the class 0.5 is not one of the 2"),
+        ("0 50 0.5 0.1 0.1", "fractions of the image"),
+        ("0 nan 0.5 0.1 0.1", "fractions of the image"),
+    ],
+)
+def test_a_label_that_cannot_be_is_said_with_its_place(shapes, line, message):
+    text = shapes / "labels" / "train" / "001.txt"
+    text.write_text(f"0 0.5 0.5 0.1 0.1\n{line}\n")
+    found = problem(open_dataset(shapes).read, "train")
+    assert found.code == "VISION304"
+    assert message in str(found.message)
+    assert found.span is not None
+    assert found.span.line == 2
+
+
+def test_a_image_that_is_none_is_said(shapes):
+    dataset = open_dataset(shapes)
+    (shapes / "images" / "train" / "001.png").write_bytes(b"none")
+    found = problem(read_labelled_images, dataset.read("train"), 96, 96)
+    assert (found.code, "001.png" in str(found.message)) == ("VISION305", True)
+
+
+def test_images_of_another_shape_are_fitted_in_with_grey(shapes):
+    images = open_dataset(shapes).read("train")
+    labelled_images = read_labelled_images(images, 160, 96)
+    assert labelled_images.images.shape == (3, 96, 160, 3)
+    assert (labelled_images.images[:, :, :32] == 114).all()
+    assert np.allclose(labelled_images.objects[0][:, 1:], images[0].boxes * 96 + (32, 0, 32, 0), atol=1e-4)
+
+
+def test_boxes_stay_with_what_they_are_around(shapes):
+    labelled_images = read_labelled_images(open_dataset(shapes).read("train"), 96, 96)
+    seen = 0
+    for seed in range(40):
+        image, objects = augment(labelled_images, seed % 3, VIEW, np.random.default_rng(seed))
+        assert image.shape == (64, 64, 3)
+        for kind, left, top, right, bottom in objects:
+            assert 0 <= left < right <= 64
+            assert 0 <= top < bottom <= 64
+            if kind == 0 and min(right - left, bottom - top) > 8:
+                middle = image[int((top + bottom) / 2), int((left + right) / 2)].astype(int)
+                seen += 1
+                assert middle[0] > middle[2]  # the disc is the red one
+    assert seen > 10
+
+
+def test_the_same_dice_change_a_image_in_the_same_way(shapes):
+    labelled_images = read_labelled_images(open_dataset(shapes).read("train"), 96, 96)
+    one, other = (augment(labelled_images, 0, VIEW, np.random.default_rng(5)) for _ in range(2))
+    assert (one[0] == other[0]).all()
+    assert (one[1] == other[1]).all()
+
+
+def test_the_last_epochs_are_of_whole_images(shapes):
+    options = Options(shapes, shapes, epochs=5, whole_epochs=2, width=96, height=96)
+    assert [options.view(epoch).size for epoch in range(5)] == [(64, 64)] * 3 + [(96, 96)] * 2
+    assert options.view(4).scales[0] > options.view(0).scales[0]
+    labelled_images = read_labelled_images(open_dataset(shapes).read("train"), 96, 96)
+    same = View((96, 96), (1.0, 1.0))
+    (_, objects) = augment(labelled_images, 0, same, np.random.default_rng(5))
+    here = labelled_images.objects[0]
+    sides = (objects[:, 3:] - objects[:, 1:3]) / (here[:, 3:] - here[:, 1:3])
+    assert (objects[:, 0] == here[:, 0]).all()
+    assert np.median(sides) == pytest.approx(1, abs=0.12)  # seen whole, and as large as they are
+
+
+def test_images_of_rare_classes_are_seen_more_often():
+    def image(*classes):
+        return np.array([[each, 0, 0, 9, 9] for each in classes], np.float32).reshape(-1, 5)
+
+    objects = (*[image(0)] * 16, *[image(1, 0)] * 8, image(2), image(-4, 0), image())
+    labelled_images = LabelledImages(np.zeros((len(objects), 1, 1, 3), np.uint8), objects)
+    times = repeat_factors(labelled_images, 4)
+    assert times[:24] == pytest.approx(1)  # classes 0 and 1 are at the median of 8, or more frequent
+    assert times[24] == pytest.approx(np.sqrt(8))
+    assert times[25:] == pytest.approx(1)  # what is to be ignored, or nothing
+    chosen = [repeated_indices(times, np.random.default_rng(seed)) for seed in range(200)]
+    counts = np.mean([np.bincount(each, minlength=len(objects)) for each in chosen], 0)
+    assert counts[:24] == pytest.approx(1)
+    assert counts[24] == pytest.approx(np.sqrt(8), abs=0.15)
