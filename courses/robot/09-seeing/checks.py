@@ -359,7 +359,7 @@ def markers_face_camera(work):
 
 def read_balls(work):
     """Return the names and the labelled images of the learner's data set."""
-    from linkwright.vision.training.reading import open_dataset
+    from linkwright.vision.training.yolo_dataset import open_dataset
 
     if not (work.folder / "balls").is_dir():
         raise NotYet(en="The workspace has no folder 'balls'.", zh="工作空间中没有文件夹“balls”。")
@@ -396,7 +396,7 @@ def has_dataset(work):
 
 @check("dataset", en="The recall of the detector is right.", zh="检测器的召回率正确。")
 def knows_recall(work):
-    from linkwright.vision.training.measuring import evaluate_detector
+    from linkwright.vision.training.detector_evaluation import evaluate_detector
 
     names, images = read_balls(work)
     work.number()

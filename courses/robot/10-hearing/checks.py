@@ -277,7 +277,7 @@ def understand(work, text):
     from linkwright.speech.commands.command_file import read_command_file
 
     try:
-        match = read_command_file(work.package("my_voice").file("config/commands.yaml")).understand(text)
+        match = read_command_file(work.package("my_voice").file("config/commands.yaml")).match_command(text)
     except LinkwrightError as error:
         finding = error.diagnostics[0]
         line = finding.span.line if finding.span else 1
