@@ -151,6 +151,16 @@ def test_a_node_gives_way_to_a_library_of_its_name(capsys: pytest.CaptureFixture
     assert "PKG209" in output.err
 
 
+def test_a_python_package_tells_colcon_to_run_its_tests_with_pytest() -> None:
+    """Without it, `colcon test` runs those of unittest, of which there are none."""
+    main(["pkg", "create", "arm", "--build-type", "ament_python", *ADA])
+    call = ast.parse(Path("arm/setup.py").read_text(encoding="utf-8")).body[-1]
+    assert isinstance(call, ast.Expr)
+    assert isinstance(call.value, ast.Call)
+    options = {keyword.arg: keyword.value for keyword in call.value.keywords}
+    assert ast.literal_eval(options["extras_require"]) == {"test": ["pytest"]}
+
+
 def test_text_with_quotes_survives_in_setup_py() -> None:
     text = """It's "quoted" \\ 机器人"""
     request = PackageRequest(name="arm", maintainer=Maintainer("O'Neil", "o@example.org"), year=2026, description=text)

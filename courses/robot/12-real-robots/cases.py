@@ -79,19 +79,21 @@ CASES = [
             "from rclpy.qos import qos_profile_sensor_data\n",
             "from rclpy.qos import QoSProfile, ReliabilityPolicy\n\nSENSOR = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)\n",
         ),
-        Edit(FINDER, "self.on_lens, qos_profile_sensor_data", "self.on_lens, SENSOR"),
-        Edit(FINDER, "self.on_image, qos_profile_sensor_data", "self.on_image, SENSOR"),
+        Edit(FINDER, "self.on_lens,\n                                 qos_profile_sensor_data", "self.on_lens, SENSOR"),
+        Edit(
+            FINDER, "self.on_image,\n                                 qos_profile_sensor_data", "self.on_image, SENSOR"
+        ),
     ),
     wrong(
         "qos",
         "only the images",
-        Edit(FINDER, "self.on_lens, qos_profile_sensor_data", "self.on_lens, 10"),
+        Edit(FINDER, "self.on_lens,\n                                 qos_profile_sensor_data", "self.on_lens, 10"),
         says="For a camera with best effort",
     ),
     wrong(
         "qos",
         "only the camera_info",
-        Edit(FINDER, "self.on_image, qos_profile_sensor_data", "self.on_image, 10"),
+        Edit(FINDER, "self.on_image,\n                                 qos_profile_sensor_data", "self.on_image, 10"),
         says="For a camera with best effort",
     ),
     wrong(

@@ -104,6 +104,7 @@ setup(
     maintainer_email={request.maintainer.email!r},
     description={request.description!r},
     license={request.license!r},
+    extras_require={{'test': ['pytest']}},
     entry_points={{
         'console_scripts': [
 {scripts}        ],

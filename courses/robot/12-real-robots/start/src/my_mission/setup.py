@@ -21,6 +21,7 @@ setup(
     maintainer_email='learner@example.org',
     description='Drive to the ball that one names',
     license='MIT',
+    extras_require={'test': ['pytest']},
     entry_points={
         'console_scripts': [
             'go_to_ball = my_mission.go_to_ball:main',

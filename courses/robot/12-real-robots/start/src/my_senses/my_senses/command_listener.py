@@ -3,7 +3,10 @@ from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from std_msgs.msg import String
 
-COLORS = {'红': 'red', '绿': 'green', '蓝': 'blue', 'red': 'red', 'green': 'green', 'blue': 'blue'}
+COLORS = {
+    '红': 'red', '绿': 'green', '蓝': 'blue',
+    'red': 'red', 'green': 'green', 'blue': 'blue',
+}
 STOPS = ('停', 'stop')
 GOES = ('去', '到', 'go to')
 

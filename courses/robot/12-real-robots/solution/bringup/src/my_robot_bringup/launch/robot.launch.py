@@ -12,7 +12,8 @@ def generate_launch_description():
     package = get_package_share_path('my_robot_bringup')
     mission = get_package_share_path('my_mission') / 'launch' / 'mission.launch.py'
     model = str(package / 'urdf' / 'mbot_hardware.xacro')
-    description = Command(['xacro ', model, ' hardware:=', LaunchConfiguration('hardware')])
+    hardware = LaunchConfiguration('hardware')
+    description = Command(['xacro ', model, ' hardware:=', hardware])
     robot_description = {'robot_description': ParameterValue(description, value_type=str)}
 
     return LaunchDescription([

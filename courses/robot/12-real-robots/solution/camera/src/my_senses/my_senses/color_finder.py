@@ -11,7 +11,7 @@ CHANNELS = {'rgb8': (0, 1, 2), 'bgr8': (2, 1, 0)}
 
 
 class ColorFinder(Node):
-    """Publish where the ball of the target's color is in camera_link, in m."""
+    """Publish where the ball of the target's color is, in m: x forward, y left of camera_link."""
 
     def __init__(self):
         super().__init__('color_finder')
@@ -50,7 +50,7 @@ class ColorFinder(Node):
 
 
 def find_color(pixels, channel):
-    """Return the middle column and the size in pixels of what has a color, or None."""
+    """Return the middle column and the size in pixels of the color of a channel, or None."""
     others = np.delete(pixels, channel, axis=2).max(axis=2)
     mask = (pixels[:, :, channel] > 50) & (pixels[:, :, channel] > 2.0 * others)
     if mask.sum() < 20:

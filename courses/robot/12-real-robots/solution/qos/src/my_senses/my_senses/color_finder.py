@@ -12,7 +12,7 @@ CHANNELS = {'rgb8': (0, 1, 2), 'bgr8': (2, 1, 0)}
 
 
 class ColorFinder(Node):
-    """Publish where the ball of the target's color is in camera_link, in m."""
+    """Publish where the ball of the target's color is, in m: x forward, y left of camera_link."""
 
     def __init__(self):
         super().__init__('color_finder')
@@ -21,9 +21,10 @@ class ColorFinder(Node):
         self.lens = None
         self.ball = self.create_publisher(PointStamped, 'ball', 10)
         self.create_subscription(String, 'target', self.on_target, 10)
-        self.create_subscription(
-            CameraInfo, 'camera/camera_info', self.on_lens, qos_profile_sensor_data)
-        self.create_subscription(Image, 'camera/image_raw', self.on_image, qos_profile_sensor_data)
+        self.create_subscription(CameraInfo, 'camera/camera_info', self.on_lens,
+                                 qos_profile_sensor_data)
+        self.create_subscription(Image, 'camera/image_raw', self.on_image,
+                                 qos_profile_sensor_data)
 
     def on_target(self, message):
         self.target = message.data
@@ -52,7 +53,7 @@ class ColorFinder(Node):
 
 
 def find_color(pixels, channel):
-    """Return the middle column and the size in pixels of what has a color, or None."""
+    """Return the middle column and the size in pixels of the color of a channel, or None."""
     others = np.delete(pixels, channel, axis=2).max(axis=2)
     mask = (pixels[:, :, channel] > 50) & (pixels[:, :, channel] > 2.0 * others)
     if mask.sum() < 20:
