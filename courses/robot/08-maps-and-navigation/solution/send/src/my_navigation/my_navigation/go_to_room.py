@@ -28,7 +28,9 @@ class GoToRoom(Node):
 
     def go(self):
         room = self.get_parameter('room').value
-        self.client.wait_for_server()
+        if not self.client.wait_for_server(timeout_sec=20.0):
+            self.get_logger().error('there is no action navigate_to_pose')
+            return
         sent = self.client.send_goal_async(self.goal(room))
         rclpy.spin_until_future_complete(self, sent)
         if not sent.result().accepted:
