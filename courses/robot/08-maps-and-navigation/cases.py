@@ -196,7 +196,27 @@ CASES = [
             "      track_unknown_space: true\n      resolution: 0.05\n      robot_radius: 0.2",
             "      track_unknown_space: true\n      resolution: 0.05\n      robot_radius: 0.6",
         ),
-        says="mbot should be in the kitchen",
+        says="robot_radius of global_costmap is 0.6",
+    ),
+    wrong(
+        "navigate",
+        "no number",
+        Edit(
+            CONFIG,
+            "      rolling_window: true\n      width: 3\n      height: 3\n      resolution: 0.05\n      robot_radius: 0.2",
+            "      rolling_window: true\n      width: 3\n      height: 3\n      resolution: 0.05\n      robot_radius: ...",
+        ),
+        says="robot_radius",
+    ),
+    right(
+        "navigate",
+        "a footprint instead of a radius",
+        Edit(
+            CONFIG,
+            "      rolling_window: true\n      width: 3\n      height: 3\n      resolution: 0.05\n      robot_radius: 0.2",
+            "      rolling_window: true\n      width: 3\n      height: 3\n      resolution: 0.05\n"
+            "      footprint: '[[0.2, 0.2], [0.2, -0.2], [-0.2, -0.2], [-0.2, 0.2]]'",
+        ),
     ),
     wrong(
         "navigate",

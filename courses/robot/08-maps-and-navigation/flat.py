@@ -53,10 +53,13 @@ def read_parameters(work, file, *names):
     for name in (*names, "ros__parameters"):
         if not isinstance(found, dict) or not isinstance(found.get(name), dict):
             place = " / ".join(names)
+            if name != "ros__parameters":
+                raise NotYet(
+                    en=f"{path.name} has no '{name}' for {place}.", zh=f"{path.name} 中，{place} 缺少“{name}”。"
+                )
             raise NotYet(
-                en=f"In {path.name}, '{name}' is missing for {place}; below the name of the node comes "
-                "ros__parameters, with two underscores.",
-                zh=f"{path.name} 中，{place} 缺少“{name}”；节点名的下一层是 ros__parameters，有两个下划线。",
+                en=f"In {path.name}, ros__parameters, with two underscores, is missing below {place}.",
+                zh=f"{path.name} 中，{place} 的下一层缺少 ros__parameters（有两个下划线）。",
             )
         found = found[name]
     return flatten(found)
