@@ -89,7 +89,7 @@ CASES = [
         "joints",
         "the node is missing",
         Edit(LAUNCH, "        Node(package='joint_state_publisher', executable='joint_state_publisher'),\n", ""),
-        says="no topic '/joint_states'",
+        says="no node publishes '/joint_states'",
     ),
     right("rviz", "another view", Edit(RVIZ, "Distance: 1.7", "Distance: 3")),
     wrong(

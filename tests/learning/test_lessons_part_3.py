@@ -1,0 +1,10 @@
+"""Each lesson of this part passes its own tests."""
+
+import pytest
+
+from tests.learning.lesson_runs import expect_passes, lessons_of_part
+
+
+@pytest.mark.parametrize(("course", "lesson"), lessons_of_part(3))
+def test_a_lesson_passes_its_tests(course, lesson):
+    expect_passes(course, lesson)
