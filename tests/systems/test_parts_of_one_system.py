@@ -40,6 +40,8 @@ KNOWN: dict[str, str] = {
     "launch/engine/process_table.py": "SIGKILL",
     "launch/engine/processes.py": "SIGKILL killpg openpty",
     "learning/checks/running.py": "SIGKILL killpg platform start_new_session",
+    "learning/grading/grading.py": "get_context",
+    "learning/grading/running.py": "O_NOFOLLOW O_NONBLOCK",
     "learning/packing/installer/install.py": "/bin/activate'",
     "learning/sandbox/contents.py": "chown geteuid",
     "learning/sandbox/identity.py": "/proc /proc/self/gid_map /proc/self/uid_map geteuid platform pwd",
