@@ -61,6 +61,7 @@ KNOWN: dict[str, str] = {
     "nodes/process.py": "SIGHUP add_signal_handler",
     "packages/readers/cmake_language.py": "platform",
     "page/access.py": "O_NOFOLLOW O_NONBLOCK getuid",
+    "page/peers.py": "/proc/net/tcp /proc/net/tcp6 geteuid platform",
     "page/server.py": "O_NONBLOCK",
     "panels/terminal/environment.py": "platform",
     "panels/terminal/opening.py": "platform",
