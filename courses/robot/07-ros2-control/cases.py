@@ -9,6 +9,13 @@ JOINT = """    <joint name="{name}_wheel_joint">
       <state_interface name="position"/>
       <state_interface name="velocity"/>
     </joint>"""
+SECOND = """  </ros2_control>
+
+  <ros2_control name="mbot_right_wheel" type="actuator">
+    <hardware>
+      <plugin>$(arg hardware)</plugin>
+    </hardware>
+    <xacro:driven_wheel name="right_wheel_joint"/>"""
 NODES = ", ".join(f"'{name}'" for name in ("joint_state_broadcaster", "base_controller"))
 LINEAR = """    linear.x.has_velocity_limits: true
     linear.x.max_velocity: 0.5
@@ -36,6 +43,11 @@ CASES = [
         Edit(XACRO, '    <xacro:driven_wheel name="left_wheel_joint"/>', JOINT.format(name="left")),
         Edit(XACRO, '    <xacro:driven_wheel name="right_wheel_joint"/>', JOINT.format(name="right")),
     ),
+    right(
+        "interfaces",
+        "hardware for each wheel",
+        Edit(XACRO, '    <xacro:driven_wheel name="right_wheel_joint"/>', SECOND),
+    ),
     wrong(
         "interfaces",
         "a position command",
@@ -62,6 +74,14 @@ CASES = [
     ),
     right("controllers", "a faster manager", Edit(CONTROLLERS, "update_rate: 50", "update_rate: 100")),
     right("controllers", "a wildcard", Edit(CONTROLLERS, "\nbase_controller:\n", "\n/**:\n")),
+    right("controllers", "a wildcard for one level", Edit(CONTROLLERS, "\nbase_controller:\n", "\n/*:\n")),
+    right("controllers", "an exponent", Edit(CONTROLLERS, "wheel_radius: 0.06", "wheel_radius: 6e-2")),
+    wrong(
+        "controllers",
+        "a tab",
+        Edit(CONTROLLERS, "    wheel_radius", "\twheel_radius"),
+        says="controllers.yaml, line 14: ",
+    ),
     wrong(
         "controllers",
         "the diameter",

@@ -1,10 +1,10 @@
 import math
 
-import yaml
-
 from linkwright import load
 from linkwright.control.hardware.description import hardware_from_robot
-from linkwright.learning import NotYet, check
+from linkwright.diagnostics import LinkwrightError
+from linkwright.graph.parameters.files import read_parameter_file
+from linkwright.learning import LocalText, NotYet, check
 from linkwright.xmltree import parse_file
 
 XACRO, CONTROLLERS = "urdf/mbot_control.xacro", "config/controllers.yaml"
@@ -60,22 +60,21 @@ def wheels_take_velocities(work):
 
 @check("interfaces", en="Both wheels report position and velocity.", zh="两个轮子都报告位置和速度。")
 def wheels_report_state(work):
-    for system in systems(work):
-        for joint in system.joints:
-            missing = {"position", "velocity"} - {state.name for state in joint.states}
-            if missing:
-                raise NotYet(
-                    en=f"The joint '{joint.name}' has no state interface '{min(missing)}'.",
-                    zh=f"关节“{joint.name}”没有状态接口“{min(missing)}”。",
-                )
+    states = {joint.name: {state.name for state in joint.states} for system in systems(work) for joint in system.joints}
+    for name in WHEELS:
+        if missing := {"position", "velocity"} - states.get(name, set()):
+            raise NotYet(
+                en=f"The joint '{name}' has no state interface '{min(missing)}'.",
+                zh=f"关节“{name}”没有状态接口“{min(missing)}”。",
+            )
 
 
 @check("interfaces", en="The argument hardware selects the hardware.", zh="参数 hardware 选择硬件。")
 def argument_selects_hardware(work):
     for arguments, expected in (({}, MOCK), ({"hardware": GAZEBO}, GAZEBO)):
-        plugins = [system.plugin for system in systems(work, **arguments)]
-        if plugins != [expected]:
-            names = ", ".join(plugins)
+        plugins = {system.plugin for system in systems(work, **arguments)}
+        if plugins != {expected}:
+            names = ", ".join(sorted(plugins))
             raise NotYet(
                 en=f"With {arguments or 'no argument'}, the hardware is {names} and should be {expected}.",
                 zh=f"参数为 {arguments or '空'} 时，硬件是 {names}，应当是 {expected}。",
@@ -83,18 +82,16 @@ def argument_selects_hardware(work):
 
 
 def parameters(work, node):
-    """Return the parameters of a node in the learner's file, also those for all nodes (``/**``)."""
+    """Return the parameters that ROS 2 would read for a node from the learner's file."""
     try:
-        data = yaml.safe_load(package(work).file(CONTROLLERS).read_text(encoding="utf-8"))
-    except yaml.YAMLError as error:
-        line = error.problem_mark.line + 1 if getattr(error, "problem_mark", None) else 1
+        found = read_parameter_file(package(work).file(CONTROLLERS)).for_node("/" + node)
+    except LinkwrightError as error:
+        mistake = error.diagnostics[0]
+        texts, line = LocalText.from_phrase(mistake.message), mistake.span.line if mistake.span else 1
         raise NotYet(
-            en=f"controllers.yaml, line {line}: this is not YAML.",
-            zh=f"controllers.yaml 第 {line} 行：不是 YAML。",
+            en=f"controllers.yaml, line {line}: {texts.get('en')}.",
+            zh=f"controllers.yaml 第 {line} 行：{texts.get('zh')}。",
         ) from None
-    sections = [data.get(key) for key in ("/**", node, "/" + node)] if isinstance(data, dict) else []
-    blocks = [section.get("ros__parameters") for section in sections if isinstance(section, dict)]
-    found = {name: value for block in blocks if isinstance(block, dict) for name, value in block.items()}
     if not found:
         raise NotYet(
             en=f"controllers.yaml has no {node}: with ros__parameters: below it.",
@@ -107,8 +104,7 @@ def parameters(work, node):
 def manager_knows_types(work):
     manager = parameters(work, "controller_manager")
     for name, expected in TYPES.items():
-        section = manager.get(name)
-        actual = section.get("type") if isinstance(section, dict) else manager.get(f"{name}.type")
+        actual = manager.get(f"{name}.type")
         if actual != expected:
             raise NotYet(
                 en=f"The type of {name} is {actual}, but should be {expected}.",
@@ -193,7 +189,7 @@ def hardware_is_simulated(work):
     with package(work).launch("control_world.launch.py") as running:
         text = running.wait_for_message("/robot_description").data
     found, _ = hardware_from_robot(load(text))
-    plugins = ", ".join(system.plugin for system in found) or "-"
+    plugins = ", ".join(sorted({system.plugin for system in found})) or "-"
     if plugins != GAZEBO:
         raise NotYet(
             en=f"In control_world.launch.py, the hardware is {plugins}, but should be {GAZEBO}.",
