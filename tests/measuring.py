@@ -7,6 +7,9 @@ from pathlib import Path
 
 from tests.places import REPOSITORY
 
+_SETTINGS = REPOSITORY / "pyproject.toml"
+"""Named to each process: one in another folder would not find it, and would measure the learner's programs."""
+
 
 def _data_file() -> Path | None:
     """Return the file of the coverage of the tests, or None if it is not measured."""
@@ -18,7 +21,9 @@ def _data_file() -> Path | None:
 def coverage_options() -> list[str]:
     """Return the options that measure the coverage of a Python process, if that of the tests is measured."""
     data_file = _data_file()
-    return [] if data_file is None else ["-m", "coverage", "run", "--parallel-mode", f"--data-file={data_file}"]
+    if data_file is None:
+        return []
+    return ["-m", "coverage", "run", "--parallel-mode", f"--data-file={data_file}", f"--rcfile={_SETTINGS}"]
 
 
 def measured_program(program: str, part: str) -> str:
@@ -26,6 +31,6 @@ def measured_program(program: str, part: str) -> str:
     data_file = _data_file()
     if data_file is None:
         return program
-    options = f"data_file={str(data_file)!r}, data_suffix=True, config_file={str(REPOSITORY / 'pyproject.toml')!r}"
+    options = f"data_file={str(data_file)!r}, data_suffix=True, config_file={str(_SETTINGS)!r}"
     measured = f"import coverage; c = coverage.Coverage({options}); c.start(); {part}; c.stop(); c.save()"
     return program.replace(part, measured)
