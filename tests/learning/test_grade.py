@@ -106,6 +106,8 @@ def test_points_claims_and_formats(folder):
     page = Path("out.html").read_text(encoding="utf-8")
     assert "=odd, name" in page
     assert 'lang="zh"' in page
+    assert '</summary><div id="student-0">' in page  # a link to a place in `details` opens it
+    assert '<span lang="en">2 hints</span>' in page
     assert not list(folder.glob("*.unfinished"))
 
 
@@ -124,11 +126,12 @@ def test_odd_folders_have_a_line_each(folder, capsys):
     (write_student(folder, "yaml", "print(42)") / "learn.yaml").write_text(bomb)
     (write_student(folder, "without", "print(42)") / "learn.yaml").unlink()
     (students / "file.txt").write_text("")
-    status, found, _ = grade(folder)
+    status, found, _ = grade(folder, "--html", "out.html")
     assert status == 1
+    assert Path("out.html").read_text(encoding="utf-8").count("not graded") == 2
     notes = {name: " / ".join(note["en"] for note in student["notes"]) for name, student in found.items()}
     assert notes["nested"] == "the workspace is the folder 'inner' in it"
-    assert notes["links"] == "1 links were left out / 1 pipes, sockets or devices were left out"
+    assert notes["links"] == "1 link was left out / 1 pipe, socket or device was left out"
     assert notes["other"] == "learn.yaml is of the course 'robot', and was not used"
     assert "does not contain the progress" in notes["yaml"]
     assert notes["without"] == "there is no learn.yaml, so there are no answers"

@@ -79,6 +79,7 @@ def run_grade(arguments: argparse.Namespace) -> int:
     from linkwright.learning.course import DEFAULT_COURSE, find_course, load_course
     from linkwright.learning.grading.grading import grade_class
     from linkwright.learning.grading.journal import Journal
+    from linkwright.learning.grading.marks import class_size
     from linkwright.learning.grading.submissions import find_submissions
     from linkwright.learning.sandbox import protections_available
 
@@ -107,16 +108,7 @@ def run_grade(arguments: argparse.Namespace) -> int:
     _print_table(students)
     _print_protections(students)
     seconds = f"{time.monotonic() - begin:.0f}"
-    print_message(
-        localized(
-            phrase(
-                "{students} students, {steps} steps in {seconds} s",
-                students=len(students),
-                steps=len(steps),
-                seconds=seconds,
-            )
-        )
-    )
+    print_message(localized(phrase("{size} in {seconds} s", size=class_size(students), seconds=seconds)))
     return FINE if all(student.submission.is_readable for student in students) else FINDINGS
 
 
