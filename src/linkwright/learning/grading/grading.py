@@ -1,12 +1,10 @@
-"""Grade a class: run all steps of all students in parallel processes."""
+"""Grade a class: make a job of each step of each student, and collect the marks."""
 
 from __future__ import annotations
 
-import multiprocessing
 import shutil
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import BrokenExecutor, Future, ProcessPoolExecutor, as_completed
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
@@ -15,8 +13,9 @@ from linkwright.diagnostics import phrase
 from linkwright.learning.course import CASES_FILE, Course, Step
 from linkwright.learning.grading.journal import Journal, hash_folder, key_of
 from linkwright.learning.grading.marks import Mark, StudentMarks
-from linkwright.learning.grading.running import Job, run_job
+from linkwright.learning.grading.running import Job
 from linkwright.learning.grading.submissions import Submission, copy_workspace
+from linkwright.learning.grading.workers import RunJobs
 from linkwright.learning.local_text import LocalText
 from linkwright.learning.sandbox import Limits
 
@@ -32,7 +31,7 @@ def grade_class(
     submissions: Sequence[Submission],
     *,
     limits: Limits,
-    workers: int,
+    run_jobs: RunJobs,
     journal: Journal,
     progress: Progress,
 ) -> list[StudentMarks]:
@@ -45,7 +44,7 @@ def grade_class(
         steps: the steps to check.
         submissions: the folders of the students.
         limits: the limits of each run.
-        workers: the number of parallel processes.
+        run_jobs: runs jobs in parallel processes.
         journal: keeps the marks for the case of an interruption.
         progress: called after each step.
 
@@ -64,7 +63,7 @@ def grade_class(
             else:
                 marks[job.student][known.step] = known
         done = len(keyed_jobs) - len(waiting)
-        for key, job, mark in _run_all(waiting, workers):
+        for key, job, mark in _run_all(waiting, run_jobs):
             journal.add(key, mark)
             marks[job.student][mark.step] = mark
             done += 1
@@ -116,39 +115,22 @@ def _make_jobs(
     return jobs
 
 
-def _run_all(jobs: Sequence[tuple[str, Job]], workers: int) -> Iterator[tuple[str, Job, Mark]]:
+def _run_all(jobs: Sequence[tuple[str, Job]], run_jobs: RunJobs) -> Iterator[tuple[str, Job, Mark]]:
     """Run jobs in parallel, then those again alone that may have failed because of others."""
     again: list[tuple[str, Job]] = []
-    with _pool(workers) as pool:
-        futures: dict[Future[Mark], tuple[str, Job]] = {pool.submit(run_job, job): (key, job) for key, job in jobs}
-        for future in as_completed(futures):
-            key, job = futures[future]
-            try:
-                mark = future.result()
-            except BrokenExecutor:  # a student's program has ended a process of the grader
-                again.append((key, job))
-                continue
-            if mark.may_differ:
-                again.append((key, job))
-            else:
-                yield key, job, mark
+    for index, mark in run_jobs([job for _, job in jobs]):
+        key, job = jobs[index]
+        if mark is None or mark.may_differ:
+            again.append((key, job))
+        else:
+            yield key, job, mark
     for key, job in sorted(again, key=lambda pair: (pair[1].student, pair[1].domain)):
-        yield key, job, _run_alone(replace(job, is_repeated=True))
+        yield key, job, _run_alone(replace(job, is_repeated=True), run_jobs)
 
 
-def _run_alone(job: Job) -> Mark:
-    with _pool(1) as pool:
-        try:
-            return pool.submit(run_job, job).result()
-        except BrokenExecutor:
-            reason = LocalText.from_phrase(phrase("the student's program has ended the process of the grader, twice"))
-            return Mark(job.step.address, passed=False, reason=reason, is_repeated=True)
-
-
-@contextmanager
-def _pool(workers: int) -> Iterator[ProcessPoolExecutor]:
-    pool = ProcessPoolExecutor(workers, mp_context=multiprocessing.get_context("spawn"))
-    try:
-        yield pool
-    finally:
-        pool.shutdown(cancel_futures=True)
+def _run_alone(job: Job, run_jobs: RunJobs) -> Mark:
+    ((_, mark),) = run_jobs([job])
+    if mark is not None:
+        return mark
+    reason = LocalText.from_phrase(phrase("the student's program has ended the process of the grader, twice"))
+    return Mark(job.step.address, passed=False, reason=reason, is_repeated=True)
