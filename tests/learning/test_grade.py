@@ -18,6 +18,7 @@ from linkwright.learning.grading import grading, workers
 from linkwright.learning.grading import running as grading_running
 from linkwright.sweep.ray_cluster import LostTask
 from tests.learning.sandbox.conftest import class_folder, processes_with  # noqa: F401
+from tests.waiting import SECONDS, wait_until
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="the sandbox is for Linux")
 
@@ -92,7 +93,7 @@ def test_malicious_students_hurt_only_themselves(folder):
     assert reasons[0]["en"] == "the program used more than 3 s of processor time"
     assert "limits" in data["protections"]
     assert all((folder / f"students/good{number}/program.py").read_text() == "print(42)" for number in range(8))
-    assert not processes_with("linkwright-grade-")
+    wait_until(lambda: not processes_with("linkwright_grade_"), SECONDS)
 
 
 def test_points_claims_and_formats(folder):

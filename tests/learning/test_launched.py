@@ -70,6 +70,26 @@ def test_a_launch_file_that_fails_is_said(package):
         package.launch("displai.launch.py")
 
 
+BEST_EFFORT = """import rclpy
+from rclpy.qos import qos_profile_sensor_data
+from std_msgs.msg import String
+
+rclpy.init()
+node = rclpy.create_node("sensor")
+publisher = node.create_publisher(String, "measured", qos_profile_sensor_data)
+node.create_timer(0.1, lambda: publisher.publish(String(data="1 m")))
+rclpy.spin(node)
+"""
+
+
+def test_messages_that_are_sent_without_a_guarantee_are_received(package):
+    program = package.folder / "sensor.py"
+    program.write_text(BEST_EFFORT)
+    (package.folder / "launch" / "sensor.launch.py").write_text(LAUNCH.format(program=str(program)))
+    with package.launch("sensor.launch.py") as running:
+        assert running.wait_for_message("/measured").data == "1 m"
+
+
 VOICE = """from launch import LaunchDescription
 from launch_ros.actions import Node
 

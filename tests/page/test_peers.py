@@ -15,7 +15,8 @@ from typing import Any
 import pytest
 
 from linkwright.page import peers
-from linkwright.page.peers import is_from_here, may_be_own_user
+from linkwright.page.access import is_from_here
+from linkwright.page.peers import may_be_own_user
 from tests.waiting import SECONDS
 
 linux = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="tables of Linux")

@@ -2,14 +2,39 @@ from linkwright.learning import Edit, right, wrong
 
 PACKAGE = "src/my_robot_description/"
 XACRO, CONTROLLERS = PACKAGE + "urdf/mbot_control.xacro", PACKAGE + "config/controllers.yaml"
-LAUNCH = PACKAGE + "launch/control.launch.py"
+LAUNCH, WORLD = PACKAGE + "launch/control.launch.py", PACKAGE + "launch/control_world.launch.py"
 
 JOINT = """    <joint name="{name}_wheel_joint">
       <command_interface name="velocity"/>
       <state_interface name="position"/>
       <state_interface name="velocity"/>
     </joint>"""
+SECOND = """  </ros2_control>
+
+  <ros2_control name="mbot_right_wheel" type="actuator">
+    <hardware>
+      <plugin>$(arg hardware)</plugin>
+    </hardware>
+    <xacro:driven_wheel name="right_wheel_joint"/>"""
 NODES = ", ".join(f"'{name}'" for name in ("joint_state_broadcaster", "base_controller"))
+LINEAR = """    linear.x.has_velocity_limits: true
+    linear.x.max_velocity: 0.5
+    linear.x.has_acceleration_limits: true
+    linear.x.max_acceleration: 0.5
+"""
+NESTED = """    linear:
+      x: {has_velocity_limits: true, max_velocity: 0.5, has_acceleration_limits: true, max_acceleration: 0.5}
+"""
+COMMAND = """    command = Command(['xacro ', str(model), ' hardware:=gazebo_ros2_control/GazeboSystem'])
+    robot_description = ParameterValue(command, value_type=str)
+"""
+MODULE = """    mappings = {'hardware': 'gazebo_ros2_control/GazeboSystem'}
+    robot_description = xacro.process_file(str(model), mappings=mappings).toxml()
+"""
+SPAWNER = "        Node(package='controller_manager', executable='spawner',"
+MANAGER = """        Node(package='controller_manager', executable='ros2_control_node',
+             parameters=[str(get_package_share_path('my_robot_description') / 'config' / 'controllers.yaml')]),
+"""
 
 CASES = [
     right(
@@ -17,6 +42,11 @@ CASES = [
         "joints without a macro",
         Edit(XACRO, '    <xacro:driven_wheel name="left_wheel_joint"/>', JOINT.format(name="left")),
         Edit(XACRO, '    <xacro:driven_wheel name="right_wheel_joint"/>', JOINT.format(name="right")),
+    ),
+    right(
+        "interfaces",
+        "hardware for each wheel",
+        Edit(XACRO, '    <xacro:driven_wheel name="right_wheel_joint"/>', SECOND),
     ),
     wrong(
         "interfaces",
@@ -44,6 +74,14 @@ CASES = [
     ),
     right("controllers", "a faster manager", Edit(CONTROLLERS, "update_rate: 50", "update_rate: 100")),
     right("controllers", "a wildcard", Edit(CONTROLLERS, "\nbase_controller:\n", "\n/**:\n")),
+    right("controllers", "a wildcard for one level", Edit(CONTROLLERS, "\nbase_controller:\n", "\n/*:\n")),
+    right("controllers", "an exponent", Edit(CONTROLLERS, "wheel_radius: 0.06", "wheel_radius: 6e-2")),
+    wrong(
+        "controllers",
+        "a tab",
+        Edit(CONTROLLERS, "    wheel_radius", "\twheel_radius"),
+        says="controllers.yaml, line 14: ",
+    ),
     wrong(
         "controllers",
         "the diameter",
@@ -74,6 +112,72 @@ CASES = [
         ),
     ),
     wrong("start", "one controller", Edit(LAUNCH, ", 'base_controller'", ""), says="/base_controller/odom"),
+    wrong(
+        "start",
+        "a forgotten dependency",
+        Edit(PACKAGE + "package.xml", "  <exec_depend>diff_drive_controller</exec_depend>\n", ""),
+        says="package.xml does not list 'diff_drive_controller'",
+    ),
     wrong("speed", "the diameter", says="the diameter", answer="2.5"),
     right("speed", "measured", answer="4.97"),
+    right("limits", "levels instead of dots", Edit(CONTROLLERS, LINEAR, NESTED)),
+    right("limits", "as for Jazzy", Edit(CONTROLLERS, "    linear.x.has_velocity_limits: true\n", "")),
+    wrong(
+        "limits",
+        "a misspelt parameter",
+        Edit(CONTROLLERS, "linear.x.max_velocity", "linear.x.max_velocty"),
+        says="base_controller has no linear.x.max_velocity",
+    ),
+    wrong(
+        "limits",
+        "below the manager",
+        Edit(CONTROLLERS, LINEAR, ""),
+        Edit(CONTROLLERS, "    update_rate: 50\n", "    update_rate: 50\n" + LINEAR),
+        says="base_controller has no linear.x.max_velocity",
+    ),
+    wrong(
+        "limits",
+        "degrees",
+        Edit(CONTROLLERS, "angular.z.max_velocity: 2.0", "angular.z.max_velocity: 115.0"),
+        says="angular.z.max_velocity of base_controller is 115.0, but should be 2.0",
+    ),
+    right(
+        "simulate",
+        "the module xacro",
+        Edit(WORLD, COMMAND, MODULE),
+        Edit(WORLD, "from ament_index_python", "import xacro\nfrom ament_index_python"),
+        Edit(WORLD, "from launch.substitutions import Command\n", ""),
+        Edit(WORLD, "from launch_ros.parameter_descriptions import ParameterValue\n", ""),
+    ),
+    wrong(
+        "simulate",
+        "the wrong hardware",
+        Edit(WORLD, " hardware:=gazebo_ros2_control/GazeboSystem", ""),
+        says="the hardware is mock_components/GenericSystem",
+    ),
+    wrong(
+        "simulate",
+        "no space before the argument",
+        Edit(WORLD, "' hardware:=", "'hardware:="),
+        says="the xacro command names no model file",
+    ),
+    wrong(
+        "simulate",
+        "the plugin of ROS 1",
+        Edit(XACRO, "libgazebo_ros2_control.so", "libgazebo_ros_control.so"),
+        says="no node publishes '/joint_states'",
+    ),
+    wrong(
+        "simulate",
+        "a file that is not there",
+        Edit(XACRO, "/config/controllers.yaml</parameters>", "/controllers.yaml</parameters>"),
+        says="controllers.yaml' does not exist",
+    ),
+    wrong("simulate", "two managers", Edit(WORLD, SPAWNER, MANAGER + SPAWNER), says="2 controller managers run"),
+    wrong(
+        "simulate",
+        "a forgotten dependency",
+        Edit(PACKAGE + "package.xml", "  <exec_depend>gazebo_ros</exec_depend>\n", ""),
+        says="package.xml does not list 'gazebo_ros'",
+    ),
 ]

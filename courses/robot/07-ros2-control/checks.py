@@ -1,7 +1,11 @@
-import yaml
+import math
 
+from linkwright import load
 from linkwright.control.hardware.description import hardware_from_robot
-from linkwright.learning import NotYet, check
+from linkwright.diagnostics import LinkwrightError
+from linkwright.graph.parameters.files import read_parameter_file
+from linkwright.learning import LocalText, NotYet, check
+from linkwright.xmltree import parse_file
 
 XACRO, CONTROLLERS = "urdf/mbot_control.xacro", "config/controllers.yaml"
 WHEELS = ("left_wheel_joint", "right_wheel_joint")
@@ -10,6 +14,7 @@ TYPES = {
     "joint_state_broadcaster": "joint_state_broadcaster/JointStateBroadcaster",
     "base_controller": "diff_drive_controller/DiffDriveController",
 }
+LIMITS = {"linear.x.max_velocity": 0.5, "linear.x.max_acceleration": 0.5, "angular.z.max_velocity": 2.0}
 
 
 def package(work):
@@ -21,6 +26,16 @@ def systems(work, **arguments):
     if not found:
         raise NotYet(en="The robot has no <ros2_control>.", zh="机器人没有 <ros2_control>。")
     return found
+
+
+def expect_dependencies(work, names):
+    root = parse_file(package(work).file("package.xml")).root
+    listed = {element.text().strip() for element in root.elements() if element.tag in {"depend", "exec_depend"}}
+    if missing := sorted(names - listed):
+        raise NotYet(
+            en=f"package.xml does not list '{missing[0]}' as a dependency at run time.",
+            zh=f"package.xml 没有把“{missing[0]}”列为运行时依赖。",
+        )
 
 
 @check("interfaces", en="Both wheels take velocities.", zh="两个轮子都接受速度命令。")
@@ -45,22 +60,21 @@ def wheels_take_velocities(work):
 
 @check("interfaces", en="Both wheels report position and velocity.", zh="两个轮子都报告位置和速度。")
 def wheels_report_state(work):
-    for system in systems(work):
-        for joint in system.joints:
-            missing = {"position", "velocity"} - {state.name for state in joint.states}
-            if missing:
-                raise NotYet(
-                    en=f"The joint '{joint.name}' has no state interface '{min(missing)}'.",
-                    zh=f"关节“{joint.name}”没有状态接口“{min(missing)}”。",
-                )
+    states = {joint.name: {state.name for state in joint.states} for system in systems(work) for joint in system.joints}
+    for name in WHEELS:
+        if missing := {"position", "velocity"} - states.get(name, set()):
+            raise NotYet(
+                en=f"The joint '{name}' has no state interface '{min(missing)}'.",
+                zh=f"关节“{name}”没有状态接口“{min(missing)}”。",
+            )
 
 
 @check("interfaces", en="The argument hardware selects the hardware.", zh="参数 hardware 选择硬件。")
 def argument_selects_hardware(work):
     for arguments, expected in (({}, MOCK), ({"hardware": GAZEBO}, GAZEBO)):
-        plugins = [system.plugin for system in systems(work, **arguments)]
-        if plugins != [expected]:
-            names = ", ".join(plugins)
+        plugins = {system.plugin for system in systems(work, **arguments)}
+        if plugins != {expected}:
+            names = ", ".join(sorted(plugins))
             raise NotYet(
                 en=f"With {arguments or 'no argument'}, the hardware is {names} and should be {expected}.",
                 zh=f"参数为 {arguments or '空'} 时，硬件是 {names}，应当是 {expected}。",
@@ -68,18 +82,16 @@ def argument_selects_hardware(work):
 
 
 def parameters(work, node):
-    """Return the parameters of a node in the learner's file, also those for all nodes (``/**``)."""
+    """Return the parameters that ROS 2 would read for a node from the learner's file."""
     try:
-        data = yaml.safe_load(package(work).file(CONTROLLERS).read_text(encoding="utf-8"))
-    except yaml.YAMLError as error:
-        line = error.problem_mark.line + 1 if getattr(error, "problem_mark", None) else 1
+        found = read_parameter_file(package(work).file(CONTROLLERS)).for_node("/" + node)
+    except LinkwrightError as error:
+        mistake = error.diagnostics[0]
+        texts, line = LocalText.from_phrase(mistake.message), mistake.span.line if mistake.span else 1
         raise NotYet(
-            en=f"controllers.yaml, line {line}: this is not YAML.",
-            zh=f"controllers.yaml 第 {line} 行：不是 YAML。",
+            en=f"controllers.yaml, line {line}: {texts.get('en')}.",
+            zh=f"controllers.yaml 第 {line} 行：{texts.get('zh')}。",
         ) from None
-    sections = [data.get(key) for key in ("/**", node, "/" + node)] if isinstance(data, dict) else []
-    blocks = [section.get("ros__parameters") for section in sections if isinstance(section, dict)]
-    found = {name: value for block in blocks if isinstance(block, dict) for name, value in block.items()}
     if not found:
         raise NotYet(
             en=f"controllers.yaml has no {node}: with ros__parameters: below it.",
@@ -92,8 +104,7 @@ def parameters(work, node):
 def manager_knows_types(work):
     manager = parameters(work, "controller_manager")
     for name, expected in TYPES.items():
-        section = manager.get(name)
-        actual = section.get("type") if isinstance(section, dict) else manager.get(f"{name}.type")
+        actual = manager.get(f"{name}.type")
         if actual != expected:
             raise NotYet(
                 en=f"The type of {name} is {actual}, but should be {expected}.",
@@ -134,6 +145,12 @@ def launch_starts_controllers(work):
         running.wait_for_message("/base_controller/odom")
 
 
+@check("start", en="package.xml lists what the launch file starts.", zh="package.xml 列出 launch 文件启动的东西。")
+def lists_controllers(work):
+    package(work).file("launch/control.launch.py")
+    expect_dependencies(work, {"controller_manager", "diff_drive_controller", "joint_state_broadcaster"})
+
+
 @check("start", en="The package has no findings.", zh="功能包没有任何问题。")
 def package_has_no_findings(work):
     package(work).expect_installed("launch/control.launch.py")
@@ -151,3 +168,55 @@ def knows_speed(work):
         ),
     }
     work.expect_number(5.0, tolerance=0.15, slips=slips)
+
+
+@check("limits", en="base_controller has the three limits.", zh="base_controller 有三个限制。")
+def controller_has_limits(work):
+    with package(work).launch("control.launch.py") as running:
+        for name, expected in LIMITS.items():
+            value = running.wait_for_parameter("/base_controller", name)
+            if math.isnan(value):
+                raise NotYet(en=f"base_controller has no {name}.", zh=f"base_controller 没有 {name}。")
+            if value != expected:
+                raise NotYet(
+                    en=f"{name} of base_controller is {value}, but should be {expected}.",
+                    zh=f"base_controller 的 {name} 是 {value}，应当是 {expected}。",
+                )
+
+
+@check("simulate", en="The hardware is that of the simulator.", zh="硬件是仿真器的。")
+def hardware_is_simulated(work):
+    with package(work).launch("control_world.launch.py") as running:
+        text = running.wait_for_message("/robot_description").data
+    found, _ = hardware_from_robot(load(text))
+    plugins = ", ".join(sorted({system.plugin for system in found})) or "-"
+    if plugins != GAZEBO:
+        raise NotYet(
+            en=f"In control_world.launch.py, the hardware is {plugins}, but should be {GAZEBO}.",
+            zh=f"在 control_world.launch.py 中，硬件是 {plugins}，应当是 {GAZEBO}。",
+        )
+
+
+@check("simulate", en="The controllers run in the simulated world.", zh="控制器在仿真世界中运行。")
+def controllers_run_in_world(work):
+    with package(work).launch("control_world.launch.py") as running:
+        running.wait_for_message("/clock")
+        running.wait_for_message("/joint_states", lambda message: set(WHEELS) <= set(message.name))
+        running.wait_for_message("/base_controller/odom")
+        managers = running.nodes().count("/controller_manager")
+    if managers > 1:
+        raise NotYet(
+            en=f"{managers} controller managers run; the simulator has its own, so ros2_control_node must not start.",
+            zh=f"有 {managers} 个控制器管理器在运行；仿真器自带一个，因此不要启动 ros2_control_node。",
+        )
+
+
+@check("simulate", en="package.xml lists the simulator and its plugin.", zh="package.xml 列出仿真器和它的插件。")
+def lists_simulator(work):
+    expect_dependencies(work, {"gazebo_ros", "gazebo_ros2_control"})
+
+
+@check("simulate", en="The package has no findings.", zh="功能包没有任何问题。")
+def package_still_has_no_findings(work):
+    package(work).expect_installed("launch/control_world.launch.py")
+    package(work).expect_no_findings()

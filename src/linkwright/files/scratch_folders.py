@@ -34,11 +34,12 @@ class ScratchFolder(TemporaryDirectory[str]):
     Args:
         purpose: a word for the name of the folder.
         parent: the parent folder; None for the system's folder for temporary files.
+        ignore_cleanup_errors: whether what cannot be removed stays without an error.
     """
 
-    def __init__(self, purpose: str, parent: Path | None = None) -> None:
+    def __init__(self, purpose: str, parent: Path | None = None, *, ignore_cleanup_errors: bool = False) -> None:
         remove_abandoned(parent or Path(gettempdir()))
-        super().__init__(prefix=f"{_PREFIX}{purpose}_", dir=parent)
+        super().__init__(prefix=f"{_PREFIX}{purpose}_", dir=parent, ignore_cleanup_errors=ignore_cleanup_errors)
         lock = _lock(Path(self.name))
         self._unlock = None if lock is None else weakref.finalize(self, os.close, lock)
 

@@ -31,10 +31,18 @@ from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING, TypeAlias
 from urllib.parse import urlsplit
 
 from linkwright.files.user_folders import state_folder
 from linkwright.files.whole_files import write_whole_file
+
+if TYPE_CHECKING:
+    from asyncio import BaseTransport
+
+IPAddress: TypeAlias = ipaddress.IPv4Address | ipaddress.IPv6Address
+Endpoint: TypeAlias = tuple[IPAddress, int]
+"""An address and a TCP port."""
 
 _LIFETIME = 7 * 24 * 3600.0
 """The time for which a stored token is valid, in seconds."""
@@ -341,3 +349,25 @@ class LimitedConnection(asyncio.Protocol):
             self._is_counted = False
             self._admission.release(self)
         self.served.connection_lost(exc)
+
+
+def is_from_here(transport: BaseTransport | None) -> bool:
+    """Return whether a connection comes from this machine: over loopback, or from its own address."""
+    endpoints = endpoints_of(transport)
+    if endpoints is None:
+        return False
+    (peer, _), (own, _) = endpoints
+    return peer.is_loopback or peer == own
+
+
+def endpoints_of(transport: BaseTransport | None) -> tuple[Endpoint, Endpoint] | None:
+    """Return the address and port of the peer, and those of this program."""
+    if transport is None:
+        return None
+    peer, own = (transport.get_extra_info(name) for name in ("peername", "sockname"))
+    return (_endpoint(peer), _endpoint(own)) if peer and own else None
+
+
+def _endpoint(name: tuple[str, int]) -> Endpoint:
+    address = ipaddress.ip_address(name[0].partition("%")[0])
+    return getattr(address, "ipv4_mapped", None) or address, name[1]

@@ -1,4 +1,4 @@
-"""Where the peer of a connection runs: on this machine, and as which user.
+"""The user as whom the peer of a connection from this machine runs.
 
 Linux lists the TCP sockets of all users, with their owners, in tables below ``/proc/net`` (`proc_pid_net(5)`). Other
 systems have no such list that every user can read.
@@ -11,10 +11,8 @@ import os
 import sys
 from asyncio import BaseTransport
 from pathlib import Path
-from typing import TypeAlias
 
-_Address: TypeAlias = ipaddress.IPv4Address | ipaddress.IPv6Address
-_Endpoint: TypeAlias = tuple[_Address, int]
+from linkwright.page.access import Endpoint, endpoints_of
 
 _TABLES = (Path("/proc/net/tcp"), Path("/proc/net/tcp6"))
 
@@ -24,15 +22,6 @@ _MAX_READS = 3
 _ESTABLISHED = "01"
 _USER_FIELD, _INODE_FIELD = 3, 5  # counted from the field after the state
 _ROOT = 0
-
-
-def is_from_here(transport: BaseTransport | None) -> bool:
-    """Return whether a connection comes from this machine: over loopback, or from its own address."""
-    endpoints = _endpoints(transport)
-    if endpoints is None:
-        return False
-    (peer, _), (own, _) = endpoints
-    return peer.is_loopback or peer == own
 
 
 def may_be_own_user(transport: BaseTransport | None) -> bool:
@@ -45,7 +34,7 @@ def may_be_own_user(transport: BaseTransport | None) -> bool:
         True also where the system does not list the sockets of other users. False for a socket that is not listed as
         open: one whose program has closed it no longer has an owner.
     """
-    endpoints = _endpoints(transport)
+    endpoints = endpoints_of(transport)
     if endpoints is None:
         return False
     if not sys.platform.startswith("linux"):
@@ -60,19 +49,6 @@ def may_be_own_user(transport: BaseTransport | None) -> bool:
     return False
 
 
-def _endpoints(transport: BaseTransport | None) -> tuple[_Endpoint, _Endpoint] | None:
-    """Return the address and port of the peer, and those of this program."""
-    if transport is None:
-        return None
-    peer, own = (transport.get_extra_info(name) for name in ("peername", "sockname"))
-    return (_endpoint(peer), _endpoint(own)) if peer and own else None
-
-
-def _endpoint(name: tuple[str, int]) -> _Endpoint:
-    address = ipaddress.ip_address(name[0].partition("%")[0])
-    return getattr(address, "ipv4_mapped", None) or address, name[1]
-
-
 def _read_tables() -> str:
     """Return the tables of TCP sockets, or an empty text if they cannot be read."""
     return "".join(map(_read_table, _TABLES))
@@ -85,7 +61,7 @@ def _read_table(table: Path) -> str:
         return ""  # tcp6 is missing without IPv6, and a sandbox may hide both
 
 
-def _socket_user(tables: str, local: _Endpoint, remote: _Endpoint) -> int | None:
+def _socket_user(tables: str, local: Endpoint, remote: Endpoint) -> int | None:
     """Return the ID of the user who owns an open socket with these addresses, or None if there is no such socket.
 
     A socket that its program has closed has no inode, and the user 0 in the tables.
@@ -99,7 +75,7 @@ def _socket_user(tables: str, local: _Endpoint, remote: _Endpoint) -> int | None
     return None
 
 
-def _table_address(endpoint: _Endpoint) -> str:
+def _table_address(endpoint: Endpoint) -> str:
     """Return an address and port as the tables write them: 32-bit words in the byte order of the machine."""
     address, port = endpoint
     packed = address.packed
@@ -107,7 +83,7 @@ def _table_address(endpoint: _Endpoint) -> str:
     return f"{''.join(f'{word:08X}' for word in words)}:{port:04X}"
 
 
-def _mapped_table_address(endpoint: _Endpoint) -> str:
+def _mapped_table_address(endpoint: Endpoint) -> str:
     address, port = endpoint
     if isinstance(address, ipaddress.IPv4Address):
         address = ipaddress.IPv6Address(f"::ffff:{address}")

@@ -17,10 +17,10 @@ from typing import TYPE_CHECKING, cast
 from urllib.parse import quote
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
-from linkwright.page.access import TOKEN_PARAMETER, Admission, Gate, security_headers
+from linkwright.page.access import TOKEN_PARAMETER, Admission, Gate, is_from_here, security_headers
 from linkwright.page.files import CONTENT_TYPES, IMAGE_TYPES, Downloads, FileRefusedError, MeshFolders
 from linkwright.page.http_server import SERVER_LOGGER, web
-from linkwright.page.peers import is_from_here, may_be_own_user
+from linkwright.page.peers import may_be_own_user
 
 if TYPE_CHECKING:
     from collections.abc import Awaitable, Callable, Mapping

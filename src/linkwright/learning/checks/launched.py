@@ -20,7 +20,7 @@ from linkwright.learning.checks.not_yet import NotYet
 if TYPE_CHECKING:
     from typing_extensions import Self
 
-    from linkwright.graph import Node
+    from linkwright.graph import Node, QoSProfile
     from linkwright.graph.transforms.waiting import Buffer
     from linkwright.launch.engine.session import LaunchSession
     from linkwright.packages import PackageFinder
@@ -185,7 +185,6 @@ class LaunchCheck:
         Raises:
             NotYet: no node publishes the topic, or no such message came in time.
         """
-        from linkwright.graph import DurabilityPolicy, QoSProfile
         from linkwright.messages import get_message
 
         node = self._checker
@@ -194,10 +193,7 @@ class LaunchCheck:
 
         def subscribe() -> None:
             types = dict(node.get_topic_names_and_types())[topic]
-            profile = (
-                QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL) if _is_latched(node, topic) else 10
-            )
-            node.create_subscription(get_message(types[0]), topic, received.append, profile)
+            node.create_subscription(get_message(types[0]), topic, received.append, _offered_profile(node, topic))
 
         self._call(subscribe)
         matching: list[Any] = []
@@ -329,10 +325,17 @@ class LaunchCheck:
         return [line for line in self._output.getvalue().splitlines() if any(word in line.casefold() for word in words)]
 
 
-def _is_latched(node: Node, topic: str) -> bool:
-    """Return whether a publisher of a topic keeps its last messages for new subscriptions."""
-    infos = node.get_publishers_info_by_topic(topic)
-    return any(info.qos_profile.durability.name == "TRANSIENT_LOCAL" for info in infos)
+def _offered_profile(node: Node, topic: str) -> QoSProfile:
+    """Return a profile with which a subscription receives messages of a topic, and the last ones if they are kept."""
+    from linkwright.graph import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+
+    offered = [info.qos_profile for info in node.get_publishers_info_by_topic(topic)]
+    profile = QoSProfile(depth=10)
+    if any(each.durability == DurabilityPolicy.TRANSIENT_LOCAL for each in offered):
+        profile.durability = DurabilityPolicy.TRANSIENT_LOCAL
+    if any(each.reliability == ReliabilityPolicy.BEST_EFFORT for each in offered):
+        profile.reliability = ReliabilityPolicy.BEST_EFFORT
+    return profile
 
 
 def _missing(kind: str, name: str, names: Sequence[str]) -> Phrase:

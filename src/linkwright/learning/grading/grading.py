@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import shutil
-import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 
 from linkwright.diagnostics import phrase
+from linkwright.files.scratch_folders import ScratchFolder
 from linkwright.learning.course import CASES_FILE, Course, Step
 from linkwright.learning.grading.journal import Journal, hash_folder, key_of
 from linkwright.learning.grading.marks import Mark, StudentMarks
@@ -78,7 +78,7 @@ def grade_class(
 @contextmanager
 def _scratch() -> Iterator[Path]:
     """Yield a folder through which the users of runs may pass, without seeing what is in it."""
-    with tempfile.TemporaryDirectory(prefix="linkwright-grade-", ignore_cleanup_errors=True) as name:
+    with ScratchFolder("grade", ignore_cleanup_errors=True) as name:
         Path(name).chmod(0o711)
         yield Path(name)
 

@@ -7,15 +7,15 @@ from typing import Any
 from linkwright.diagnostics import LinkwrightError, phrase
 from linkwright.learning.page.guide import Guide, problem_of
 from linkwright.page.audience import Page
-from linkwright.page.protocol.learning import CourseProblem
+from linkwright.page.protocol import learning as messages
 from linkwright.page.protocol.message import ServerMessage
 from linkwright.panels.page_feature import FeatureHost, PageFeature
 
-_START_HINT = phrase("start it with `linkwright learn`")
-
 
 class CourseFeature(PageFeature):
-    """The feature of a course or an exercise, which refuses all requests before `show`."""
+    """The feature of a course or an exercise, which ignores all requests before `show`."""
+
+    RECEIVES = (messages.AnswerStep, messages.CheckStep, messages.OpenStep, messages.TakeHint, messages.TakeSolution)
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
@@ -34,18 +34,17 @@ class CourseFeature(PageFeature):
     def receive(self, page: Page, message: Any) -> None:
         """Carry out a request, or report why not."""
         if self._guide is None:
-            page.send(CourseProblem(phrase("this program was started without a course"), _START_HINT))
             return
         if not page.is_here:
             problem = phrase("the course can be used only in pages on the machine of the program")
-            page.send(CourseProblem(problem, ""))
+            page.send(messages.CourseProblem(problem, ""))
             return
         try:
             self._guide.handle(message)
         except LinkwrightError as error:
             page.send(problem_of(error))
         else:
-            page.send(CourseProblem("", ""))
+            page.send(messages.CourseProblem("", ""))
 
     def close(self) -> None:
         """Close the guide."""
