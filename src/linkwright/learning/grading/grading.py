@@ -4,18 +4,16 @@ from __future__ import annotations
 
 import shutil
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 
 from linkwright.diagnostics import phrase
-from linkwright.files.scratch_folders import ScratchFolder
 from linkwright.learning.course import CASES_FILE, Course, Step
 from linkwright.learning.grading.journal import Journal, hash_folder, key_of
 from linkwright.learning.grading.marks import Mark, StudentMarks
 from linkwright.learning.grading.running import Job
 from linkwright.learning.grading.submissions import Submission, copy_workspace
-from linkwright.learning.grading.workers import RunJobs
+from linkwright.learning.grading.workers import RunJobs, scratch_for_runs
 from linkwright.learning.local_text import LocalText
 from linkwright.learning.sandbox import Limits
 
@@ -52,7 +50,7 @@ def grade_class(
         LinkwrightError: LEARN121, the journal cannot be written; LEARN901, LEARN902, the sandbox cannot be used.
     """
     marks: list[dict[str, Mark]] = [{} for _ in submissions]
-    with _scratch() as scratch:
+    with scratch_for_runs() as scratch:
         lessons = _copy_lessons(course, scratch)
         keyed_jobs = _make_jobs(steps, submissions, limits, lessons, scratch)
         waiting: list[tuple[str, Job]] = []
@@ -73,14 +71,6 @@ def grade_class(
         StudentMarks(submission, {step: given[step] for step in points if step in given}, points)
         for submission, given in zip(submissions, marks, strict=True)
     ]
-
-
-@contextmanager
-def _scratch() -> Iterator[Path]:
-    """Yield a folder through which the users of runs may pass, without seeing what is in it."""
-    with ScratchFolder("grade", ignore_cleanup_errors=True) as name:
-        Path(name).chmod(0o711)
-        yield Path(name)
 
 
 def _copy_lessons(course: Course, scratch: Path) -> Path:

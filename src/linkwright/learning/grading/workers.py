@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import multiprocessing
-import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import BrokenExecutor, ProcessPoolExecutor, as_completed
 from contextlib import contextmanager
@@ -12,6 +11,7 @@ from functools import partial
 from pathlib import Path
 
 from linkwright.diagnostics import LinkwrightError
+from linkwright.files.scratch_folders import ScratchFolder
 from linkwright.learning.grading.marks import Mark
 from linkwright.learning.grading.running import Job, run_job
 from linkwright.sweep.ray_cluster import LostTask, RayCluster, connect_to_ray
@@ -21,6 +21,14 @@ RunJobs = Callable[[Sequence[Job]], Iterator[tuple[int, "Mark | None"]]]
 
 FolderContent = dict[str, "tuple[int, bytes] | None"]
 """The mode and content of each file by its path in a folder, and None for each folder."""
+
+
+@contextmanager
+def scratch_for_runs() -> Iterator[Path]:
+    """Yield a folder through which the users of runs may pass, without seeing what is in it."""
+    with ScratchFolder("grade", ignore_cleanup_errors=True) as name:
+        Path(name).chmod(0o711)
+        yield Path(name)
 
 
 @contextmanager
@@ -74,9 +82,7 @@ def _run_in_cluster(course: FolderContent, copy: FolderContent, job: Job) -> Mar
 
     The error is returned, because Ray would raise another one.
     """
-    with tempfile.TemporaryDirectory(prefix="linkwright-grade-", ignore_cleanup_errors=True) as name:
-        scratch = Path(name)
-        scratch.chmod(0o711)  # the user of a run may pass through
+    with scratch_for_runs() as scratch:
         lessons, own_copy = scratch / "course", scratch / "copy"
         write_folder(lessons, course)
         write_folder(own_copy, copy)
