@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import pickle
 
 import pytest
 
@@ -56,3 +57,16 @@ def test_only_errors_are_errors():
     assert not has_errors([])
     assert not has_errors([warning, info])
     assert has_errors([warning, Diagnostic("A2", "m")])
+
+
+class OtherArgumentsError(LinkwrightError):
+    def __init__(self, name: str) -> None:
+        super().__init__(Diagnostic("XML101", f"no file '{name}'"), Diagnostic("XML102", "nothing else"))
+        self.name = name
+
+
+def test_an_error_of_another_process_is_the_same():
+    error = OtherArgumentsError("robot.urdf")
+    received = pickle.loads(pickle.dumps(error))
+    assert type(received) is OtherArgumentsError
+    assert (received.name, received.diagnostics, str(received)) == ("robot.urdf", error.diagnostics, str(error))

@@ -1,6 +1,7 @@
 """Exercises: their judges are fair, their solutions score as they should, and results repeat."""
 
 import json
+from functools import cache
 from statistics import mean
 
 import pytest
@@ -8,7 +9,7 @@ import pytest
 from linkwright.cli.entry import main
 from linkwright.diagnostics import LinkwrightError
 from linkwright.learning.judging.exercise import Figure, exercise_names, find_exercise, load_exercise
-from linkwright.learning.judging.running import judge_program
+from linkwright.learning.judging.running import RunResult, judge_program
 from linkwright.learning.judging.world import write_world
 from linkwright.learning.local_text import LocalText
 from linkwright.testing import SteppedSimulation
@@ -30,11 +31,17 @@ def test_the_texts_exist_in_both_languages(name):
         assert f"{exercise.figure.half:g}" in text
 
 
+@cache
+def reference_result(name: str, seed: int) -> RunResult:
+    """The result of the reference solution, which several tests look at."""
+    exercise = find_exercise(name)
+    return next(judge_program(exercise, exercise.solution("reference"), [seed]))
+
+
 @pytest.mark.parametrize("name", NAMES)
 @pytest.mark.slow
 def test_the_reference_scores_over_90_with_every_seed(name):
-    exercise = find_exercise(name)
-    results = list(judge_program(exercise, exercise.solution("reference"), SEEDS))
+    results = [reference_result(name, seed) for seed in SEEDS]
     assert [result.error for result in results] == [None] * len(SEEDS)
     assert min(result.score for result in results) > 90.0, [result.data for result in results]
 
@@ -61,7 +68,8 @@ def test_the_template_runs_and_scores_nearly_nothing(name):
 @pytest.mark.slow
 def test_two_runs_are_bit_identical(name):
     exercise = find_exercise(name)
-    first, second = (next(judge_program(exercise, exercise.solution("reference"), [3])) for _ in range(2))
+    first, second = reference_result(name, 2), next(judge_program(exercise, exercise.solution("reference"), [2]))
+    assert first is not second
     assert first == second
 
 

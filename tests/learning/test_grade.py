@@ -3,14 +3,20 @@
 import csv
 import json
 import os
+import pickle
+import subprocess
 import sys
+from contextlib import nullcontext
 from pathlib import Path
 
 import pytest
 
 from linkwright.cli import main
+from linkwright.diagnostics import Diagnostic, LinkwrightError
 from linkwright.learning.course import find_course
-from linkwright.learning.grading import grading
+from linkwright.learning.grading import grading, workers
+from linkwright.learning.grading import running as grading_running
+from linkwright.sweep.ray_cluster import LostTask
 from tests.learning.sandbox.conftest import class_folder, processes_with  # noqa: F401
 from tests.waiting import SECONDS, wait_until
 
@@ -107,7 +113,73 @@ def test_points_claims_and_formats(folder):
     page = Path("out.html").read_text(encoding="utf-8")
     assert "=odd, name" in page
     assert 'lang="zh"' in page
+    assert '</summary><div id="student-0">' in page  # a link to a place in `details` opens it
+    assert '<span lang="en">2 hints</span>' in page
     assert not list(folder.glob("*.unfinished"))
+
+
+class FakeCluster:
+    """A cluster whose processes are this one, and that loses the first task."""
+
+    def __init__(self):
+        self.calls = 0
+
+    def share(self, value):
+        return pickle.loads(pickle.dumps(value))
+
+    def run_tasks(self, function, tasks):
+        for index, arguments in enumerate(tasks):
+            self.calls += 1
+            yield index, LostTask("lost") if self.calls == 1 else function(*self.share(arguments))
+
+
+def test_a_cluster_gets_the_folders_and_a_lost_check_is_repeated(folder, monkeypatch):
+    write_student(folder, "good", "print(42)")
+    tool = write_student(folder, "bad", "print(41)") / "empty/tool.sh"
+    tool.parent.mkdir()
+    tool.touch(mode=0o755)
+    cluster = FakeCluster()
+    monkeypatch.setattr(workers, "connect_to_ray", lambda address: nullcontext(cluster))
+    status, students, _ = grade(folder, "--ray", "auto")
+    assert status == 0
+    assert {name: student["points"] for name, student in students.items()} == {"good": 4, "bad": 1}
+    assert cluster.calls > 4
+    assert students["bad"]["steps"][0]["repeated"]
+    content = workers.read_folder(tool.parent.parent)
+    workers.write_folder(folder / "received", content)
+    assert workers.read_folder(folder / "received") == content
+    assert os.access(folder / "received/empty/tool.sh", os.X_OK)
+
+
+def test_an_error_of_a_process_of_the_cluster_is_that_of_the_command(folder, monkeypatch, capsys):
+    write_student(folder, "good", "print(42)")
+
+    def refuse(*_, **__):
+        raise LinkwrightError(Diagnostic("LEARN901", "no sandbox here"))
+
+    monkeypatch.setattr(grading_running, "run_in_sandbox", refuse)
+    monkeypatch.setattr(workers, "connect_to_ray", lambda address: nullcontext(FakeCluster()))
+    assert main(["learn", "grade", "--course", "course", "--ray", "auto", "students/good"]) == 1
+    assert "LEARN901" in capsys.readouterr().err
+
+
+@pytest.mark.slow
+@pytest.mark.extra("ray")
+def test_malicious_students_on_a_cluster_hurt_only_themselves(folder):
+    for number in range(2):
+        write_student(folder, f"good{number}", "print(42)")
+    for number, attack in enumerate([KILL, SPY.format(folder=str(folder / "students"))]):
+        write_student(folder, f"malicious{number}", attack)
+    folders = sorted(map(str, (folder / "students").iterdir()))
+    words = ["learn", "grade", "--course", "course", "--ray", "local", "--json", "out.json", *LIMITS, *folders]
+    environment = {**os.environ, "RAY_raylet_start_wait_time_s": "600"}
+    done = subprocess.run(
+        [sys.executable, "-m", "linkwright", *words], env=environment, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    data = json.loads((folder / "out.json").read_text())
+    assert [student["points"] for student in data["students"]] == [4, 4, 1, 1]
+    assert "limits" in data["protections"]
 
 
 def test_odd_folders_have_a_line_each(folder, capsys):
@@ -125,11 +197,12 @@ def test_odd_folders_have_a_line_each(folder, capsys):
     (write_student(folder, "yaml", "print(42)") / "learn.yaml").write_text(bomb)
     (write_student(folder, "without", "print(42)") / "learn.yaml").unlink()
     (students / "file.txt").write_text("")
-    status, found, _ = grade(folder)
+    status, found, _ = grade(folder, "--html", "out.html")
     assert status == 1
+    assert Path("out.html").read_text(encoding="utf-8").count("not graded") == 2
     notes = {name: " / ".join(note["en"] for note in student["notes"]) for name, student in found.items()}
     assert notes["nested"] == "the workspace is the folder 'inner' in it"
-    assert notes["links"] == "1 links were left out / 1 pipes, sockets or devices were left out"
+    assert notes["links"] == "1 link was left out / 1 pipe, socket or device was left out"
     assert notes["other"] == "learn.yaml is of the course 'robot', and was not used"
     assert "does not contain the progress" in notes["yaml"]
     assert notes["without"] == "there is no learn.yaml, so there are no answers"
@@ -144,8 +217,8 @@ def test_an_interrupted_run_continues(folder, monkeypatch):
         write_student(folder, f"good{number}", f"print(42)  # {number}")
     run_all = grading._run_all
 
-    def interrupt(jobs, workers):
-        for count, item in enumerate(run_all(jobs, workers)):
+    def interrupt(jobs, run_jobs):
+        for count, item in enumerate(run_all(jobs, run_jobs)):
             if count == 4:
                 raise KeyboardInterrupt
             yield item
@@ -154,7 +227,7 @@ def test_an_interrupted_run_continues(folder, monkeypatch):
     assert main(["learn", "grade", "--course", "course", "--json", "out.json", "students/good0", "students/good1",
                  "students/good2"]) == 130  # fmt: skip
     counted = []
-    monkeypatch.setattr(grading, "_run_all", lambda jobs, workers: run_all(counted.extend(jobs) or jobs, workers))
+    monkeypatch.setattr(grading, "_run_all", lambda jobs, run_jobs: run_all(counted.extend(jobs) or jobs, run_jobs))
     status, students, _ = grade(folder)
     assert status == 0
     assert len(counted) == 2

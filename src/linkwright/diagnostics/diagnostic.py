@@ -229,11 +229,19 @@ class LinkwrightError(Exception):
         super().__init__(diagnostics[0].message)
         self.diagnostics: tuple[Diagnostic, ...] = diagnostics
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _restore_error, (type(self), self.args), self.__dict__
+
     def __str__(self) -> str:
         return "\n".join(
             f"{diagnostic.span}: {diagnostic.message}" if diagnostic.span else diagnostic.message
             for diagnostic in self.diagnostics
         )
+
+
+def _restore_error(error_type: type[LinkwrightError], args: tuple[object, ...]) -> LinkwrightError:
+    """Create an error that another process has pickled, whose attributes follow, without its constructor."""
+    return error_type.__new__(error_type, *args)
 
 
 def join_messages(diagnostics: Iterable[Diagnostic]) -> Phrase:

@@ -85,16 +85,16 @@ class Localize(Node):
 def expected_ranges(poses, angles):
     """Return the distances to the nearest wall, shape (poses, angles)."""
     directions = poses[:, 2:3] + angles
-    cos, sin = np.cos(directions)[..., None], np.sin(directions)[..., None]
-    x, y = poses[:, 0, None, None], poses[:, 1, None, None]
-    x1, y1, x2, y2 = WALLS.T
+    cos, sin = np.cos(directions), np.sin(directions)
+    x, y = poses[:, 0:1], poses[:, 1:2]
+    x1, y1, x2, y2 = WALLS.T[:, :, np.newaxis, np.newaxis]
     dx, dy = x2 - x1, y2 - y1
     with np.errstate(divide='ignore', invalid='ignore'):
         cross = cos * dy - sin * dx
         distance = ((x1 - x) * dy - (y1 - y) * dx) / cross
         part = ((x1 - x) * sin - (y1 - y) * cos) / cross
     distance[~((distance > 0.0) & (part >= 0.0) & (part <= 1.0))] = 6.0
-    return np.minimum(distance.min(axis=2) - 0.05, 6.0)  # walls are 0.1 m thick
+    return np.minimum(distance.min(axis=0) - 0.05, 6.0)  # walls are 0.1 m thick
 
 
 def random_poses(random, count):

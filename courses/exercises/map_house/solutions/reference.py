@@ -54,8 +54,8 @@ class MapHouse(Node):
         x, y, yaw = self.corrected(self.correction)
         angles = yaw + directions
         ends = np.where(hit, ranges, scan.range_max)
-        for part in np.arange(0.1, 6.0, CELL):
-            self.vote(x + part * np.cos(angles), y + part * np.sin(angles), (part < ends - 0.1), -0.3)
+        along = np.arange(0.1, 6.0, CELL)[:, np.newaxis]
+        self.vote(x + along * np.cos(angles), y + along * np.sin(angles), along < ends - 0.1, -0.3)
         self.vote(x + ends * np.cos(angles), y + ends * np.sin(angles), hit, 1.0)
 
     def corrected(self, correction):
@@ -69,14 +69,15 @@ class MapHouse(Node):
         """Move the scan a little so that it hits walls of the map, and remember by how much."""
         best, best_score = self.correction, -1.0
         walls = np.maximum(self.votes, 0.0)
+        x0, y0, old = self.corrected(self.correction)
         for turn in (0.0, -0.01, 0.01, -0.003, 0.003):
+            yaw = old + turn  # about the robot, not about the origin
+            forward, left = ranges * np.cos(yaw + directions), ranges * np.sin(yaw + directions)
             for dx in (0.0, -0.03, 0.03, -0.01, 0.01):
                 for dy in (0.0, -0.03, 0.03, -0.01, 0.01):
-                    x0, y0, old = self.corrected(self.correction)
-                    # Turn about the robot, not about the origin.
-                    x, y, yaw = x0 + dx, y0 + dy, old + turn
-                    columns = ((x + ranges * np.cos(yaw + directions)) / CELL + SIZE / 2).astype(int)
-                    rows = ((y + ranges * np.sin(yaw + directions)) / CELL + SIZE / 2).astype(int)
+                    x, y = x0 + dx, y0 + dy
+                    columns = ((x + forward) / CELL + SIZE / 2).astype(int)
+                    rows = ((y + left) / CELL + SIZE / 2).astype(int)
                     score = walls[rows, columns].sum()
                     if score > best_score * 1.002:
                         best, best_score = (x, y, yaw), score
@@ -87,11 +88,11 @@ class MapHouse(Node):
 
     def vote(self, x, y, counts, vote):
         """Let rays vote for cells: a positive vote for a wall, a negative one for free floor."""
-        columns = (x / CELL + SIZE / 2).astype(int)[counts]
-        rows = (y / CELL + SIZE / 2).astype(int)[counts]
-        cells = np.unique(rows * SIZE + columns)
-        flat = self.votes.reshape(-1)
-        flat[cells] = np.clip(flat[cells] + vote, -4.0, 6.0)
+        columns = (x[counts] / CELL + SIZE / 2).astype(int)
+        rows = (y[counts] / CELL + SIZE / 2).astype(int)
+        touched = np.zeros(self.votes.shape, bool)
+        touched[rows, columns] = True
+        self.votes[touched] = np.clip(self.votes[touched] + vote, -4.0, 6.0)
 
     def publish_map(self):
         grid = OccupancyGrid()

@@ -38,17 +38,17 @@ class MapHouse(Node):
         angles = yaw + scan.angle_min + scan.angle_increment * np.arange(len(ranges))
         hit = np.isfinite(ranges) & (ranges < scan.range_max - 0.1)
         ends = np.where(hit, ranges, scan.range_max)
-        for part in np.arange(0.1, 6.0, CELL):
-            self.vote(x + part * np.cos(angles), y + part * np.sin(angles), (part < ends - 0.1), -0.3)
+        along = np.arange(0.1, 6.0, CELL)[:, np.newaxis]
+        self.vote(x + along * np.cos(angles), y + along * np.sin(angles), along < ends - 0.1, -0.3)
         self.vote(x + ends * np.cos(angles), y + ends * np.sin(angles), hit, 1.0)
 
     def vote(self, x, y, counts, vote):
         """Let rays vote for cells: a positive vote for a wall, a negative one for free floor."""
-        columns = (x / CELL + SIZE / 2).astype(int)[counts]
-        rows = (y / CELL + SIZE / 2).astype(int)[counts]
-        cells = np.unique(rows * SIZE + columns)
-        flat = self.votes.reshape(-1)
-        flat[cells] = np.clip(flat[cells] + vote, -4.0, 6.0)
+        columns = (x[counts] / CELL + SIZE / 2).astype(int)
+        rows = (y[counts] / CELL + SIZE / 2).astype(int)
+        touched = np.zeros(self.votes.shape, bool)
+        touched[rows, columns] = True
+        self.votes[touched] = np.clip(self.votes[touched] + vote, -4.0, 6.0)
 
     def publish_map(self):
         grid = OccupancyGrid()

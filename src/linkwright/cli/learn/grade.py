@@ -17,9 +17,11 @@ from linkwright.process.processors import usable_processors
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
+    from contextlib import AbstractContextManager
 
     from linkwright.learning.course import Course, Step
     from linkwright.learning.grading.marks import StudentMarks
+    from linkwright.learning.grading.workers import RunJobs
     from linkwright.learning.sandbox import Limits
 
 _MEBIBYTE = 1 << 20
@@ -40,6 +42,9 @@ def configure_grade(parser: argparse.ArgumentParser) -> None:
         metavar="N",
         type=positive_int,
         help="the number of parallel processes (default: one for each processor)",
+    )
+    parser.add_argument(
+        "--ray", metavar="ADDRESS", help="run on a Ray cluster: auto, local, HOST:PORT or ray://HOST:PORT"
     )
     parser.add_argument("--csv", metavar="FILE", type=Path, help="write a line for each student, as gradebooks import")
     parser.add_argument("--nbgrader", metavar="FILE", type=Path, help="write the columns of nbgrader's export as CSV")
@@ -79,45 +84,46 @@ def run_grade(arguments: argparse.Namespace) -> int:
     from linkwright.learning.course import DEFAULT_COURSE, find_course, load_course
     from linkwright.learning.grading.grading import grade_class
     from linkwright.learning.grading.journal import Journal
+    from linkwright.learning.grading.marks import class_size
     from linkwright.learning.grading.submissions import find_submissions
-    from linkwright.learning.sandbox import protections_available
 
     course = load_course(find_course(arguments.course or DEFAULT_COURSE))
     steps = _select_steps(course, arguments)
     outputs = [path for path in (arguments.csv, arguments.nbgrader, arguments.json, arguments.html) if path]
     _check_outputs(outputs)
-    protections_available()  # raises where there is no sandbox
     submissions = find_submissions(arguments.folders, course)
     limits = _limits(arguments)
     journal = Journal(_journal_path(outputs))
     line = ProgressLine()
     begin = time.monotonic()
-    students = grade_class(
-        course,
-        steps,
-        submissions,
-        limits=limits,
-        workers=arguments.workers or usable_processors(),
-        journal=journal,
-        progress=lambda done, count: line.show(phrase("{done} of {count} checks", done=done, count=count)),
-    )
+    with _choose_workers(arguments) as run_jobs:
+        students = grade_class(
+            course,
+            steps,
+            submissions,
+            limits=limits,
+            run_jobs=run_jobs,
+            journal=journal,
+            progress=lambda done, count: line.show(phrase("{done} of {count} checks", done=done, count=count)),
+        )
     line.end()
     _write_outputs(arguments, course, students, limits)
     journal.remove()
     _print_table(students)
     _print_protections(students)
     seconds = f"{time.monotonic() - begin:.0f}"
-    print_message(
-        localized(
-            phrase(
-                "{students} students, {steps} steps in {seconds} s",
-                students=len(students),
-                steps=len(steps),
-                seconds=seconds,
-            )
-        )
-    )
+    print_message(localized(phrase("{size} in {seconds} s", size=class_size(students), seconds=seconds)))
     return FINE if all(student.submission.is_readable for student in students) else FINDINGS
+
+
+def _choose_workers(arguments: argparse.Namespace) -> AbstractContextManager[RunJobs]:
+    from linkwright.learning.grading.workers import local_workers, ray_workers
+    from linkwright.learning.sandbox import protections_available
+
+    if arguments.ray is not None:
+        return ray_workers(arguments.ray)
+    protections_available()  # raises where there is no sandbox
+    return local_workers(arguments.workers or usable_processors())
 
 
 def _select_steps(course: Course, arguments: argparse.Namespace) -> list[Step]:

@@ -1,22 +1,19 @@
-"""Grade a class: run all steps of all students in parallel processes."""
+"""Grade a class: make a job of each step of each student, and collect the marks."""
 
 from __future__ import annotations
 
-import multiprocessing
 import shutil
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import BrokenExecutor, Future, ProcessPoolExecutor, as_completed
-from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 
 from linkwright.diagnostics import phrase
-from linkwright.files.scratch_folders import ScratchFolder
 from linkwright.learning.course import CASES_FILE, Course, Step
 from linkwright.learning.grading.journal import Journal, hash_folder, key_of
 from linkwright.learning.grading.marks import Mark, StudentMarks
-from linkwright.learning.grading.running import Job, run_job
+from linkwright.learning.grading.running import Job
 from linkwright.learning.grading.submissions import Submission, copy_workspace
+from linkwright.learning.grading.workers import RunJobs, scratch_for_runs
 from linkwright.learning.local_text import LocalText
 from linkwright.learning.sandbox import Limits
 
@@ -32,7 +29,7 @@ def grade_class(
     submissions: Sequence[Submission],
     *,
     limits: Limits,
-    workers: int,
+    run_jobs: RunJobs,
     journal: Journal,
     progress: Progress,
 ) -> list[StudentMarks]:
@@ -45,7 +42,7 @@ def grade_class(
         steps: the steps to check.
         submissions: the folders of the students.
         limits: the limits of each run.
-        workers: the number of parallel processes.
+        run_jobs: runs jobs in parallel processes.
         journal: keeps the marks for the case of an interruption.
         progress: called after each step.
 
@@ -53,7 +50,7 @@ def grade_class(
         LinkwrightError: LEARN121, the journal cannot be written; LEARN901, LEARN902, the sandbox cannot be used.
     """
     marks: list[dict[str, Mark]] = [{} for _ in submissions]
-    with _scratch() as scratch:
+    with scratch_for_runs() as scratch:
         lessons = _copy_lessons(course, scratch)
         keyed_jobs = _make_jobs(steps, submissions, limits, lessons, scratch)
         waiting: list[tuple[str, Job]] = []
@@ -64,7 +61,7 @@ def grade_class(
             else:
                 marks[job.student][known.step] = known
         done = len(keyed_jobs) - len(waiting)
-        for key, job, mark in _run_all(waiting, workers):
+        for key, job, mark in _run_all(waiting, run_jobs):
             journal.add(key, mark)
             marks[job.student][mark.step] = mark
             done += 1
@@ -74,14 +71,6 @@ def grade_class(
         StudentMarks(submission, {step: given[step] for step in points if step in given}, points)
         for submission, given in zip(submissions, marks, strict=True)
     ]
-
-
-@contextmanager
-def _scratch() -> Iterator[Path]:
-    """Yield a folder through which the users of runs may pass, without seeing what is in it."""
-    with ScratchFolder("grade", ignore_cleanup_errors=True) as name:
-        Path(name).chmod(0o711)
-        yield Path(name)
 
 
 def _copy_lessons(course: Course, scratch: Path) -> Path:
@@ -116,39 +105,22 @@ def _make_jobs(
     return jobs
 
 
-def _run_all(jobs: Sequence[tuple[str, Job]], workers: int) -> Iterator[tuple[str, Job, Mark]]:
+def _run_all(jobs: Sequence[tuple[str, Job]], run_jobs: RunJobs) -> Iterator[tuple[str, Job, Mark]]:
     """Run jobs in parallel, then those again alone that may have failed because of others."""
     again: list[tuple[str, Job]] = []
-    with _pool(workers) as pool:
-        futures: dict[Future[Mark], tuple[str, Job]] = {pool.submit(run_job, job): (key, job) for key, job in jobs}
-        for future in as_completed(futures):
-            key, job = futures[future]
-            try:
-                mark = future.result()
-            except BrokenExecutor:  # a student's program has ended a process of the grader
-                again.append((key, job))
-                continue
-            if mark.may_differ:
-                again.append((key, job))
-            else:
-                yield key, job, mark
+    for index, mark in run_jobs([job for _, job in jobs]):
+        key, job = jobs[index]
+        if mark is None or mark.may_differ:
+            again.append((key, job))
+        else:
+            yield key, job, mark
     for key, job in sorted(again, key=lambda pair: (pair[1].student, pair[1].domain)):
-        yield key, job, _run_alone(replace(job, is_repeated=True))
+        yield key, job, _run_alone(replace(job, is_repeated=True), run_jobs)
 
 
-def _run_alone(job: Job) -> Mark:
-    with _pool(1) as pool:
-        try:
-            return pool.submit(run_job, job).result()
-        except BrokenExecutor:
-            reason = LocalText.from_phrase(phrase("the student's program has ended the process of the grader, twice"))
-            return Mark(job.step.address, passed=False, reason=reason, is_repeated=True)
-
-
-@contextmanager
-def _pool(workers: int) -> Iterator[ProcessPoolExecutor]:
-    pool = ProcessPoolExecutor(workers, mp_context=multiprocessing.get_context("spawn"))
-    try:
-        yield pool
-    finally:
-        pool.shutdown(cancel_futures=True)
+def _run_alone(job: Job, run_jobs: RunJobs) -> Mark:
+    ((_, mark),) = run_jobs([job])
+    if mark is not None:
+        return mark
+    reason = LocalText.from_phrase(phrase("the student's program has ended the process of the grader, twice"))
+    return Mark(job.step.address, passed=False, reason=reason, is_repeated=True)

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from linkwright.diagnostics import Phrase, counted, phrase
 from linkwright.learning.checks.results import CheckResult
 from linkwright.learning.grading.submissions import Submission
 from linkwright.learning.local_text import LocalText
@@ -90,3 +91,13 @@ class StudentMarks:
     def possible(self) -> float:
         """The points of all steps."""
         return sum(self.points.values())
+
+
+def class_size(students: Sequence[StudentMarks]) -> Phrase:
+    """Return the number of students and of steps."""
+    steps = len(students[0].points) if students else 0
+    return phrase(
+        "{students}, {steps}",
+        students=counted("{count} student", "{count} students", len(students)),
+        steps=counted("{count} step", "{count} steps", steps),
+    )

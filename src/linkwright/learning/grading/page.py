@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from html import escape
 
-from linkwright.diagnostics import Phrase, phrase
+from linkwright.diagnostics import Phrase, counted, phrase
 from linkwright.diagnostics.translation import LANGUAGES
 from linkwright.learning.course import Course
 from linkwright.learning.grading.formats import protections_in_force
-from linkwright.learning.grading.marks import Mark, StudentMarks
+from linkwright.learning.grading.marks import Mark, StudentMarks, class_size
 from linkwright.learning.local_text import LocalText
 from linkwright.learning.sandbox import PROTECTIONS
 
@@ -28,9 +28,13 @@ h1 { font-size: 22px; margin: 12px 0; } h2 { font-size: 16px; margin: 30px 0 10p
 table { border-collapse: collapse; width: 100%; font-variant-numeric: tabular-nums; }
 th, td { padding: 4px 10px; text-align: left; border-bottom: 1px solid var(--line); vertical-align: top; }
 th { color: var(--soft); font-weight: 600; } .number { text-align: right; white-space: nowrap; }
+td { min-width: 4.5em; } td.number { min-width: 0; } td:first-child { min-width: 9em; overflow-wrap: anywhere; }
+.languages { float: right; } .languages label { margin-left: 12px; white-space: nowrap; }
+@media (max-width: 600px) { main { padding: 12px 12px 40px; } .languages { float: none; } }
 details { margin: 8px 0; background: var(--card); border: 1px solid var(--line); border-radius: 8px; }
 summary { cursor: pointer; padding: 8px 12px; font-weight: 600; } details p { margin: 4px 12px; }
-.message { white-space: pre-wrap; overflow-wrap: anywhere; }
+summary { overflow-wrap: anywhere; } details .scroll { border-width: 1px 0 0; border-radius: 0; }
+.message { white-space: pre-wrap; overflow-wrap: anywhere; min-width: 18em; }
 """
 
 
@@ -43,13 +47,14 @@ def grades_page(course: Course, students: Sequence[StudentMarks], preferred: str
         preferred: the language that the page shows first.
     """
     title = course.title
+    titles = {step.address: step.title for step in course.steps}
     parts = [
-        _language_choice(preferred),
-        f"<main><h1>{_texts(title)}</h1>",
-        f"<p class='soft'>{_say(_lead(students))}</p>",
+        f"<main>{_language_choice(preferred)}<h1>{_texts(title)}</h1>",
+        f"<p class='soft'>{_say(class_size(students))}</p>",
         _overview(students),
         f"<h2>{_say(phrase('Students'))}</h2>",
-        *(_student(index, student) for index, student in enumerate(students)),
+        *(_student(index, student, titles) for index, student in enumerate(students)),
+        _steps(students, titles),
         _protections(students),
         "</main>",
     ]
@@ -67,34 +72,46 @@ def grades_page(course: Course, students: Sequence[StudentMarks], preferred: str
     )
 
 
-def _lead(students: Sequence[StudentMarks]) -> Phrase:
-    steps = len(students[0].points) if students else 0
-    return phrase("{students} students, {steps} steps", students=len(students), steps=steps)
-
-
 def _language_choice(preferred: str) -> str:
     choices = [
         f'<label><input type="radio" name="language" id="show-{language}"'
         f"{' checked' if language == preferred else ''}> {_NAMES.get(language, language)}</label> "
         for language in LANGUAGES
     ]
-    return f'<form style="padding: 10px 24px 0">{"".join(choices)}</form>'
+    return f'<form class="languages">{"".join(choices)}</form>'
 
 
 def _overview(students: Sequence[StudentMarks]) -> str:
     rows = []
     for index, student in enumerate(students):
         passed = sum(mark.passed for mark in student.marks.values())
+        steps = f"{passed} / {len(student.points)}" if student.submission.is_readable else "–"
         name = f'<a href="#student-{index}">{escape(student.submission.student)}</a>'
-        rows.append([name, _points(student), f"{passed} / {len(student.points)}", _seconds(student.marks.values())])
+        rows.append([name, _points(student), steps, _seconds(student.marks.values())])
     return _table(
         [phrase("Student"), phrase("Points"), phrase("Steps passed"), phrase("Time")], rows, numbers=(1, 2, 3)
     )
 
 
-def _student(index: int, student: StudentMarks) -> str:
+def _steps(students: Sequence[StudentMarks], titles: Mapping[str, LocalText]) -> str:
+    """Return a table that tells which steps are difficult for the class."""
+    graded = [student for student in students if student.marks]
+    rows = []
+    for step in graded[0].points if graded else ():
+        passed = sum(student.marks[step].passed for student in graded)
+        rows.append([_step_name(step, titles), f"{passed} / {len(graded)}"])
+    heading = f"<h2>{_say(phrase('Steps'))}</h2>"
+    return heading + _table([phrase("Step"), phrase("Passed by")], rows, numbers=(1,)) if rows else ""
+
+
+def _step_name(step: str, titles: Mapping[str, LocalText]) -> str:
+    return f"{_texts(titles[step])} <span class='soft'>{escape(step)}</span>"
+
+
+def _student(index: int, student: StudentMarks, titles: Mapping[str, LocalText]) -> str:
+    """Return what is known about a student. The link to it opens it, because its target is within ``details``."""
     notes = "".join(f"<p class='soft'>{_texts(note)}</p>" for note in student.submission.notes)
-    rows = [_step(student, step, mark) for step, mark in student.marks.items()]
+    rows = [_step(student, step, mark, titles) for step, mark in student.marks.items()]
     headings = [
         phrase("Step"),
         phrase("Passed"),
@@ -105,17 +122,17 @@ def _student(index: int, student: StudentMarks) -> str:
     ]
     table = _table(headings, rows, numbers=(2, 5)) if rows else ""
     summary = f"<summary>{escape(student.submission.student)}: {_points(student)}</summary>"
-    return f'<details id="student-{index}">{summary}{notes}{table}</details>'
+    return f'<details>{summary}<div id="student-{index}">{notes}{table}</div></details>'
 
 
-def _step(student: StudentMarks, step: str, mark: Mark) -> list[str]:
+def _step(student: StudentMarks, step: str, mark: Mark, titles: Mapping[str, LocalText]) -> list[str]:
     claims = student.submission.progress.step(step)
-    taken = [_say(phrase("{count} hints", count=claims.hints))] if claims.hints else []
+    taken = [_say(counted("{count} hint", "{count} hints", claims.hints))] if claims.hints else []
     taken += [_say(phrase("solution taken"))] if claims.solution else []
     messages = "".join(f"<div class='message'>{_texts(message)}</div>" for message in mark.messages)
     sign = "<span class='good'>✓</span>" if mark.passed else "<span class='bad'>✗</span>"
     points = f"{student.points[step] if mark.passed else 0:g} / {student.points[step]:g}"
-    return [escape(step), sign, points, messages, ", ".join(taken), _seconds([mark])]
+    return [_step_name(step, titles), sign, points, messages, ", ".join(taken), _seconds([mark])]
 
 
 def _protections(students: Sequence[StudentMarks]) -> str:
@@ -128,6 +145,8 @@ def _protections(students: Sequence[StudentMarks]) -> str:
 
 
 def _points(student: StudentMarks) -> str:
+    if not student.submission.is_readable:
+        return f"<span class='bad'>{_say(phrase('not graded'))}</span>"
     return f"{student.total:g} / {student.possible:g}"
 
 

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
 
-from linkwright.diagnostics import LinkwrightError, Phrase, foreign, phrase
+from linkwright.diagnostics import LinkwrightError, Phrase, counted, foreign, phrase
 from linkwright.diagnostics.render import printable
 from linkwright.learning.course import Course
 from linkwright.learning.local_text import LocalText
@@ -148,12 +148,22 @@ def copy_workspace(submission: Submission, target: Path) -> bool:
 
 def _left_out(kind: str, count: int) -> Phrase:
     if kind == "links":
-        return phrase("{count} links were left out", count=count)
+        return counted("{count} link was left out", "{count} links were left out", count)
     if kind == "special":
-        return phrase("{count} pipes, sockets or devices were left out", count=count)
+        return counted(
+            "{count} pipe, socket or device was left out", "{count} pipes, sockets or devices were left out", count
+        )
     if kind == "deep":
-        return phrase("{count} folders are nested too deeply and were left out", count=count)
-    return phrase("{count} files or folders cannot be read and were left out", count=count)
+        return counted(
+            "{count} folder is nested too deeply and was left out",
+            "{count} folders are nested too deeply and were left out",
+            count,
+        )
+    return counted(
+        "{count} file or folder cannot be read and was left out",
+        "{count} files or folders cannot be read and were left out",
+        count,
+    )
 
 
 def _entries(folder: Path, left_out: Counter[str]) -> Iterator[tuple[Path, os.stat_result]]:

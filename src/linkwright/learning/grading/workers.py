@@ -1,0 +1,117 @@
+"""Processes in which jobs run: of this machine, or of a Ray cluster."""
+
+from __future__ import annotations
+
+import multiprocessing
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import BrokenExecutor, ProcessPoolExecutor, as_completed
+from contextlib import contextmanager
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.files.scratch_folders import ScratchFolder
+from linkwright.learning.grading.marks import Mark
+from linkwright.learning.grading.running import Job, run_job
+from linkwright.sweep.ray_cluster import LostTask, RayCluster, connect_to_ray
+
+RunJobs = Callable[[Sequence[Job]], Iterator[tuple[int, "Mark | None"]]]
+"""Runs jobs, and yields each mark with the index of its job, or None if the process of the job was lost."""
+
+FolderContent = dict[str, "tuple[int, bytes] | None"]
+"""The mode and content of each file by its path in a folder, and None for each folder."""
+
+
+@contextmanager
+def scratch_for_runs() -> Iterator[Path]:
+    """Yield a folder through which the users of runs may pass, without seeing what is in it."""
+    with ScratchFolder("grade", ignore_cleanup_errors=True) as name:
+        Path(name).chmod(0o711)
+        yield Path(name)
+
+
+@contextmanager
+def local_workers(count: int) -> Iterator[RunJobs]:
+    """Yield a function that runs jobs in parallel processes of this machine."""
+    yield partial(_run_locally, count)
+
+
+@contextmanager
+def ray_workers(address: str) -> Iterator[RunJobs]:
+    """Yield a function that runs jobs on a Ray cluster, to which the course and the copies of folders are sent.
+
+    Raises:
+        LinkwrightError: SWEEP113, Ray is not installed; SWEEP114, there is no cluster at the address.
+    """
+    with connect_to_ray(address) as cluster:
+        yield partial(_run_on_ray, cluster)
+
+
+def _run_locally(count: int, jobs: Sequence[Job]) -> Iterator[tuple[int, Mark | None]]:
+    pool = ProcessPoolExecutor(count, mp_context=multiprocessing.get_context("spawn"))
+    try:
+        futures = {pool.submit(run_job, job): index for index, job in enumerate(jobs)}
+        for future in as_completed(futures):
+            is_lost = isinstance(future.exception(), BrokenExecutor)  # a student's program has ended a process
+            yield futures[future], None if is_lost else future.result()
+    finally:
+        pool.shutdown(cancel_futures=True)
+
+
+def _run_on_ray(cluster: RayCluster, jobs: Sequence[Job]) -> Iterator[tuple[int, Mark | None]]:
+    for index, mark in cluster.run_tasks(_run_in_cluster, _tasks(cluster, jobs)):
+        if isinstance(mark, LinkwrightError):
+            raise mark
+        yield index, None if isinstance(mark, LostTask) else mark
+
+
+def _tasks(cluster: RayCluster, jobs: Sequence[Job]) -> Iterator[tuple[object, ...]]:
+    """Yield the arguments of `_run_in_cluster`. The content of a folder is sent when its first job begins."""
+    course = copy = None
+    content_of: Path | None = None
+    for job in jobs:
+        course = course or cluster.share(read_folder(job.course))
+        if job.copy != content_of:
+            copy, content_of = cluster.share(read_folder(job.copy)), job.copy
+        yield course, copy, job
+
+
+def _run_in_cluster(course: FolderContent, copy: FolderContent, job: Job) -> Mark | LinkwrightError:
+    """Run a job in a process of the cluster, in folders of its own.
+
+    The error is returned, because Ray would raise another one.
+    """
+    with scratch_for_runs() as scratch:
+        lessons, own_copy = scratch / "course", scratch / "copy"
+        write_folder(lessons, course)
+        write_folder(own_copy, copy)
+        own_copy.chmod(0o700)
+        lesson = replace(job.step.lesson, folder=lessons / job.step.lesson.folder.relative_to(job.course))
+        own_job = replace(job, step=replace(job.step, lesson=lesson), copy=own_copy, course=lessons)
+        try:
+            return run_job(own_job)
+        except LinkwrightError as error:
+            return error
+
+
+def read_folder(folder: Path) -> FolderContent:
+    """Return the content of a folder that contains only folders and regular files."""
+    content: FolderContent = {}
+    for path in sorted(folder.rglob("*")):
+        file = (path.stat().st_mode & 0o777, path.read_bytes()) if path.is_file() else None
+        content[path.relative_to(folder).as_posix()] = file
+    return content
+
+
+def write_folder(folder: Path, content: FolderContent) -> None:
+    """Create a folder with the content of another."""
+    folder.mkdir()
+    for name, file in content.items():
+        path = folder / name
+        if file is None:
+            path.mkdir()
+        else:
+            mode, data = file
+            path.write_bytes(data)
+            path.chmod(mode)
