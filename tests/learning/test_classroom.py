@@ -78,6 +78,38 @@ def test_a_broken_progress_file_is_refused_and_kept(workspace, capsys):
         assert (workspace / "learn.yaml").read_text() == text
 
 
+@pytest.fixture
+def long_course(tmp_path):
+    """A course with the steps a/one, a/two, b/one and b/two, whose checks all pass."""
+    folder = tmp_path / "long"
+    for lesson in ("a", "b"):
+        (folder / lesson).mkdir(parents=True)
+        (folder / lesson / "lesson.toml").write_text('title.en = "L"')
+        (folder / lesson / "lesson.en.md").write_text("# L\n\n## One {#one}\n\n1\n\n## Two {#two}\n\n2\n")
+        checks = [f'@check("{step}", en="It is so.")\ndef {step}(work):\n    pass\n' for step in ("one", "two")]
+        (folder / lesson / "checks.py").write_text("from linkwright.learning import check\n\n" + "\n".join(checks))
+    (folder / "course.toml").write_text('lessons = ["a", "b"]\ntitle.en = "C"')
+    return str(folder)
+
+
+def test_a_course_continues_after_the_step_that_was_begun_or_passed_last(workspace, capsys, long_course):
+    learn(capsys, "show", "b/one", "--course", long_course)
+    status, out, _ = learn(capsys, "check")
+    assert (status, out.splitlines()[0], out.splitlines()[-1]) == (0, "b/one: One", "passed; the next step is b/two")
+    _, out, _ = learn(capsys, "check")
+    assert (out.splitlines()[0], out.splitlines()[-1]) == ("b/two: Two", "passed; the next step is a/one")
+
+
+def test_a_learner_who_returns_to_an_earlier_lesson_continues_there(workspace, capsys, long_course):
+    (workspace / "learn.yaml").write_text(
+        f"course: {long_course}\nsteps:\n"
+        "  b/one: {started: 2026-11-01 10:00:00+00:00, passed: 2026-11-01 10:10:00+00:00}\n"
+        "  a/one: {started: 2026-11-02 10:00:00+00:00, passed: 2026-11-02 10:10:00+00:00}\n"
+    )
+    assert learn(capsys, "show")[1].startswith("## Two")
+    assert "a/two" in (workspace / "learn.yaml").read_text()
+
+
 def test_a_workspace_belongs_to_one_course(workspace, capsys):
     learn(capsys, "show", "--course", "example")
     status, _, err = learn(capsys, "list", "--course", "robot")

@@ -30,7 +30,12 @@ def _add_workspace(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_step(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("step", metavar="STEP", nargs="?", help="the step (default: the first that is not passed)")
+    parser.add_argument(
+        "step",
+        metavar="STEP",
+        nargs="?",
+        help="the step (default: the last one that you began, or the next one if it is passed)",
+    )
 
 
 def _open(arguments: argparse.Namespace) -> Classroom:
