@@ -61,6 +61,18 @@ def test_hints_come_one_by_one_and_the_solution_keeps_what_it_replaces(workspace
     assert "solution: true" in text
 
 
+def test_the_solution_of_a_step_that_asks_for_a_number_is_the_number(workspace, capsys, tmp_path):
+    status, out, _ = learn(capsys, "solution", "mass", "--course", "example")
+    assert (status, out) == (0, "the answer is 12.5 kg\n")
+    assert "solution: true" in (workspace / "learn.yaml").read_text()
+    learn(capsys, "new", str(tmp_path / "mine"))
+    (tmp_path / "mine/01-one-link/solution/mass.answer").unlink()
+    status, _, err = learn(
+        capsys, "solution", "mass", "--course", str(tmp_path / "mine"), "-C", str(tmp_path / "other")
+    )
+    assert (status, "LEARN113" in err) == (1, True)
+
+
 def test_the_result_is_data_in_all_languages(workspace, capsys):
     _, out, _ = learn(capsys, "check", "one-link", "--course", "example", "--json")
     result = json.loads(out)

@@ -126,6 +126,16 @@ async def test_an_answer_is_checked(tmp_path):
             pass
 
 
+async def test_the_solution_of_a_step_that_asks_for_a_number_is_the_number(tmp_path):
+    async with classroom(tmp_path / "ws") as client:
+        await client.send("open_step", address="01-one-link/mass")
+        shown = await client.until("course_step", address="01-one-link/mass")
+        assert (shown["has_solution"], shown["right_answer"]) == (True, None)
+        await client.send("take_solution")
+        assert (await client.until("course_step", address="01-one-link/mass"))["right_answer"] == "12.5"
+    assert "solution: true" in (tmp_path / "ws" / "learn.yaml").read_text()
+
+
 async def test_progress_that_another_program_writes_is_shown(tmp_path):
     async with classroom(tmp_path / "ws") as client:
         await results(client)

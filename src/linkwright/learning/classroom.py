@@ -144,7 +144,9 @@ class Classroom:
         return taken
 
     def take_solution(self, step: Step) -> list[Path]:
-        """Copy the solution of a step into the workspace.
+        """Copy the solution of a step into the workspace, and note that it was taken.
+
+        A step that asks for a number may have no files; `Step.right_answer` is its solution.
 
         Files with another content are copied to the folder `REPLACED_FOLDER` first, in which colcon finds no packages.
 
@@ -155,9 +157,9 @@ class Classroom:
             LinkwrightError: LEARN111, a file cannot be written; LEARN113, the step has no solution.
         """
         pairs = list(_pairs(step.solution, self.workspace))
-        if not pairs:
+        if not pairs and step.right_answer is None:
             raise LinkwrightError(
-                Diagnostic("LEARN113", phrase("the step '{step}' has no files as its solution", step=step.address))
+                Diagnostic("LEARN113", phrase("the step '{step}' has no solution", step=step.address))
             )
         replaced = self.workspace / REPLACED_FOLDER / datetime.now().astimezone().strftime("%Y-%m-%d-%H%M%S")
         written = []

@@ -157,8 +157,15 @@ def configure_solution(parser: argparse.ArgumentParser) -> None:
 
 
 def run_solution(arguments: argparse.Namespace) -> int:
-    """Copy the solution of a step into the workspace."""
+    """Copy the solution of a step into the workspace, and print the number that the step asks for."""
     classroom = _open(arguments)
-    for path in classroom.take_solution(_step(classroom, arguments)):
+    step = _step(classroom, arguments)
+    for path in classroom.take_solution(step):
         print(display_path(path))
+    if step.right_answer is not None:
+        print(localized(phrase("the answer is {answer}", answer=_with_unit(step.right_answer, step.unit))))
     return 0
+
+
+def _with_unit(number: str, unit: str | None) -> str:
+    return number if unit in {None, "1"} else f"{number} {unit}"
