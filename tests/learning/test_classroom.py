@@ -1,6 +1,7 @@
 """A learner's way through a course: files, checks, hints, solutions, and the progress that is kept."""
 
 import json
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -8,7 +9,9 @@ from pathlib import Path
 import pytest
 
 from linkwright.cli import main
-from linkwright.diagnostics import LinkwrightError
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Span, phrase
+from linkwright.graph.parameters.files import read_parameter_file
+from linkwright.learning.checks.findings import describe_finding
 from linkwright.learning.checks.running import check_in_process
 from linkwright.learning.classroom import open_classroom
 from linkwright.learning.course import find_course, load_course
@@ -191,6 +194,41 @@ def test_a_check_that_hangs_or_dies_fails_and_leaves_no_process(tmp_path, capsys
     checks.write_text("1 / 0\n")
     result = check_in_process(step, tmp_path)
     assert "ZeroDivisionError" in str(result.checks[0].message)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("x: 1\n", "robot.yaml, line 1, column 4: "),
+        ("a:\n\tx: 1\n", "robot.yaml, line 2, column 1: "),
+    ],
+)
+def test_a_finding_in_a_file_has_its_place_its_code_and_its_hint(tmp_path, capsys, text, said):
+    folder = tmp_path / "mine"
+    learn(capsys, "new", str(folder))
+    (folder / "01-one-link" / "checks.py").write_text(
+        "from linkwright.graph.parameters.files import read_parameter_file\nfrom linkwright.learning import check\n\n"
+        '@check("mass", en="It can be read.", zh="可以读取。")\n'
+        "def can_be_read(work):\n    read_parameter_file(work.folder / 'robot.yaml')\n"
+    )
+    (tmp_path / "robot.yaml").write_text(text)
+    (result,) = check_in_process(load_course(folder).find_step("mass"), tmp_path).checks
+    with pytest.raises(LinkwrightError) as raised:
+        read_parameter_file(tmp_path / "robot.yaml")
+    finding = raised.value.diagnostics[0]
+    message = str(result.message)
+    assert message.startswith(said)
+    assert f"{finding.message} [{finding.code}]" in message
+    assert finding.hint is None or message.endswith(f"Hint: {finding.hint}")
+    assert re.match(r"robot\.yaml 第 \d+ 行第 \d+ 列：", result.message.get("zh"))
+
+
+def test_a_finding_without_place_names_only_what_is_known():
+    finding = Diagnostic("LEARN102", phrase("there is no '{name}'", name="x"))
+    assert describe_finding(finding) == "there is no 'x' [LEARN102]"
+    assert describe_finding(finding, "a.launch.py") == "a.launch.py: there is no 'x' [LEARN102]"
+    line = finding.with_changes(span=Span("/ws/a.yaml", 3, 1, 3, 1), hint=phrase("list them"))
+    assert describe_finding(line) == "a.yaml, line 3: there is no 'x' [LEARN102]. Hint: list them"
 
 
 def is_running(pid: int) -> bool:

@@ -97,7 +97,7 @@ def test_what_is_missing_is_said(robot, expectation, message):
 
 def test_an_invalid_description_is_said_with_its_line(tmp_path):
     (tmp_path / "r.urdf").write_text(URDF.replace(' length="0.16"', ""))
-    with pytest.raises(NotYet, match=r"r\.urdf, line 3: .*'length'"):
+    with pytest.raises(NotYet, match=r"r\.urdf, line 3, column \d+: .*'length'"):
         Work(tmp_path, lesson=tmp_path).robot("r.urdf")
     (tmp_path / "r.urdf").write_text("<robot>")
     with pytest.raises(NotYet, match=r"r\.urdf, line 1"):

@@ -6,7 +6,8 @@ from collections.abc import Callable, Mapping
 from pathlib import Path, PurePosixPath
 
 from linkwright.descriptions import examine
-from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, Severity, did_you_mean, phrase, quoted_names
+from linkwright.diagnostics import LinkwrightError, Severity, did_you_mean, phrase, quoted_names
+from linkwright.learning.checks.findings import describe_finding
 from linkwright.learning.checks.installed import files_of_setup
 from linkwright.learning.checks.launched import LaunchCheck
 from linkwright.learning.checks.not_yet import NotYet
@@ -119,10 +120,10 @@ class FileFolder:
         try:
             description = examine(path, arguments=arguments, packages=self.finder, overlay=overlay)
         except LinkwrightError as error:
-            raise NotYet(_describe(error.diagnostics[0])) from None
+            raise NotYet(describe_finding(error.diagnostics[0])) from None
         errors = [finding for finding in description.diagnostics if finding.severity is Severity.ERROR]
         if errors or description.robot is None:
-            raise NotYet(_describe(errors[0]))
+            raise NotYet(describe_finding(errors[0]))
         return RobotCheck(description.robot, path)
 
     def expect_no_findings(self, name: str = "") -> None:
@@ -141,7 +142,7 @@ class FileFolder:
             findings = list(error.diagnostics)
         serious = [finding for finding in findings if finding.severity is not Severity.INFO]
         if serious:
-            raise NotYet(_describe(serious[0]))
+            raise NotYet(describe_finding(serious[0]))
 
 
 _XML_SUFFIXES = {".xacro", ".urdf", ".xml"}
@@ -213,16 +214,3 @@ class PackageCheck(FileFolder):
         """
         self.file(f"launch/{name}")
         return LaunchCheck(self.name, name, arguments, self.finder)
-
-
-def _describe(finding: Diagnostic) -> Phrase:
-    """Return a finding as one sentence with its file and line."""
-    if finding.span is None:
-        return phrase("{message} [{code}]", message=finding.message, code=finding.code)
-    return phrase(
-        "{file}, line {line}: {message} [{code}]",
-        file=Path(finding.span.file).name,
-        line=finding.span.line,
-        message=finding.message,
-        code=finding.code,
-    )
