@@ -227,3 +227,13 @@ def test_a_folder_that_cannot_be_created_is_an_error(tmp_path, capsys):
     (tmp_path / "file").touch()
     assert main(["learn", str(tmp_path / "file" / "ws"), "--no-open"]) == 1
     assert "LEARN111" in capsys.readouterr().err
+
+
+def test_a_course_that_other_machines_could_reach_is_refused_with_advice_that_fits(tmp_path, capsys):
+    (tmp_path / "ws").mkdir()
+    words = ["learn", str(tmp_path / "ws"), "--course", "example", "--host", "0.0.0.0", "--no-open"]
+    assert main(words) == 1
+    error = capsys.readouterr().err
+    assert "VIEW104" in error
+    assert "SSH tunnel" in error
+    assert "--terminal" not in error

@@ -89,6 +89,7 @@ def run(arguments: argparse.Namespace, viewer_started: Callable[[Viewer], object
         not arguments.no_open,
         history=arguments.history,
         terminal=terminal_folder(arguments),
+        needs_terminal=arguments.needs_terminal,
         viewer_started=viewer_started,
     )
     with recording(arguments) as writer:
