@@ -140,7 +140,7 @@ export class LessonPanel implements Panel {
     const folder = this.state.course?.folder ?? "";
     const files = (this.state.step?.solution ?? []).map((path) => path.slice(folder.length + 1));
     const copied = [h("p", {}, words.solutionText), h("ul", {}, ...files.map((path) => h("li", {}, path)))];
-    const shown = this.state.step?.unit == null ? [] : [h("p", {}, words.solutionNumber)];
+    const shown = (this.state.step?.unit ?? null) === null ? [] : [h("p", {}, words.solutionNumber)];
     new Dialog(words.solutionTitle, [...(files.length > 0 ? copied : []), ...shown], [
       { label: strings.shell.cancel },
       { label: words.solutionTake, run: () => (this.state.takeSolution(), undefined), main: true },
