@@ -30,11 +30,11 @@ pytestmark = [
 ]
 
 
-@pytest.fixture(scope="module")
-def workspace(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The workspace of a learner at the end of lesson 11."""
+@pytest.fixture(scope="module", params=["11"])
+def workspace(tmp_path_factory: pytest.TempPathFactory, request: pytest.FixtureRequest) -> Path:
+    """The workspace of a learner at the end of lesson 11, or of the lesson that the test names."""
     folder = tmp_path_factory.mktemp("workspace")
-    finish([lesson for lesson in load_course(find_course("robot")).lessons if lesson.id < "12"], folder)
+    finish([lesson for lesson in load_course(find_course("robot")).lessons if lesson.id[:2] <= request.param], folder)
     return folder
 
 
@@ -162,8 +162,13 @@ def test_a_node_that_waits_for_words_notices_ctrl_c(velocities, run):
 
 
 @pytest.mark.extra("sim")
+@pytest.mark.parametrize("workspace", ["11", "12"], indirect=True)
 def test_the_mission_is_told_in_chinese_and_arrives_at_the_red_ball(workspace, processes, run):
-    """The world is ours, and each node of the learner runs under the real rclpy."""
+    """The world is ours, and each node of the learner runs under the real rclpy.
+
+    In lesson 12, the images come with best effort. The nodes start one after another: if they start at the same time,
+    Kilted's Fast DDS sometimes does not connect two of them, logs "Inconsistent TypeObject", and does not try again.
+    """
     us = processes("ours")
     states: list[str] = []
     places: list[tuple[float, float]] = []
@@ -180,17 +185,15 @@ def test_the_mission_is_told_in_chinese_and_arrives_at_the_red_ball(workspace, p
         words, cwd=workspace, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True
     ) as world:
         try:
-            programs = [
-                run(package, name, "use_sim_time:=true")
-                for package, name in (
-                    ("my_senses", "command_listener"),
-                    ("my_senses", "color_finder"),
-                    ("my_mission", "go_to_ball"),
-                )
-            ]
-            us.spin_until(lambda: states and places and commands.get_subscription_count(), SECONDS)
-            us.spin_until(lambda: us.node.count_subscribers("/target") == 2, SECONDS)
-            us.spin_until(lambda: us.node.count_publishers("/camera/image_raw"), SECONDS)
+            programs = []
+            for package, name, is_there in (
+                ("my_senses", "command_listener", commands.get_subscription_count),
+                ("my_senses", "color_finder", lambda: us.node.count_subscribers("/camera/image_raw")),
+                ("my_mission", "go_to_ball", lambda: states and us.node.count_subscribers("/ball")),
+            ):
+                programs.append(run(package, name, "use_sim_time:=true"))
+                us.spin_until(is_there, SECONDS)
+            us.spin_until(lambda: places and us.node.count_publishers("/camera/image_raw"), SECONDS)
 
             told = -inf
 
