@@ -27,7 +27,7 @@ setup(
     maintainer_email='maintainers@linkwright.dev',
     description='Nodes that drive mbot, each small enough to be read in ten minutes.',
     license='Apache-2.0',
-    tests_require=['pytest'],
+    extras_require={'test': ['pytest']},
     entry_points={
         'console_scripts': [
             'drive_square = my_robot_control.drive_square:main',

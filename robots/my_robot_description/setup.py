@@ -38,5 +38,6 @@ setup(
     maintainer_email='maintainers@linkwright.dev',
     description='mbot, a small two-wheeled robot: its models and the launch files that show them.',
     license='Apache-2.0',
+    extras_require={'test': ['pytest']},
     entry_points={'console_scripts': []},
 )

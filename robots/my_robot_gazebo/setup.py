@@ -38,5 +38,6 @@ setup(
     maintainer_email='maintainers@linkwright.dev',
     description='Worlds for mbot, models to put into them, and the launch files that load the robot.',
     license='Apache-2.0',
+    extras_require={'test': ['pytest']},
     entry_points={'console_scripts': []},
 )

@@ -28,5 +28,6 @@ setup(
     maintainer_email='maintainers@linkwright.dev',
     description='mbot goes to poses in the house: parameters for nav2 and a launch file.',
     license='Apache-2.0',
+    extras_require={'test': ['pytest']},
     entry_points={'console_scripts': []},
 )

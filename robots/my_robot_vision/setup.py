@@ -27,7 +27,7 @@ setup(
     maintainer_email='maintainers@linkwright.dev',
     description='mbot sees: what is there, where it is, and how to get to it.',
     license='Apache-2.0',
-    tests_require=['pytest'],
+    extras_require={'test': ['pytest']},
     entry_points={
         'console_scripts': [
             'follow_object = my_robot_vision.follow_object:main',

@@ -27,6 +27,7 @@ setup(
     maintainer_email='maintainers@linkwright.dev',
     description='mbot does what it is told: commands by voice, in English and Chinese.',
     license='Apache-2.0',
+    extras_require={'test': ['pytest']},
     entry_points={
         'console_scripts': [
             'audio_capture = my_robot_voice.audio_capture:main',

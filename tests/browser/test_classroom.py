@@ -20,8 +20,14 @@ pytestmark = [
 ROBOT = find_course("example") / "01-one-link/solution/one-link/robot.urdf"
 CHECKS = "lw.panels.lesson.checks"
 WORDS = {
-    "en": {"next": "Next step", "hint": "Hint 1 of 2", "box": "A box"},
-    "zh": {"next": "下一步", "hint": "提示 1/2", "box": "一个方块"},
+    "en": {
+        "next": "Next step",
+        "hint": "Hint 1 of 2",
+        "box": "A box",
+        "solution": "Solution",
+        "right": "The answer is 12.5 kg.",
+    },
+    "zh": {"next": "下一步", "hint": "提示 1/2", "box": "一个方块", "solution": "答案", "right": "答案是 12.5 kg。"},
 }
 
 
@@ -65,6 +71,9 @@ def test_a_learner_walks_through_two_steps(start, open_page, workspace, language
     until(page, "lw.ready && lw.robots?.length !== 0")
     page.get_by_role("button", name=words["next"]).last.click()
     until(page, "lw.panels.lesson.step === '01-one-link/mass'")
+    page.locator(".lesson-foot button", has_text=words["solution"]).click()
+    page.locator("dialog button", has_text=words["solution"]).click()
+    page.wait_for_selector(f".lesson-hint:has-text('{words['right']}')")
     page.locator(".lesson-answer").fill("12.5")
     page.locator(".lesson-answer").press("Enter")
     until(page, is_passed("mass"))

@@ -208,6 +208,12 @@ def test_the_sheet_of_keys_opens_and_closes(scene):
     sheet = page.get_by_role("dialog", name="Keyboard shortcuts")
     sheet.wait_for()
     assert "2D Goal Pose" in sheet.inner_text()
+    assert sheet.locator("section", has_text="Terminal").locator("kbd").all_inner_texts() == [
+        "Ctrl+Shift+C",
+        "Ctrl+Shift+V",
+        "Ctrl+Shift+M",
+        "← →",
+    ]
     page.keyboard.press("Escape")
     sheet.wait_for(state="detached")
     page.keyboard.press("F11")

@@ -55,3 +55,12 @@ def test_a_value_that_is_none_is_a_mistake_in_use(file, words):
 def test_what_ends_it_is_the_exit_status(file, monkeypatch):
     monkeypatch.setattr("linkwright.hosting.simulated.run_simulated", lambda *_, **__: 130)
     assert main(["drive", "mbot.urdf", "--headless"]) == 130
+
+
+@pytest.mark.parametrize("command", ["drive", "sim"])
+def test_a_terminal_without_a_page_is_refused(file, capsys, command):
+    words = ["drive", "mbot.urdf"] if command == "drive" else ["sim", "playground", "mbot.urdf"]
+    assert main([*words, "--headless", "--terminal"]) == 1
+    error = capsys.readouterr().err
+    assert "CLI334" in error
+    assert "leave out one of the two options" in error

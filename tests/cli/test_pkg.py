@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 import subprocess
 import sys
 import warnings
@@ -19,6 +20,7 @@ from linkwright.packages.creation import package_templates
 from linkwright.packages.creation.licenses import known_licenses, license_text
 from linkwright.packages.creation.request import BUILD_TYPES, Maintainer, PackageRequest
 from linkwright.packages.naming import check_package_name, is_email
+from tests.places import REPOSITORY
 from tests.robots.workspaces import colcon_build, sourced
 
 ADA = ("--maintainer-name", "Ada", "--maintainer-email", "ada@example.org")
@@ -342,3 +344,27 @@ def test_colcon_builds_a_new_package(options: tuple[str, ...], tmp_path: Path) -
     assert sourced(tmp_path, "AMENT_PREFIX_PATH") == str(prefix)
     assert (prefix / "share" / "my_robot" / "package.xml").is_file()
     assert (prefix / "lib" / "my_robot" / "hello").is_file()
+
+
+def _setup_arguments(text: str) -> dict[str, str]:
+    calls = [node for node in ast.walk(ast.parse(text)) if isinstance(node, ast.Call)]
+    (call,) = [call for call in calls if ast.unparse(call.func) == "setup"]
+    return {str(keyword.arg): ast.unparse(keyword.value) for keyword in call.keywords}
+
+
+def test_packages_of_the_course_the_robots_and_the_tutorials_declare_their_tests_as_new_packages_do() -> None:
+    request = PackageRequest(name="p", maintainer=Maintainer("Ada", "ada@example.org"), year=2026)
+    expected = _setup_arguments(package_templates.setup_py(request))
+    texts = {path: path.read_text(encoding="utf-8") for top in ("courses", "robots") for path in _setup_files(top)}
+    for page in sorted((REPOSITORY / "docs").rglob("tutorial*.md")):
+        blocks = re.findall(r"```python[^\n]*\n(.*?)```", page.read_text(encoding="utf-8"), re.DOTALL)
+        texts.update({page / str(index): text for index, text in enumerate(blocks) if "\nsetup(\n" in text})
+    assert len(texts) > 40
+    for path, text in texts.items():
+        arguments = _setup_arguments(text)
+        assert "tests_require" not in arguments, path
+        assert arguments["extras_require"] == expected["extras_require"], path
+
+
+def _setup_files(top: str) -> list[Path]:
+    return sorted((REPOSITORY / top).rglob("setup.py"))

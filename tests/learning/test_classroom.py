@@ -1,6 +1,7 @@
 """A learner's way through a course: files, checks, hints, solutions, and the progress that is kept."""
 
 import json
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -8,7 +9,9 @@ from pathlib import Path
 import pytest
 
 from linkwright.cli import main
-from linkwright.diagnostics import LinkwrightError
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Span, phrase
+from linkwright.graph.parameters.files import read_parameter_file
+from linkwright.learning.checks.findings import describe_finding
 from linkwright.learning.checks.running import check_in_process
 from linkwright.learning.classroom import open_classroom
 from linkwright.learning.course import find_course, load_course
@@ -61,6 +64,18 @@ def test_hints_come_one_by_one_and_the_solution_keeps_what_it_replaces(workspace
     assert "solution: true" in text
 
 
+def test_the_solution_of_a_step_that_asks_for_a_number_is_the_number(workspace, capsys, tmp_path):
+    status, out, _ = learn(capsys, "solution", "mass", "--course", "example")
+    assert (status, out) == (0, "the answer is 12.5 kg\n")
+    assert "solution: true" in (workspace / "learn.yaml").read_text()
+    learn(capsys, "new", str(tmp_path / "mine"))
+    (tmp_path / "mine/01-one-link/solution/mass.answer").unlink()
+    status, _, err = learn(
+        capsys, "solution", "mass", "--course", str(tmp_path / "mine"), "-C", str(tmp_path / "other")
+    )
+    assert (status, "LEARN113" in err) == (1, True)
+
+
 def test_the_result_is_data_in_all_languages(workspace, capsys):
     _, out, _ = learn(capsys, "check", "one-link", "--course", "example", "--json")
     result = json.loads(out)
@@ -76,6 +91,38 @@ def test_a_broken_progress_file_is_refused_and_kept(workspace, capsys):
         assert status == 1
         assert "LEARN110" in err
         assert (workspace / "learn.yaml").read_text() == text
+
+
+@pytest.fixture
+def long_course(tmp_path):
+    """A course with the steps a/one, a/two, b/one and b/two, whose checks all pass."""
+    folder = tmp_path / "long"
+    for lesson in ("a", "b"):
+        (folder / lesson).mkdir(parents=True)
+        (folder / lesson / "lesson.toml").write_text('title.en = "L"')
+        (folder / lesson / "lesson.en.md").write_text("# L\n\n## One {#one}\n\n1\n\n## Two {#two}\n\n2\n")
+        checks = [f'@check("{step}", en="It is so.")\ndef {step}(work):\n    pass\n' for step in ("one", "two")]
+        (folder / lesson / "checks.py").write_text("from linkwright.learning import check\n\n" + "\n".join(checks))
+    (folder / "course.toml").write_text('lessons = ["a", "b"]\ntitle.en = "C"')
+    return str(folder)
+
+
+def test_a_course_continues_after_the_step_that_was_begun_or_passed_last(workspace, capsys, long_course):
+    learn(capsys, "show", "b/one", "--course", long_course)
+    status, out, _ = learn(capsys, "check")
+    assert (status, out.splitlines()[0], out.splitlines()[-1]) == (0, "b/one: One", "passed; the next step is b/two")
+    _, out, _ = learn(capsys, "check")
+    assert (out.splitlines()[0], out.splitlines()[-1]) == ("b/two: Two", "passed; the next step is a/one")
+
+
+def test_a_learner_who_returns_to_an_earlier_lesson_continues_there(workspace, capsys, long_course):
+    (workspace / "learn.yaml").write_text(
+        f"course: {long_course}\nsteps:\n"
+        "  b/one: {started: 2026-11-01 10:00:00+00:00, passed: 2026-11-01 10:10:00+00:00}\n"
+        "  a/one: {started: 2026-11-02 10:00:00+00:00, passed: 2026-11-02 10:10:00+00:00}\n"
+    )
+    assert learn(capsys, "show")[1].startswith("## Two")
+    assert "a/two" in (workspace / "learn.yaml").read_text()
 
 
 def test_a_workspace_belongs_to_one_course(workspace, capsys):
@@ -147,6 +194,41 @@ def test_a_check_that_hangs_or_dies_fails_and_leaves_no_process(tmp_path, capsys
     checks.write_text("1 / 0\n")
     result = check_in_process(step, tmp_path)
     assert "ZeroDivisionError" in str(result.checks[0].message)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("x: 1\n", "robot.yaml, line 1, column 4: "),
+        ("a:\n\tx: 1\n", "robot.yaml, line 2, column 1: "),
+    ],
+)
+def test_a_finding_in_a_file_has_its_place_its_code_and_its_hint(tmp_path, capsys, text, said):
+    folder = tmp_path / "mine"
+    learn(capsys, "new", str(folder))
+    (folder / "01-one-link" / "checks.py").write_text(
+        "from linkwright.graph.parameters.files import read_parameter_file\nfrom linkwright.learning import check\n\n"
+        '@check("mass", en="It can be read.", zh="可以读取。")\n'
+        "def can_be_read(work):\n    read_parameter_file(work.folder / 'robot.yaml')\n"
+    )
+    (tmp_path / "robot.yaml").write_text(text)
+    (result,) = check_in_process(load_course(folder).find_step("mass"), tmp_path).checks
+    with pytest.raises(LinkwrightError) as raised:
+        read_parameter_file(tmp_path / "robot.yaml")
+    finding = raised.value.diagnostics[0]
+    message = str(result.message)
+    assert message.startswith(said)
+    assert f"{finding.message} [{finding.code}]" in message
+    assert finding.hint is None or message.endswith(f"Hint: {finding.hint}")
+    assert re.match(r"robot\.yaml 第 \d+ 行第 \d+ 列：", result.message.get("zh"))
+
+
+def test_a_finding_without_place_names_only_what_is_known():
+    finding = Diagnostic("LEARN102", phrase("there is no '{name}'", name="x"))
+    assert describe_finding(finding) == "there is no 'x' [LEARN102]"
+    assert describe_finding(finding, "a.launch.py") == "a.launch.py: there is no 'x' [LEARN102]"
+    line = finding.with_changes(span=Span("/ws/a.yaml", 3, 1, 3, 1), hint=phrase("list them"))
+    assert describe_finding(line) == "a.yaml, line 3: there is no 'x' [LEARN102]. Hint: list them"
 
 
 def is_running(pid: int) -> bool:

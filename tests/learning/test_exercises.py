@@ -3,6 +3,7 @@
 import json
 from functools import cache
 from statistics import mean
+from types import SimpleNamespace
 
 import pytest
 
@@ -10,7 +11,7 @@ from linkwright.cli.entry import main
 from linkwright.diagnostics import LinkwrightError
 from linkwright.learning.judging.exercise import Figure, exercise_names, find_exercise, load_exercise
 from linkwright.learning.judging.running import RunResult, judge_program
-from linkwright.learning.judging.world import write_world
+from linkwright.learning.judging.world import create_judge, write_world
 from linkwright.learning.local_text import LocalText
 from linkwright.testing import SteppedSimulation
 
@@ -148,3 +149,16 @@ def test_the_points_between_figures_are_linear():
     assert [figure.points(seconds) for seconds in (120.0, 100.0, 80.0, 60.0, 45.0, 30.0, 10.0)] == [
         *(0.0, 0.0, 25.0, 50.0, 75.0, 100.0, 100.0)
     ]
+
+
+def test_the_progress_of_a_localization_grows_with_the_estimate(monkeypatch):
+    judge = create_judge(find_exercise("localize"), 0)
+    monkeypatch.setattr(judge, "pose", lambda: (1.0, 1.0, 0.0))
+    judge.start()
+    seen = []
+    for x in (None, 3.0, 1.5, 1.0):
+        if x is not None:
+            judge.on_message("/estimate", SimpleNamespace(pose=SimpleNamespace(position=SimpleNamespace(x=x, y=1.0))))
+        judge.update()
+        seen.append((judge.figure, round(judge.progress, 3)))
+    assert seen == [(3.0, 0.0), (2.0, 0.333), (0.5, 0.833), (0.0, 1.0)]

@@ -126,6 +126,16 @@ async def test_an_answer_is_checked(tmp_path):
             pass
 
 
+async def test_the_solution_of_a_step_that_asks_for_a_number_is_the_number(tmp_path):
+    async with classroom(tmp_path / "ws") as client:
+        await client.send("open_step", address="01-one-link/mass")
+        shown = await client.until("course_step", address="01-one-link/mass")
+        assert (shown["has_solution"], shown["right_answer"]) == (True, None)
+        await client.send("take_solution")
+        assert (await client.until("course_step", address="01-one-link/mass"))["right_answer"] == "12.5"
+    assert "solution: true" in (tmp_path / "ws" / "learn.yaml").read_text()
+
+
 async def test_progress_that_another_program_writes_is_shown(tmp_path):
     async with classroom(tmp_path / "ws") as client:
         await results(client)
@@ -217,3 +227,13 @@ def test_a_folder_that_cannot_be_created_is_an_error(tmp_path, capsys):
     (tmp_path / "file").touch()
     assert main(["learn", str(tmp_path / "file" / "ws"), "--no-open"]) == 1
     assert "LEARN111" in capsys.readouterr().err
+
+
+def test_a_course_that_other_machines_could_reach_is_refused_with_advice_that_fits(tmp_path, capsys):
+    (tmp_path / "ws").mkdir()
+    words = ["learn", str(tmp_path / "ws"), "--course", "example", "--host", "0.0.0.0", "--no-open"]
+    assert main(words) == 1
+    error = capsys.readouterr().err
+    assert "VIEW104" in error
+    assert "SSH tunnel" in error
+    assert "--terminal" not in error

@@ -97,7 +97,7 @@ def test_what_is_missing_is_said(robot, expectation, message):
 
 def test_an_invalid_description_is_said_with_its_line(tmp_path):
     (tmp_path / "r.urdf").write_text(URDF.replace(' length="0.16"', ""))
-    with pytest.raises(NotYet, match=r"r\.urdf, line 3: .*'length'"):
+    with pytest.raises(NotYet, match=r"r\.urdf, line 3, column \d+: .*'length'"):
         Work(tmp_path, lesson=tmp_path).robot("r.urdf")
     (tmp_path / "r.urdf").write_text("<robot>")
     with pytest.raises(NotYet, match=r"r\.urdf, line 1"):
@@ -124,6 +124,47 @@ def test_a_package_is_found_by_its_manifest(tmp_path):
         work.package("mbot")
     (folder / "package.xml").write_text("<package><name>mbot</name></package>")
     assert work.package("mbot").folder == folder
+
+
+MANIFEST = """<?xml version="1.0"?>
+<package format="3">
+  <name>p</name>
+  <version>0.0.0</version>
+  <description>A robot</description>
+  <maintainer email="a@b.org">A</maintainer>
+  <license>MIT</license>
+  <buildtool_depend>ament_cmake</buildtool_depend>
+  <export>
+    <build_type>ament_cmake</build_type>
+  </export>
+</package>
+"""
+CMAKE = """cmake_minimum_required(VERSION 3.8)
+project(p)
+find_package(ament_cmake REQUIRED)
+install(DIRECTORY launch urdf DESTINATION share/${PROJECT_NAME})
+ament_package()
+"""
+
+
+def test_a_dependency_that_the_manifest_lacks_is_a_finding_and_advice_is_not(tmp_path):
+    folder = tmp_path / "src" / "p"
+    (folder / "launch").mkdir(parents=True)
+    (folder / "urdf").mkdir()
+    (folder / "package.xml").write_text(MANIFEST)
+    (folder / "CMakeLists.txt").write_text(CMAKE)
+    (folder / "urdf" / "r.xacro").write_text(
+        '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">\n'
+        '  <link name="base_link"><weight>3</weight></link>\n</robot>\n'
+    )
+    package = Work(tmp_path, lesson=tmp_path).package("p")
+    package.expect_no_findings()
+    (folder / "launch" / "a.launch.py").write_text(
+        "from ament_index_python.packages import get_package_share_directory\n\n"
+        "def generate_launch_description():\n    get_package_share_directory('rviz2')\n"
+    )
+    with pytest.raises(NotYet, match=r"package\.xml, line 2, column 1: .*'rviz2' \[LW848\]\. Hint: add"):
+        package.expect_no_findings()
 
 
 def test_a_number_is_compared_and_typical_slips_have_their_message(tmp_path):

@@ -7,7 +7,6 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable
 from math import inf
 from pathlib import Path
 
@@ -31,11 +30,11 @@ pytestmark = [
 ]
 
 
-@pytest.fixture(scope="module")
-def workspace(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The workspace of a learner at the end of lesson 11."""
+@pytest.fixture(scope="module", params=["11"])
+def workspace(tmp_path_factory: pytest.TempPathFactory, request: pytest.FixtureRequest) -> Path:
+    """The workspace of a learner at the end of lesson 11, or of the lesson that the test names."""
     folder = tmp_path_factory.mktemp("workspace")
-    finish([lesson for lesson in load_course(find_course("robot")).lessons if lesson.id < "12"], folder)
+    finish([lesson for lesson in load_course(find_course("robot")).lessons if lesson.id[:2] <= request.param], folder)
     return folder
 
 
@@ -77,24 +76,14 @@ def velocities(processes):
     return us, heard
 
 
-def interrupt(process: subprocess.Popen[str], publish: Callable[[], object] = lambda: None) -> str:
-    """End a program as Ctrl-C does, and return its errors.
+def interrupt(process: subprocess.Popen[str]) -> str:
+    """End a program as Ctrl-C does, while nobody publishes to it, and return its errors.
 
-    A real node without a timer notices Ctrl-C only when its next message comes, if rclpy leaves signals to Python. In
-    the middle of taking a message, rclpy turns it into a RuntimeError.
-
-    Args:
-        process: the program.
-        publish: publishes a message to it.
+    In the middle of taking a message, rclpy turns Ctrl-C into a RuntimeError.
     """
     time.sleep(0.3)  # it has taken all messages
     process.send_signal(signal.SIGINT)
-    until = time.monotonic() + SECONDS
-    while process.poll() is None:
-        assert time.monotonic() < until, "it does not end"
-        publish()
-        time.sleep(0.1)
-    return process.communicate()[1]
+    return process.communicate(timeout=SECONDS)[1]
 
 
 def test_first_move_drives_by_its_parameters_and_stops_the_robot_at_ctrl_c(velocities, run):
@@ -160,12 +149,27 @@ def test_nodes_drive_by_what_they_measure(velocities, run, executable, topic, dr
     us.spin_until(lambda: tell(drives, lambda speed: speed > 0.0), SECONDS)
     if does_not_drive is not None:
         us.spin_until(lambda: tell(does_not_drive, lambda speed: speed == 0.0), SECONDS)
-    assert "Traceback" not in interrupt(program, lambda: publisher.publish(drives))
+    assert "Traceback" not in interrupt(program)
+
+
+def test_a_node_that_waits_for_words_notices_ctrl_c(velocities, run):
+    us, heard = velocities
+    publisher = us.node.create_publisher(String, "/voice/text", 10)
+    program = run("my_voice", "word_driver")
+    us.spin_until(lambda: publisher.get_subscription_count() and us.node.count_publishers("/cmd_vel"), SECONDS)
+    assert "Traceback" not in interrupt(program)
+    us.spin_until(lambda: heard and heard[-1] == (0.0, 0.0), SECONDS)
 
 
 @pytest.mark.extra("sim")
+@pytest.mark.parametrize("workspace", ["11", "12"], indirect=True)
 def test_the_mission_is_told_in_chinese_and_arrives_at_the_red_ball(workspace, processes, run):
-    """The world is ours, and each node of the learner runs under the real rclpy."""
+    """The world is ours, and each node of the learner runs under the real rclpy.
+
+    In lesson 12, the images come with best effort. Kilted's Fast DDS sometimes does not connect two real nodes, logs
+    "Inconsistent TypeObject", and does not try again. When the nodes started at the same time, 3 of 26 runs with
+    Kilted failed; now that they start one after another, 1 of 20, whose reason was not looked at.
+    """
     us = processes("ours")
     states: list[str] = []
     places: list[tuple[float, float]] = []
@@ -182,17 +186,15 @@ def test_the_mission_is_told_in_chinese_and_arrives_at_the_red_ball(workspace, p
         words, cwd=workspace, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True
     ) as world:
         try:
-            programs = [
-                run(package, name, "use_sim_time:=true")
-                for package, name in (
-                    ("my_senses", "command_listener"),
-                    ("my_senses", "color_finder"),
-                    ("my_mission", "go_to_ball"),
-                )
-            ]
-            us.spin_until(lambda: states and places and commands.get_subscription_count(), SECONDS)
-            us.spin_until(lambda: us.node.count_subscribers("/target") == 2, SECONDS)
-            us.spin_until(lambda: us.node.count_publishers("/camera/image_raw"), SECONDS)
+            programs = []
+            for package, name, is_there in (
+                ("my_senses", "command_listener", commands.get_subscription_count),
+                ("my_senses", "color_finder", lambda: us.node.count_subscribers("/camera/image_raw")),
+                ("my_mission", "go_to_ball", lambda: states and us.node.count_subscribers("/ball")),
+            ):
+                programs.append(run(package, name, "use_sim_time:=true"))
+                us.spin_until(is_there, SECONDS)
+            us.spin_until(lambda: places and us.node.count_publishers("/camera/image_raw"), SECONDS)
 
             told = -inf
 

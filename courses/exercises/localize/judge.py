@@ -35,6 +35,7 @@ class Localize(Judge):
         if self.time > JUDGED_FROM:
             self.errors.append(error)
         self.figure = sum(self.errors) / len(self.errors) if self.errors else error
+        self.progress = 1.0 - self.figure / UNKNOWN
 
     def on_message(self, topic, message):
         self.estimate = message.pose.position.x, message.pose.position.y

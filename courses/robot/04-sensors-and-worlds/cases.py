@@ -110,6 +110,12 @@ CASES = [
         Edit(SETUP, "        ('share/' + package_name + '/worlds', glob('worlds/*')),\n", ""),
         says="yard.world",
     ),
+    wrong(
+        "load",
+        "a forgotten dependency",
+        Edit(WORLDS + "package.xml", "  <exec_depend>gazebo_ros</exec_depend>\n", ""),
+        says="package.xml does not depend: 'gazebo_ros' [LW848]",
+    ),
     wrong("wall", "the middle", says="middle of the wall", answer="3"),
     right("wall", "with noise", answer="2.91"),
 ]

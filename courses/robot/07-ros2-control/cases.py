@@ -80,7 +80,7 @@ CASES = [
         "controllers",
         "a tab",
         Edit(CONTROLLERS, "    wheel_radius", "\twheel_radius"),
-        says="controllers.yaml, line 14: ",
+        says="controllers.yaml, line 14, column 1: ",
     ),
     wrong(
         "controllers",

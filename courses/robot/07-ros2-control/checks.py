@@ -2,9 +2,8 @@ import math
 
 from linkwright import load
 from linkwright.control.hardware.description import hardware_from_robot
-from linkwright.diagnostics import LinkwrightError
 from linkwright.graph.parameters.files import read_parameter_file
-from linkwright.learning import LocalText, NotYet, check
+from linkwright.learning import NotYet, check
 from linkwright.xmltree import parse_file
 
 XACRO, CONTROLLERS = "urdf/mbot_control.xacro", "config/controllers.yaml"
@@ -83,15 +82,7 @@ def argument_selects_hardware(work):
 
 def parameters(work, node):
     """Return the parameters that ROS 2 would read for a node from the learner's file."""
-    try:
-        found = read_parameter_file(package(work).file(CONTROLLERS)).for_node("/" + node)
-    except LinkwrightError as error:
-        mistake = error.diagnostics[0]
-        texts, line = LocalText.from_phrase(mistake.message), mistake.span.line if mistake.span else 1
-        raise NotYet(
-            en=f"controllers.yaml, line {line}: {texts.get('en')}.",
-            zh=f"controllers.yaml 第 {line} 行：{texts.get('zh')}。",
-        ) from None
+    found = read_parameter_file(package(work).file(CONTROLLERS)).for_node("/" + node)
     if not found:
         raise NotYet(
             en=f"controllers.yaml has no {node}: with ros__parameters: below it.",

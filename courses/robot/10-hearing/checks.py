@@ -2,7 +2,6 @@ import math
 
 import numpy as np
 
-from linkwright.diagnostics import LinkwrightError, phrase
 from linkwright.learning import NotYet, check
 from linkwright.messages import get_message
 from linkwright.testing import SteppedGraph
@@ -276,20 +275,7 @@ def understand(work, text):
     """Return the action for a text in the learner's file of commands, and its values; None if there is none."""
     from linkwright.speech.commands.command_file import read_command_file
 
-    try:
-        match = read_command_file(work.package("my_voice").file("config/commands.yaml")).match_command(text)
-    except LinkwrightError as error:
-        finding = error.diagnostics[0]
-        line = finding.span.line if finding.span else 1
-        raise NotYet(
-            phrase(
-                "{file}, line {line}: {message} [{code}]",
-                file="commands.yaml",
-                line=line,
-                message=finding.message,
-                code=finding.code,
-            )
-        ) from None
+    match = read_command_file(work.package("my_voice").file("config/commands.yaml")).match_command(text)
     return None if match is None else (match.command.action, match.values)
 
 

@@ -233,6 +233,12 @@ CASES = [
         Edit(MANIFEST, "  <exec_depend>usb_cam</exec_depend>\n", ""),
         says="does not list 'usb_cam'",
     ),
+    wrong(
+        "install",
+        "a forgotten dependency of another package",
+        Edit("src/my_mission/package.xml", "  <exec_depend>my_senses</exec_depend>\n", ""),
+        says="package.xml does not depend: 'my_senses' [LW848]",
+    ),
     wrong("domain", "one port a domain", says="250 ports", answer="7442"),
     wrong("domain", "without the first port", says="Add the 7400", answer="10500"),
 ]

@@ -33,8 +33,10 @@ export interface CourseStep {
   hint_count: number;
   files: string[];
   solution: string[];
+  has_solution: boolean;
   unit: string | null;
   answer: string | null;
+  right_answer: string | null;
   type: "course_step";
 }
 

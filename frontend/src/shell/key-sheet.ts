@@ -2,6 +2,7 @@ import { button, h } from "../dom";
 import { icon } from "../icons";
 import { WORLD_KEYS } from "../panels/modelling/world-commands";
 import { FIT_KEY, toolName } from "../panels/over-scene/toolbar";
+import { TERMINAL_KEYS, terminalKeyText } from "../panels/terminal/terminal-keys";
 import { TALK_KEY } from "../panels/voice/talk-button";
 import { TOOLS } from "../scene/tools/catalog";
 import type { ToolsState } from "../state/tools";
@@ -43,7 +44,7 @@ export class KeySheet {
 
   private sections(): (readonly [title: string, rows: readonly Row[], note?: string])[] {
     const words = strings.keys;
-    const { shell, displays, modelling } = strings;
+    const { shell, displays, modelling, terminal } = strings;
     const tools = this.tools.tools.flatMap((tool): Row[] => {
       const entry = TOOLS.get(tool.cls);
       return entry ? [[entry.key.toUpperCase(), toolName(tool)]] : [];
@@ -90,6 +91,15 @@ export class KeySheet {
           [keyText(WORLD_KEYS.group), modelling.group],
           [keyText(WORLD_KEYS.ungroup), modelling.ungroup],
           ["Esc", modelling.deselect],
+        ],
+      ],
+      [
+        terminal.panel,
+        [
+          [terminalKeyText(TERMINAL_KEYS.copy), terminal.copy],
+          [terminalKeyText(TERMINAL_KEYS.paste), terminal.paste],
+          [terminalKeyText(TERMINAL_KEYS.leave), terminal.leave],
+          ["← →", terminal.tabKeys],
         ],
       ],
       [

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from linkwright.cli.exit_status import print_message
 from linkwright.cli.model_arguments import add_model
-from linkwright.cli.simulation_options import add_simulation_options, recording
+from linkwright.cli.simulation_options import add_simulation_options, recording, refuse_terminal_without_page
 from linkwright.cli.view import add_viewer_options, terminal_folder
 from linkwright.diagnostics import (
     Phrase,
@@ -80,6 +80,7 @@ def run(arguments: argparse.Namespace) -> int:
     from linkwright.simulation.library import load_mujoco
     from linkwright.simulation.server.worlds import load_world
 
+    refuse_terminal_without_page(arguments)
     path = Path(arguments.file).absolute()
     finder = PackageFinder(start=[path.parent, Path.cwd()])
     values = parse_assignments(arguments.values)

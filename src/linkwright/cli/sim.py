@@ -15,6 +15,7 @@ from linkwright.cli.simulation_options import (
     load_model,
     positive,
     recording,
+    refuse_terminal_without_page,
 )
 from linkwright.cli.view import add_viewer_options, terminal_folder
 from linkwright.process.assignments import parse_assignments
@@ -57,6 +58,7 @@ def run(arguments: argparse.Namespace, viewer_started: Callable[[Viewer], object
     from linkwright.simulation.library import load_mujoco
     from linkwright.simulation.server.worlds import load_world
 
+    refuse_terminal_without_page(arguments)
     load_mujoco()
     load_world(arguments.world)  # report a missing world before the simulation starts to log
     path = Path(arguments.robot or arguments.world).absolute()
@@ -87,6 +89,7 @@ def run(arguments: argparse.Namespace, viewer_started: Callable[[Viewer], object
         not arguments.no_open,
         history=arguments.history,
         terminal=terminal_folder(arguments),
+        needs_terminal=arguments.needs_terminal,
         viewer_started=viewer_started,
     )
     with recording(arguments) as writer:

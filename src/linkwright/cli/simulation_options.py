@@ -8,7 +8,7 @@ from contextlib import nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from linkwright.diagnostics import Diagnostic, phrase, print_diagnostics
+from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase, print_diagnostics
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -39,6 +39,17 @@ def add_simulation_options(parser: argparse.ArgumentParser) -> None:
         metavar="PATH",
         help="record all topics with simulated time, as bag record -a does, into a folder or a file NAME.mcap",
     )
+
+
+def refuse_terminal_without_page(arguments: argparse.Namespace) -> None:
+    """Refuse ``--terminal`` beside ``--headless``.
+
+    Raises:
+        LinkwrightError: CLI334, both are given.
+    """
+    if arguments.headless and arguments.terminal:
+        message = phrase("`--terminal` opens a shell in the page, but `--headless` runs without a page")
+        raise LinkwrightError(Diagnostic("CLI334", message, hint=phrase("leave out one of the two options")))
 
 
 def positive(text: str) -> float:

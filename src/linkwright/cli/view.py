@@ -63,6 +63,7 @@ def add_viewer_options(parser: argparse.ArgumentParser, *, terminal: bool = True
         help="memory for the messages of the last minutes, which the page can replay, such as 1GB; 0 "
         "disables replay (default: 256MB)",
     )
+    parser.set_defaults(needs_terminal=not terminal)
     if terminal:
         group.add_argument(
             "--terminal",

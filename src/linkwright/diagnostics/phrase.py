@@ -170,6 +170,29 @@ class _Known(Phrase):
         return wording.pgettext(self.context, self.template) if self.template else ""
 
 
+class _Foreign(_Known):
+    """A text of another program, which the catalogue contains as it is, or with ``'…'`` for each quoted part."""
+
+    __slots__ = ()
+
+    def translated_text(self, wording: Wording) -> str:
+        text = super().translated_text(wording)
+        parts = self.template.split("'")
+        if text != self.template or len(parts) % 2 == 0:
+            return text
+        quoted_parts = parts[1::2]
+        parts[1::2] = [_ELIDED] * len(quoted_parts)
+        pattern = "'".join(parts)
+        translation = wording.pgettext(self.context, pattern)
+        if translation == pattern or translation.count(_ELIDED) != len(quoted_parts):
+            return text
+        ends = translation.split(_ELIDED)
+        return ends[0] + "".join(part + end for part, end in zip(quoted_parts, ends[1:], strict=True))
+
+
+_ELIDED = "…"
+
+
 class _Joined(Phrase):
     """Several texts, joined with separators."""
 
@@ -236,10 +259,10 @@ def title_of_page(text: str) -> Phrase:
 def foreign(words: object) -> Phrase:
     """Return a phrase for a text from another program, such as an exception's.
 
-    The text is translated if a catalogue contains it.
+    The text is translated if a catalogue contains it, as it is or with ``'…'`` for each part in quotation marks.
     """
     text = str(words)
-    return text if isinstance(text, Phrase) else _Known(text, FOREIGN)
+    return text if isinstance(text, Phrase) else _Foreign(text, FOREIGN)
 
 
 def quoted(name: object) -> Phrase:

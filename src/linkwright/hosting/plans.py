@@ -142,6 +142,7 @@ class HostOptions:
         rviz: the path of the viewer's configuration file; None for the default configuration.
         follows_editor: whether a text editor is connected, see `linkwright.hosting.text_editor`.
         terminal: the folder in which pages of this machine can run shells; None to let no page run one.
+        needs_terminal: whether the command always has a terminal, so that there is no option to leave out.
         viewer_started: called with each viewer after its start; None if no call is needed.
     """
 
@@ -154,6 +155,7 @@ class HostOptions:
     rviz: Path | None = None
     follows_editor: bool = False
     terminal: Path | None = None
+    needs_terminal: bool = False
     viewer_started: Callable[[Viewer], object] | None = None
 
 

@@ -85,7 +85,12 @@ class ViewerHost:
         from linkwright.page.page_server import PageServer
 
         options = self._session.options
-        return PageServer(options.host, self._port_for(plan), only_loopback=options.terminal is not None)
+        return PageServer(
+            options.host,
+            self._port_for(plan),
+            only_loopback=options.terminal is not None,
+            needs_terminal=options.needs_terminal,
+        )
 
     def _announce(self, server: PageServer) -> None:
         self._session.log.announce(f"Viewer: {server.url}")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import shutil
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -39,9 +40,24 @@ class Classroom:
 
     @property
     def current_step(self) -> Step:
-        """The first step that is not passed, or the last step."""
+        """The step at which the learner continues.
+
+        It is the step that was begun or passed last, or the first one after it that is not passed. If there is none
+        after it, it is the first step of the course that is not passed, or the last step.
+        """
         steps = self.course.steps
-        return next((step for step in steps if self.progress.step(step.address).passed is None), steps[-1])
+        last = max(range(len(steps)), key=lambda index: (self._last_moment(steps[index]), index))
+        begin = last if self._last_moment(steps[last]) > -math.inf else 0
+        return next((step for step in (*steps[begin:], *steps) if not self._is_passed(step)), steps[-1])
+
+    def _is_passed(self, step: Step) -> bool:
+        return self.progress.step(step.address).passed is not None
+
+    def _last_moment(self, step: Step) -> float:
+        """Return when a step was begun or passed, in seconds since the epoch; minus infinity if it never was."""
+        noted = self.progress.step(step.address)
+        moments = [moment.timestamp() for moment in (noted.started, noted.passed) if moment is not None]
+        return max(moments, default=-math.inf)
 
     def open_step(self, step: Step) -> list[Path]:
         """Open a step: note the time, and copy the files with which its lesson begins.
@@ -128,7 +144,9 @@ class Classroom:
         return taken
 
     def take_solution(self, step: Step) -> list[Path]:
-        """Copy the solution of a step into the workspace.
+        """Copy the solution of a step into the workspace, and note that it was taken.
+
+        A step that asks for a number may have no files; `Step.right_answer` is its solution.
 
         Files with another content are copied to the folder `REPLACED_FOLDER` first, in which colcon finds no packages.
 
@@ -139,9 +157,9 @@ class Classroom:
             LinkwrightError: LEARN111, a file cannot be written; LEARN113, the step has no solution.
         """
         pairs = list(_pairs(step.solution, self.workspace))
-        if not pairs:
+        if not pairs and step.right_answer is None:
             raise LinkwrightError(
-                Diagnostic("LEARN113", phrase("the step '{step}' has no files as its solution", step=step.address))
+                Diagnostic("LEARN113", phrase("the step '{step}' has no solution", step=step.address))
             )
         replaced = self.workspace / REPLACED_FOLDER / datetime.now().astimezone().strftime("%Y-%m-%d-%H%M%S")
         written = []

@@ -72,6 +72,21 @@ class Step:
         """The folder with the files of the solution; it need not exist."""
         return self.lesson.folder / "solution" / self.id
 
+    @property
+    def right_answer(self) -> str | None:
+        """The number that the step asks for, as text; None if the lesson does not give it.
+
+        Raises:
+            LinkwrightError: LEARN102, the file with the number cannot be read.
+        """
+        path = self.solution.with_name(f"{self.id}.answer")
+        try:
+            return path.read_text(encoding="utf-8").strip() if self.unit is not None else None
+        except FileNotFoundError:
+            return None
+        except (OSError, UnicodeDecodeError) as error:
+            raise unreadable(path, error) from None
+
 
 @dataclass(frozen=True)
 class Lesson:

@@ -126,7 +126,7 @@ def _steps_before(course: Course, lesson: Lesson) -> Iterator[Step]:
 
 def _test_step(step: Step, workspace: Path, cases: Sequence[Case], scratch: Path) -> Iterator[TestResult]:
     """Test a step, and leave its solution in the workspace."""
-    answer = _right_answer(step)
+    answer = step.right_answer
     if check_in_process(step, workspace).passed:
         yield TestResult(step.lesson.id, step.id, phrase("the step passes before its solution"))
     _overlay(step.solution, workspace)
@@ -137,11 +137,6 @@ def _test_step(step: Step, workspace: Path, cases: Sequence[Case], scratch: Path
         _apply(case, scratch, step.lesson)
         given = answer if case.answer is None else case.answer
         yield TestResult(step.lesson.id, f"{step.id}: {case.title}", _objection(step, scratch, given, case.says))
-
-
-def _right_answer(step: Step) -> str | None:
-    path = step.solution.with_suffix(".answer")
-    return path.read_text(encoding="utf-8").strip() if path.is_file() else None
 
 
 def _objection(step: Step, workspace: Path, answer: str | None, says: str | None) -> Phrase | None:

@@ -20,7 +20,8 @@ class PageServer:
     Args:
         host: the address to listen on; any address except loopback admits other machines with the token.
         port: the port; 0 for any free port; None for 7448 or the next free port.
-        only_loopback: whether an address that other machines can reach is refused.
+        only_loopback: whether an address that other machines can reach is refused, because pages have a terminal.
+        needs_terminal: whether the command has no option for the terminal that could be left out.
 
     Attributes:
         host: the address that the server listens on.
@@ -31,7 +32,9 @@ class PageServer:
         web: the server that handles requests; None before `open`.
     """
 
-    def __init__(self, host: str, port: int | None, *, only_loopback: bool = False) -> None:
+    def __init__(
+        self, host: str, port: int | None, *, only_loopback: bool = False, needs_terminal: bool = False
+    ) -> None:
         self.meshes = MeshFolders()
         self.downloads = Downloads()
         self.url = ""
@@ -39,6 +42,7 @@ class PageServer:
         self.web: WebServer | None = None
         self.host, self._port = host, port
         self._only_loopback = only_loopback
+        self._needs_terminal = needs_terminal
         self._port_token: tuple[int, PortToken] | None = None
 
     async def open(self) -> None:
@@ -56,7 +60,7 @@ class PageServer:
         self.is_open_to_others = is_open_to_others(listener)
         if self.is_open_to_others and self._only_loopback:
             listener.close()
-            raise LinkwrightError(_open_to_others(self.host))
+            raise LinkwrightError(_open_to_others(self.host, needs_terminal=self._needs_terminal))
         if self._port != 0 and not self.is_open_to_others:
             port = listener.getsockname()[1]
             self._port_token = port, load_token(port)
@@ -90,7 +94,9 @@ class PageServer:
             await web.close()
 
 
-def _open_to_others(host: str) -> Diagnostic:
+def _open_to_others(host: str, *, needs_terminal: bool) -> Diagnostic:
     message = phrase("a page with a terminal cannot be served at '{host}', which other machines can reach", host=host)
     hint = phrase("leave out `--host`, and reach the page through an SSH tunnel; or leave out `--terminal`")
+    if needs_terminal:
+        hint = phrase("leave out `--host`, and reach the page through an SSH tunnel")
     return Diagnostic("VIEW104", message, hint=hint)

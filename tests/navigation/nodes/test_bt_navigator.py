@@ -148,6 +148,15 @@ async def test_a_goal_in_a_wall_is_refused_with_a_reason(scene, log):
     assert scene.velocity == ZERO_VELOCITY
 
 
+async def test_a_goal_without_a_frame_ends_with_a_reason_and_without_recoveries(scene, log):
+    scene.planner.failures = 1000  # no planner transforms a pose without a frame
+    goal = Asked(scene, "NavigateToPose", "navigate_to_pose")
+    await goal.send(pose=pose_stamped(2.0, 1.0, frame=""))
+    assert await goal.ends(10.0) == GoalStatus.ABORTED
+    assert any("the goal has no frame_id, such as map" in record.text for record in log)
+    assert all(each.number_of_recoveries == 0 for each in goal.feedback)
+
+
 async def test_no_poses_are_no_goal(scene):
     goal = Asked(scene, "NavigateThroughPoses", "navigate_through_poses")
     await goal.send(poses=[])

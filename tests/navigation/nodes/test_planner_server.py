@@ -112,6 +112,13 @@ async def test_a_path_to_a_pose(scene, server):
     assert length == pytest.approx(hypot(2.0, 1.0), rel=0.05)
 
 
+async def test_a_goal_without_a_frame_is_not_transformed(scene, server, log):
+    await server()
+    status, result = await to_pose(scene, pose(3.0, 2.0, frame="")).ended()
+    assert (status, len(result.path.poses)) == (ABORTED, 0)
+    assert any("Failed to transform from  to map" in record.text for record in log)
+
+
 async def test_it_may_begin_elsewhere_and_end_in_another_frame(scene, server):
     await server()
     start = pose(0.5, 2.5)

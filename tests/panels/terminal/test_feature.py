@@ -162,6 +162,10 @@ async def test_a_server_that_others_can_reach_does_not_open_with_a_terminal(host
     assert diagnostic.code == "VIEW104"
     assert host in diagnostic.message
     assert page_server.web is None
+    assert "`--terminal`" in str(diagnostic.hint)
+    with pytest.raises(LinkwrightError) as refused:
+        await PageServer(host, 0, only_loopback=True, needs_terminal=True).open()
+    assert refused.value.diagnostics[0].hint == "leave out `--host`, and reach the page through an SSH tunnel"
     local = PageServer("127.0.0.1", 0, only_loopback=True)
     await local.open()
     await local.close()

@@ -79,7 +79,7 @@ export class LessonPanel implements Panel {
     this.hint.hidden = step.hint_count === 0;
     this.hint.disabled = step.hints.length >= step.hint_count;
     this.hint.lastChild?.replaceWith(words.hintOf(step.hints.length, step.hint_count));
-    this.solution.hidden = step.solution.length === 0;
+    this.solution.hidden = !step.has_solution;
     this.problem.hidden = state.problem === null;
     this.problem.textContent = state.problem ? `${state.problem.message} ${state.problem.hint}`.trim() : "";
     if (this.isOutlineShown) this.outline.draw();
@@ -89,11 +89,12 @@ export class LessonPanel implements Panel {
   private drawText(): void {
     const { step } = this.state;
     if (step === null) return;
-    const key = `${step.address} ${step.hints.length}`;
+    const key = `${step.address} ${step.hints.length} ${step.right_answer ?? ""}`;
     if (key === this.shown) return;
     const isSame = this.shown.startsWith(`${step.address} `);
     this.shown = key;
     const hints = step.hints.map((hint) => lessonText(localText(hint), "lesson-text lesson-hint"));
+    const right = step.right_answer === null ? [] : [h("p", { class: "lesson-text lesson-hint" }, strings.learning.rightAnswer(withUnit(step.right_answer, step.unit)))];
     this.text.replaceChildren(
       h("h2", {}, localText(step.title)),
       ...(localText(step.introduction) === "" ? [] : [lessonText(localText(step.introduction), "lesson-text lesson-introduction")]),
@@ -101,8 +102,9 @@ export class LessonPanel implements Panel {
       ...this.fileRow(step.files),
       ...this.answerRow(step.unit, step.answer),
       ...hints,
+      ...right,
     );
-    if (isSame) hints.at(-1)?.scrollIntoView({ block: "nearest" });
+    if (isSame) [...hints, ...right].at(-1)?.scrollIntoView({ block: "nearest" });
     else this.text.scrollTop = 0;
   }
 
@@ -137,10 +139,15 @@ export class LessonPanel implements Panel {
     const words = strings.learning;
     const folder = this.state.course?.folder ?? "";
     const files = (this.state.step?.solution ?? []).map((path) => path.slice(folder.length + 1));
-    const list = h("ul", {}, ...files.map((path) => h("li", {}, path)));
-    new Dialog(words.solutionTitle, [h("p", {}, words.solutionText), list], [
+    const copied = [h("p", {}, words.solutionText), h("ul", {}, ...files.map((path) => h("li", {}, path)))];
+    const shown = (this.state.step?.unit ?? null) === null ? [] : [h("p", {}, words.solutionNumber)];
+    new Dialog(words.solutionTitle, [...(files.length > 0 ? copied : []), ...shown], [
       { label: strings.shell.cancel },
       { label: words.solutionTake, run: () => (this.state.takeSolution(), undefined), main: true },
     ]).open();
   }
+}
+
+function withUnit(number: string, unit: string | null): string {
+  return unit === null || unit === "1" ? number : `${number} ${unit}`;
 }

@@ -8,6 +8,7 @@ import type { Theme } from "../../state/theme";
 import { strings } from "../../strings";
 import { copyText } from "../../widgets/copy-text";
 import { terminalColors } from "./terminal-colors";
+import { TERMINAL_KEYS } from "./terminal-keys";
 
 /** Messages with output that are processed before they are acknowledged; the server waits at a few times as many. */
 const ACKNOWLEDGED_TOGETHER = 4;
@@ -119,13 +120,13 @@ export class TerminalScreen {
     if (event.key === "F11") return false;
     if (!event.ctrlKey || !event.shiftKey || event.altKey || event.metaKey) return true;
     switch (event.code) {
-      case "KeyC":
+      case TERMINAL_KEYS.copy:
         event.preventDefault(); // browsers would open their tools
         if (event.type === "keydown") void this.copy();
         return false;
-      case "KeyV":
+      case TERMINAL_KEYS.paste:
         return false; // the browser pastes
-      case "KeyM":
+      case TERMINAL_KEYS.leave:
         event.preventDefault();
         if (event.type === "keydown") this.onLeave();
         return false;

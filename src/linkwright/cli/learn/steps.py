@@ -30,7 +30,12 @@ def _add_workspace(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_step(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("step", metavar="STEP", nargs="?", help="the step (default: the first that is not passed)")
+    parser.add_argument(
+        "step",
+        metavar="STEP",
+        nargs="?",
+        help="the step (default: the last one that you began, or the next one if it is passed)",
+    )
 
 
 def _open(arguments: argparse.Namespace) -> Classroom:
@@ -152,8 +157,15 @@ def configure_solution(parser: argparse.ArgumentParser) -> None:
 
 
 def run_solution(arguments: argparse.Namespace) -> int:
-    """Copy the solution of a step into the workspace."""
+    """Copy the solution of a step into the workspace, and print the number that the step asks for."""
     classroom = _open(arguments)
-    for path in classroom.take_solution(_step(classroom, arguments)):
+    step = _step(classroom, arguments)
+    for path in classroom.take_solution(step):
         print(display_path(path))
+    if step.right_answer is not None:
+        print(localized(phrase("the answer is {answer}", answer=_with_unit(step.right_answer, step.unit))))
     return 0
+
+
+def _with_unit(number: str, unit: str | None) -> str:
+    return number if unit in {None, "1"} else f"{number} {unit}"

@@ -17,7 +17,9 @@ VERBS = {
     "check": SubVerb(steps.configure_check, steps.run_check, help="check a step, and print what is still missing"),
     "answer": SubVerb(steps.configure_answer, steps.run_answer, help="answer a step that asks for a number"),
     "hint": SubVerb(steps.configure_hint, steps.run_hint, help="print the next hint for a step"),
-    "solution": SubVerb(steps.configure_solution, steps.run_solution, help="copy the solution of a step"),
+    "solution": SubVerb(
+        steps.configure_solution, steps.run_solution, help="copy the solution of a step, or print the number"
+    ),
     "exercises": SubVerb(judge.configure_exercises, judge.run_exercises, help="list the exercises with a judge"),
     "judge": SubVerb(judge.configure_judge, judge.run_judge, help="judge a program for an exercise in several worlds"),
     "world": SubVerb(

@@ -6,7 +6,7 @@ from typing import Any
 
 import yaml
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, SourceText, foreign, phrase
+from linkwright.diagnostics import Diagnostic, LinkwrightError, SourceText, foreign, joined, phrase
 from linkwright.launch.errors.exceptions import as_ros_error
 from linkwright.launch.errors.places import MarkupLocation, SourceLocation, error_at
 from linkwright.launch.frontend.markup_entity import MarkupEntity
@@ -243,11 +243,11 @@ def load(text: str, name: str) -> Any:
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
         span = source.span(mark.index) if mark else None
-        problem = ", ".join(message for message in (error.problem, error.context) if message)
+        problem = joined(foreign(message) for message in (error.problem, error.context) if message)
         hint = phrase("indent with spaces") if mark and source.text[mark.index : mark.index + 1] == "\t" else None
         diagnostic = Diagnostic(
             "LAUNCH108",
-            phrase("the launch file is not valid YAML: {problem}", problem=foreign(problem)),
+            phrase("the launch file is not valid YAML: {problem}", problem=problem),
             span,
             hint=hint,
             source=source,

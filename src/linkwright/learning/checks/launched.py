@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import numpy as np
 
 from linkwright.diagnostics import LinkwrightError, Phrase, nearest, phrase
+from linkwright.learning.checks.findings import describe_finding
 from linkwright.learning.checks.not_yet import NotYet
 
 if TYPE_CHECKING:
@@ -303,7 +304,7 @@ class LaunchCheck:
         try:
             self._run.result()
         except LinkwrightError as error:
-            return phrase("{file}: {message}", file=self._file, message=error.diagnostics[0].message)
+            return describe_finding(error.diagnostics[0], self._file)
         errors = self._errors()
         if errors:
             return phrase("{file}: {message}", file=self._file, message=errors[0])

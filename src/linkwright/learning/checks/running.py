@@ -16,6 +16,7 @@ from typing import Any
 from linkwright.diagnostics import LinkwrightError, foreign, phrase
 from linkwright.files.scratch_folders import ScratchFolder
 from linkwright.learning.checks.declaring import Check, load_checks
+from linkwright.learning.checks.findings import describe_finding
 from linkwright.learning.checks.not_yet import NotYet
 from linkwright.learning.checks.programs import describe_failure
 from linkwright.learning.checks.results import CheckResult, StepResult
@@ -65,7 +66,9 @@ def _run(check: Check, work: Work) -> CheckResult:
     except NotYet as reason:
         return CheckResult(check.title, passed=False, message=reason.text)
     except LinkwrightError as error:
-        return CheckResult(check.title, passed=False, message=LocalText.from_phrase(error.diagnostics[0].message))
+        return CheckResult(
+            check.title, passed=False, message=LocalText.from_phrase(describe_finding(error.diagnostics[0]))
+        )
     except Exception as error:  # noqa: BLE001 - the learner's files can be anything
         message = describe_failure(error, work.folder.resolve())
         return CheckResult(check.title, passed=False, message=LocalText.from_phrase(message))
@@ -198,7 +201,7 @@ def main(words: Sequence[str]) -> int:
         result = check_step(step, Path(workspace), answer=answers[0] if answers else None)
     except LinkwrightError as error:
         failed = [
-            CheckResult(step.title, passed=False, message=LocalText.from_phrase(finding.message))
+            CheckResult(step.title, passed=False, message=LocalText.from_phrase(describe_finding(finding)))
             for finding in error.diagnostics
         ]
         result = StepResult(step.address, failed)

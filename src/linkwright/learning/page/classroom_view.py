@@ -30,7 +30,7 @@ def run_classroom(room: Classroom, options: HostOptions, *, foxglove: int | None
         The exit status, see `linkwright.hosting.signals.run_to_end`.
     """
     finder = PackageFinder(start=[room.workspace])
-    options = replace(options, title=room.workspace.name, terminal=room.workspace)
+    options = replace(options, title=room.workspace.name, terminal=room.workspace, needs_terminal=True)
     log = LaunchLog()
 
     def run(signals: SignalWatch) -> bool:

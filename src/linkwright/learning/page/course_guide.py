@@ -95,6 +95,7 @@ class CourseGuide(Guide):
 
     def _take_solution(self, _: messages.TakeSolution) -> None:
         self._room.take_solution(self._step)
+        self._publish(self._shown_step())
         self._on_changed(self._room.shown_file(self._step))
         self._check()
 
@@ -150,8 +151,10 @@ class CourseGuide(Guide):
             hint_count=hint_count,
             files=[str(path) for path in solution if path == shown_file or path.name in step.text("").body],
             solution=[str(path) for path in solution],
+            has_solution=bool(solution) or step.right_answer is not None,
             unit=step.unit,
             answer=noted.answer,
+            right_answer=step.right_answer if noted.solution else None,
         )
 
     def _checks(self) -> messages.StepChecks:

@@ -119,8 +119,10 @@ class ExerciseGuide(Guide):
             hint_count=0,
             files=[str(self._program)],
             solution=[],
+            has_solution=False,
             unit=None,
             answer=None,
+            right_answer=None,
         )
 
     def _checks(self) -> messages.StepChecks:

@@ -246,10 +246,12 @@ class NavigatorNode(StepNode):
     def _refusal_reason(self) -> str:
         """Return the reason why the robot cannot be at the goal, or an empty string.
 
-        The reason comes from the global costmap.
+        Unless a pose has no frame, the reason comes from the global costmap.
         """
+        if not all(pose.header.frame_id for pose in self._poses):
+            return "the goal has no frame_id, such as map"
         goal_position, frame = self._poses[-1].pose.position, self._poses[-1].header.frame_id
-        if self._costmap is None or (frame and frame != self._costmap_frame):
+        if self._costmap is None or frame != self._costmap_frame:
             return ""
         cost = int(self._costmap.cost_at(np.array([goal_position.x, goal_position.y]), outside_cost=_UNKNOWN_COST))
         if cost == _UNKNOWN_COST:

@@ -166,11 +166,14 @@ class CostmapNode(ManagedNode):
 
         Args:
             pose: x, y (metres) and yaw (radians).
-            frame: the frame of the pose; empty for the frame of the costmap.
+            frame: the frame of the pose. As in nav2, there is no transform for a pose without a frame.
             time_ns: the time of the transform; 0 for the latest.
         """
-        if not frame or frame == self.global_frame:
+        if frame == self.global_frame:
             return pose
+        if not frame:
+            self.get_logger().warning(f"Failed to transform from  to {self.global_frame}: the pose has no frame_id")
+            return None
         try:
             transform: Transform = self.transforms.lookup(self.global_frame, frame, time_ns)[0]
         except TransformException as error:

@@ -44,7 +44,8 @@ class CourseStep(ServerMessage):
     Texts are HTML without scripts. `introduction` is that of the lesson for its first step, or empty. `hints` are the
     hints that the learner has taken, of `hint_count` hints. `solution` are the files that the solution writes, and
     `files` those of them that the page shows or the text mentions, both as absolute paths. `unit` is the unit of the
-    number that the step asks for, or None if it asks for none. `answer` is the learner's answer as text.
+    number that the step asks for, or None if it asks for none. `answer` is the learner's answer as text. `right_answer`
+    is the right one, or None before the learner has taken the solution. `has_solution` is whether there is a solution.
     """
 
     address: str
@@ -56,8 +57,10 @@ class CourseStep(ServerMessage):
     hint_count: int
     files: list[str]
     solution: list[str]
+    has_solution: bool
     unit: str | None
     answer: str | None
+    right_answer: str | None
 
 
 class StepCheck(Record):

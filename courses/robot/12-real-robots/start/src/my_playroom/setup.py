@@ -22,6 +22,7 @@ setup(
     maintainer_email='learner@example.org',
     description='A playroom for mbot with a camera',
     license='MIT',
+    extras_require={'test': ['pytest']},
     entry_points={
         'console_scripts': [
         ],

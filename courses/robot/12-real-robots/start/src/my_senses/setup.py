@@ -17,6 +17,7 @@ setup(
     maintainer_email='learner@example.org',
     description='Nodes that see and hear for mbot',
     license='MIT',
+    extras_require={'test': ['pytest']},
     entry_points={
         'console_scripts': [
             'color_finder = my_senses.color_finder:main',

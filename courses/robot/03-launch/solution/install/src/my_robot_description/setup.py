@@ -29,6 +29,7 @@ setup(
     maintainer_email='learner@example.org',
     description='mbot, a small two-wheeled robot',
     license='MIT',
+    extras_require={'test': ['pytest']},
     entry_points={
         'console_scripts': [
         ],

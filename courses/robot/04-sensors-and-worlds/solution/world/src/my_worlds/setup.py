@@ -17,6 +17,7 @@ setup(
     maintainer_email='learner@example.org',
     description='Worlds for mbot',
     license='MIT',
+    extras_require={'test': ['pytest']},
     entry_points={
         'console_scripts': [
         ],

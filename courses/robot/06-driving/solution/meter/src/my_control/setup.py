@@ -17,6 +17,7 @@ setup(
     maintainer_email='learner@example.org',
     description='Nodes that drive mbot',
     license='MIT',
+    extras_require={'test': ['pytest']},
     entry_points={
         'console_scripts': [
             'first_move = my_control.first_move:main',

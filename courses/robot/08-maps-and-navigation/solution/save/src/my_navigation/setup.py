@@ -22,6 +22,7 @@ setup(
     maintainer_email='learner@example.org',
     description='Map the flat and navigate in it',
     license='MIT',
+    extras_require={'test': ['pytest']},
     entry_points={
         'console_scripts': [
             'go_to_room = my_navigation.go_to_room:main',

@@ -17,6 +17,7 @@ setup(
     maintainer_email='learner@example.org',
     description='Nodes that see',
     license='MIT',
+    extras_require={'test': ['pytest']},
     entry_points={
         'console_scripts': [
             'red_mask = my_vision.red_mask:main',

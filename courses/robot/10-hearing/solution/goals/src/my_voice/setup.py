@@ -17,6 +17,7 @@ setup(
     maintainer_email='learner@example.org',
     description='Nodes that hear',
     license='MIT',
+    extras_require={'test': ['pytest']},
     entry_points={
         'console_scripts': [
             'word_driver = my_voice.word_driver:main',

@@ -35,7 +35,8 @@ def main():
     rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
     node = DriveMeter()
     try:
-        rclpy.spin(node)
+        while rclpy.ok():
+            rclpy.spin_once(node, timeout_sec=0.1)
     except (KeyboardInterrupt, ExternalShutdownException):
         pass
     finally:

@@ -1,0 +1,38 @@
+"""Findings about the learner's files, as checks tell them: in one line with the place and the advice."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from linkwright.diagnostics import Diagnostic, Phrase, Span, phrase
+
+
+def describe_finding(finding: Diagnostic, file: str | None = None) -> Phrase:
+    """Return a finding as one line: its file, line and column, the message, the code, and the hint if it has one.
+
+    Args:
+        finding: the finding.
+        file: the file to name if the finding has no place.
+    """
+    text = phrase("{message} [{code}]", message=finding.message, code=finding.code)
+    if finding.span is not None:
+        text = _place(finding.span, text)
+    elif file is not None:
+        text = phrase("{file}: {message}", file=file, message=text)
+    if finding.hint is not None:
+        text = phrase("{finding}. Hint: {hint}", finding=text, hint=finding.hint)
+    return text
+
+
+def _place(span: Span, text: Phrase) -> Phrase:
+    name = Path(span.file).name
+    if _is_line(span):
+        return phrase("{file}, line {line}: {text}", file=name, line=span.line, text=text)
+    return phrase(
+        "{file}, line {line}, column {column}: {text}", file=name, line=span.line, column=span.column, text=text
+    )
+
+
+def _is_line(span: Span) -> bool:
+    """Return whether a span names a line whose column is not known."""
+    return span.column == 1 and (span.line, span.column) == (span.end_line, span.end_column)
