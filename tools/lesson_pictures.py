@@ -13,7 +13,7 @@ import io
 import re
 import shutil
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import closing
 from importlib import import_module
 from pathlib import Path
@@ -120,7 +120,8 @@ def output(terminals: Terminals, row: dict[str, Any]) -> str:
 def make_picture(browser: Browser, terminals: Terminals, row: dict[str, Any]) -> Image.Image:
     """Return a picture of the page of a command, after the actions of its row.
 
-    ``show`` is what the picture shows: a selector of CSS, or without it the middle of the scene.
+    ``show`` is what the picture shows: a selector of CSS, or without it the middle of the scene. ``crop`` is the part
+    of it that is kept: left, top, right and bottom, in shares of its width and height.
     """
     width, height = row.get("window", gallery.WINDOW.values())
     page = browser.new_page(viewport={"width": width, "height": height}, locale="en-US")
@@ -133,15 +134,18 @@ def make_picture(browser: Browser, terminals: Terminals, row: dict[str, Any]) ->
         page.screenshot(path=FAILED)
         print(f"'{action}' failed; {FAILED} shows the page")
         raise
-    shot = picture_of(page, row.get("show"))
+    shot = picture_of(page, row.get("show"), row.get("crop", (0, 0, 1, 1)))
     page.close()
     return shot
 
 
-def picture_of(page: Page, selector: str | None) -> Image.Image:
+def picture_of(page: Page, selector: str | None, crop: Sequence[float]) -> Image.Image:
     """Return a picture of a part of a page, or of the middle of the scene."""
     if selector is not None:
         shot = Image.open(io.BytesIO(page.locator(selector).first.screenshot(timeout=60_000))).convert("RGB")
+        left, top, right, bottom = crop
+        box = left * shot.width, top * shot.height, right * shot.width, bottom * shot.height
+        shot = shot.crop(tuple(map(round, box)))  # type: ignore[arg-type]
         width = min(shot.width, 2 * gallery.SIZE[0])
         return shot.resize((width, shot.height * width // shot.width), Image.Resampling.LANCZOS)
     return gallery.picture_of_scene(page)

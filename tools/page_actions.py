@@ -140,7 +140,7 @@ def act(page: Page, terminals: Terminals, action: str) -> None:
                 _write(_row(page, panel, name), value)
         case "view":
             kind, *values = shlex.split(text)
-            page.get_by_label("Type", exact=True).select_option(label=kind)
+            page.get_by_role("tabpanel", name="Views").get_by_label("Type", exact=True).select_option(label=kind)
             act(page, terminals, f"until lw.view.type === '{kind}'")
             for name, _, value in (each.partition("=") for each in values):
                 _write(_row(page, "Views", name), value)
