@@ -13,6 +13,7 @@ import io
 import re
 import shutil
 import sys
+import time
 from collections.abc import Iterator, Sequence
 from contextlib import closing
 from importlib import import_module
@@ -81,6 +82,7 @@ def make(browser: Browser, step: Step, row: dict[str, Any], workspace: Path) -> 
             drain(terminals.start(command))
         for topic in row.get("topics", ()):
             terminals.wait_for_topic(topic)
+        time.sleep(row.get("seconds", 0))
         if "output" in row:
             text = output(terminals, row)
             for each in step.lesson.texts.values():
@@ -114,7 +116,7 @@ def output(terminals: Terminals, row: dict[str, Any]) -> str:
         raise SystemExit(f"{row['output']} prints {len(lines)} lines")
     drain(program)
     terminals.stop()
-    return "\n".join(lines)
+    return "\n".join(lines).rstrip()
 
 
 def make_picture(browser: Browser, terminals: Terminals, row: dict[str, Any]) -> Image.Image:

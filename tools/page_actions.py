@@ -22,6 +22,7 @@ An action is a line with a verb first:
 from __future__ import annotations
 
 import os
+import re
 import shlex
 import signal
 import subprocess
@@ -132,7 +133,7 @@ def act(page: Page, terminals: Terminals, action: str) -> None:
             _add_display(page, text)
         case "plot":
             page.get_by_role("button", name="Add a series").first.click()
-            page.get_by_role("combobox").last.fill(text)
+            page.get_by_role("combobox", name=re.compile("^Topic and field")).fill(text)
             page.keyboard.press("Enter")
         case "set":
             panel, *values = shlex.split(text)
