@@ -123,12 +123,14 @@ def make_picture(browser: Browser, terminals: Terminals, row: dict[str, Any]) ->
     """Return a picture of the page of a command, after the actions of its row.
 
     ``show`` is what the picture shows: a selector of CSS, or without it the middle of the scene. ``crop`` is the part
-    of it that is kept: left, top, right and bottom, in shares of its width and height.
+    of it that is kept: left, top, right and bottom, in shares of its width and height. ``robot`` is false if the page
+    shows no robot before the actions.
     """
     width, height = row.get("window", gallery.WINDOW.values())
     page = browser.new_page(viewport={"width": width, "height": height}, locale="en-US")
     page.goto(terminals.serve(row["page"]))
-    page.wait_for_function("window.linkwright?.ready === true", timeout=60_000)
+    drawn = "ready" if row.get("robot", True) else "displays.length > 0"
+    page.wait_for_function(f"window.linkwright?.{drawn}", timeout=60_000)
     try:
         for action in row.get("do", ()):
             act(page, terminals, action)
