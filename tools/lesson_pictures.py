@@ -78,6 +78,8 @@ def appearance(file: Path) -> str:
 def make(browser: Browser, step: Step, row: dict[str, Any], workspace: Path) -> None:
     """Make the picture and the output of a step, and bring both into its texts."""
     with closing(Terminals(workspace)) as terminals:
+        for command in row.get("before", ()):
+            terminals.run(command)
         for command in row.get("beside", ()):
             drain(terminals.start(command))
         for topic in row.get("topics", ()):
@@ -88,7 +90,7 @@ def make(browser: Browser, step: Step, row: dict[str, Any], workspace: Path) -> 
             for each in step.lesson.texts.values():
                 write_output(each, step, text)
             print(step.address, text, sep="\n")
-        if "page" in row:
+        if "page" in row or "image" in row:
             image = step.lesson.folder / "images" / f"{step.id}.webp"
             image.parent.mkdir(exist_ok=True)
             make_picture(browser, terminals, row).save(image, quality=80, method=6)
@@ -120,12 +122,15 @@ def output(terminals: Terminals, row: dict[str, Any]) -> str:
 
 
 def make_picture(browser: Browser, terminals: Terminals, row: dict[str, Any]) -> Image.Image:
-    """Return a picture of the page of a command, after the actions of its row.
+    """Return a picture of the page of a command, after the actions of its row, or an image that a command has written.
 
     ``show`` is what the picture shows: a selector of CSS, or without it the middle of the scene. ``crop`` is the part
     of it that is kept: left, top, right and bottom, in shares of its width and height. ``robot`` is false if the page
     shows no robot before the actions.
     """
+    if "image" in row:
+        shot = Image.open(terminals.workspace / row["image"]).convert("RGB")
+        return shot.resize((gallery.SIZE[0], shot.height * gallery.SIZE[0] // shot.width), Image.Resampling.LANCZOS)
     width, height = row.get("window", gallery.WINDOW.values())
     page = browser.new_page(viewport={"width": width, "height": height}, locale="en-US")
     page.goto(terminals.serve(row["page"]))

@@ -84,13 +84,17 @@ class Terminals:
                 return line.split()[1]
         raise SystemExit(f"{command} has no page:\n{''.join(lines)}")
 
+    def run(self, command: str) -> str:
+        """Run a command to its end, and return its output."""
+        program = self.start(command)
+        output, _ = program.communicate(timeout=PATIENCE / 1000)
+        self.running.remove(program)
+        return output
+
     def wait_for_topic(self, topic: str) -> None:
         """Wait until a topic is listed."""
         for _ in range(PATIENCE // 1000):
-            program = self.start("linkwright topic list")
-            listed = program.communicate()[0].split()
-            self.running.remove(program)
-            if topic in listed:
+            if topic in self.run("linkwright topic list").split():
                 return
             time.sleep(0.5)
         raise SystemExit(f"there is no topic {topic}")
@@ -114,9 +118,7 @@ def act(page: Page, terminals: Terminals, action: str) -> None:
         case "run":
             drain(terminals.start(text))
         case "once":
-            program = terminals.start(text)
-            program.communicate(timeout=PATIENCE / 1000)
-            terminals.running.remove(program)
+            terminals.run(text)
         case "stop":
             terminals.stop()
         case "wait":
