@@ -37,6 +37,9 @@ SEEN = ("### What you should see now", "### 现在应该看到")
 
 LEARNERS_FOLDER = "/home/you/robot_ws"
 
+LISTENING = 2.0
+"""Seconds after which a command that prints messages is sure to receive them."""
+
 MAX_LINES = 24
 """The greatest number of lines of an output."""
 
@@ -86,7 +89,8 @@ def make(browser: Browser, step: Step, row: dict[str, Any], workspace: Path) -> 
             terminals.wait_for_topic(topic)
         time.sleep(row.get("seconds", 0))
         if "output" in row:
-            text = output(terminals, row)
+            with closing(Terminals(workspace)) as more:
+                text = output(more, row)
             for each in step.lesson.texts.values():
                 write_output(each, step, text)
             print(step.address, text, sep="\n")
@@ -103,10 +107,14 @@ def output(terminals: Terminals, row: dict[str, Any]) -> str:
     """Return what a command prints, of which the row may choose lines.
 
     ``begin`` is a pattern of the first line, ``lines`` the number of lines after which the command is stopped, and
-    ``leave_out`` a pattern of lines that are left out. The path of the workspace becomes that of a learner.
+    ``leave_out`` a pattern of lines that are left out. ``then`` has the commands that make it print. The path of the workspace becomes that of a learner.
     """
     program = terminals.start(row["output"])
     assert program.stdout is not None
+    if "then" in row:
+        time.sleep(LISTENING)
+    for command in row.get("then", ()):
+        drain(terminals.start(command))
     lines: list[str] = []
     for line in program.stdout:
         if re.search(row.get("leave_out", r"(?!)"), line) or (not lines and not re.search(row.get("begin", ""), line)):
@@ -117,7 +125,6 @@ def output(terminals: Terminals, row: dict[str, Any]) -> str:
     if not lines or len(lines) > MAX_LINES:
         raise SystemExit(f"{row['output']} prints {len(lines)} lines")
     drain(program)
-    terminals.stop()
     return "\n".join(lines).rstrip()
 
 
