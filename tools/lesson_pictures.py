@@ -88,12 +88,6 @@ def make(browser: Browser, step: Step, row: dict[str, Any], workspace: Path) -> 
         for topic in row.get("topics", ()):
             terminals.wait_for_topic(topic)
         time.sleep(row.get("seconds", 0))
-        if "output" in row:
-            with closing(Terminals(workspace)) as more:
-                text = output(more, row)
-            for each in step.lesson.texts.values():
-                write_output(each, step, text)
-            print(step.address, text, sep="\n")
         if "page" in row or "image" in row:
             image = step.lesson.folder / "images" / f"{step.id}.webp"
             image.parent.mkdir(exist_ok=True)
@@ -101,15 +95,22 @@ def make(browser: Browser, step: Step, row: dict[str, Any], workspace: Path) -> 
             for language, each in step.lesson.texts.items():
                 link_picture(each, step, row.get(language))
             print(image, image.stat().st_size)
+        if "output" in row:
+            with closing(Terminals(workspace)) as more:
+                text = output(more, row)
+            for each in step.lesson.texts.values():
+                write_output(each, step, text)
+            print(step.address, text, sep="\n")
 
 
 def output(terminals: Terminals, row: dict[str, Any]) -> str:
     """Return what a command prints, of which the row may choose lines.
 
-    ``begin`` is a pattern of the first line, ``lines`` the number of lines after which the command is stopped, and
-    ``leave_out`` a pattern of lines that are left out. ``then`` has the commands that make it print. The path of the workspace becomes that of a learner.
+    ``folder`` is where it runs, ``begin`` a pattern of the first line, ``lines`` the number of lines after which it is
+    stopped, and ``leave_out`` a pattern of lines that are left out. ``then`` has the commands that make it print. The
+    path of the workspace becomes that of a learner.
     """
-    program = terminals.start(row["output"])
+    program = terminals.start(row["output"], row.get("folder", "."))
     assert program.stdout is not None
     if "then" in row:
         time.sleep(LISTENING)

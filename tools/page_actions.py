@@ -56,7 +56,7 @@ class Terminals:
         while self.running:
             self.stop()
 
-    def start(self, command: str) -> subprocess.Popen[str]:
+    def start(self, command: str, folder: str = ".") -> subprocess.Popen[str]:
         """Start a command and return it; its output is read by the caller, or dropped by `drain`."""
         words = shlex.split(command)
         if words[0] == "linkwright":
@@ -65,7 +65,7 @@ class Terminals:
             words,
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
-            cwd=self.workspace,
+            cwd=self.workspace / folder,
             env=self._environment,
             text=True,
         )
