@@ -126,7 +126,7 @@ def output(terminals: Terminals, row: dict[str, Any]) -> str:
     if not lines or len(lines) > MAX_LINES:
         raise SystemExit(f"{row['output']} prints {len(lines)} lines")
     drain(program)
-    return "\n".join(lines).rstrip()
+    return "\n".join(lines).strip("\n")
 
 
 def make_picture(browser: Browser, terminals: Terminals, row: dict[str, Any]) -> Image.Image:
@@ -183,9 +183,10 @@ def write_output(text: LessonText, step: Step, output: str) -> None:
     start, end = section_of(text, step, content)
     section, block = content[start:end], f"```text\n{output}\n```"
     changed, count = re.subn(r"```text\n.*?```", lambda _: block, section, count=1, flags=re.DOTALL)
-    text.path.write_text(
-        content[:start] + (changed if count else f"{section}\n{block}\n") + content[end:], encoding="utf-8"
-    )
+    if not count:
+        before, picture, after = section.partition("\n![")
+        changed = f"{before}\n{block}\n{picture}{after}"
+    text.path.write_text(content[:start] + changed + content[end:], encoding="utf-8")
 
 
 def link_picture(text: LessonText, step: Step, description: str | None) -> None:
