@@ -195,7 +195,7 @@ def link_picture(text: LessonText, step: Step, description: str | None) -> None:
     start, end = section_of(text, step, content)
     title = description or next(each.title for each in text.steps if each.id == step.id)
     picture = f"![{title}](images/{step.id}.webp)"
-    section = re.sub(rf"\n!\[[^\]]*\]\(images/{step.id}\.webp\)\n", "", content[start:end])
+    section = re.sub(rf"\n!\[[^\]]*\]\(images/{step.id}\.webp\)\n", "", content[start:end]).rstrip() + "\n"
     text.path.write_text(f"{content[:start]}{section}\n{picture}\n{content[end:]}", encoding="utf-8")
 
 
