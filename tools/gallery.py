@@ -17,7 +17,7 @@ from pathlib import Path
 
 import chromium
 from PIL import Image
-from playwright.sync_api import Browser, sync_playwright
+from playwright.sync_api import Browser, Page, sync_playwright
 
 FOLDER = Path(__file__).resolve().parent.parent / "docs" / "gallery"
 PARTS = "parts"
@@ -53,19 +53,24 @@ def make_image(browser: Browser, words: Sequence[str], image: Path, folder: Path
         page = browser.new_page(viewport=WINDOW, locale="en-US")  # type: ignore[arg-type]
         page.goto(next(line.split()[1] for line in program.stdout if line.startswith("Viewer: ")))
         page.wait_for_function("window.linkwright?.ready === true", timeout=60_000)
-        canvas = page.locator("canvas").first
-        canvas.evaluate(_CONTROLS_HIDDEN)
-        page.wait_for_timeout(SETTLING)
-        shot = Image.open(io.BytesIO(canvas.screenshot(timeout=60_000))).convert("RGB")
+        small = picture_of_scene(page)
         page.close()
     finally:
         program.send_signal(signal.SIGINT)
         program.wait(timeout=30)
+    small.save(image, quality=80, method=6)
+
+
+def picture_of_scene(page: Page) -> Image.Image:
+    """Return a picture of the middle of the scene of a page, without the controls over it."""
+    canvas = page.locator("canvas").first
+    canvas.evaluate(_CONTROLS_HIDDEN)
+    page.wait_for_timeout(SETTLING)
+    shot = Image.open(io.BytesIO(canvas.screenshot(timeout=60_000))).convert("RGB")
     height = min(shot.height, shot.width * SIZE[1] // SIZE[0])
     width = height * SIZE[0] // SIZE[1]
     left, top = (shot.width - width) // 2, (shot.height - height) // 2
-    small = shot.crop((left, top, left + width, top + height)).resize(SIZE, Image.Resampling.LANCZOS)
-    small.save(image, quality=80, method=6)
+    return shot.crop((left, top, left + width, top + height)).resize(SIZE, Image.Resampling.LANCZOS)
 
 
 def main(names: Sequence[str]) -> int:
