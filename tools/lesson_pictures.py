@@ -104,7 +104,7 @@ def make(browser: Browser, step: Step, row: dict[str, Any], workspace: Path) -> 
 
 
 def output(terminals: Terminals, row: dict[str, Any]) -> str:
-    """Return what a command prints, of which the row may choose lines.
+    """Return the output of a command, or the lines of it that the row selects.
 
     ``folder`` is where it runs, ``begin`` a pattern of the first line, ``lines`` the number of lines after which it is
     stopped, and ``leave_out`` a pattern of lines that are left out. ``then`` has the commands that make it print. The
