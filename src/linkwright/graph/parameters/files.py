@@ -305,9 +305,9 @@ class _Reader:
             return LinkwrightError(
                 Diagnostic("GRAPH212", phrase("parameter file is not YAML: {problem}", problem=foreign(problem)))
             )
-        hint = None
-        if "\t" in self._source.line(mark.line + 1)[: mark.column + 1] or "'\\t'" in problem:
-            hint = phrase("indent with spaces, not tabs")
+        from linkwright.files.yaml_documents import yaml_hint
+
+        hint = yaml_hint(self._source, mark.line + 1)
         return self._error_at(
             mark.line, mark.column, phrase("parameter file is not YAML: {problem}", problem=foreign(problem)), hint
         )

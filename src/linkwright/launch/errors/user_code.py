@@ -38,6 +38,10 @@ Includes, groups, and functions that return actions increase the depth.
 Python's own limit would be exceeded only slightly later, at an unrelated location."""
 
 _MODULE_PATH = re.compile(r" \((?:/|[A-Z]:|unknown location).*\)$")
+_JOINED_SUBSTITUTION = re.compile(r'(concatenate str \(not "|operand type\(s\).*)(LaunchConfiguration|Command|Find\w+)')
+_ACTION_FOR_LIST = re.compile(r"^'(Node|ExecuteProcess|IncludeLaunchDescription|\w+Action)' object is not iterable")
+_MODULES = {"Path": ("pathlib",), "glob": ("glob",)}
+_MOST_MODULES = 3
 _MISSING_ARGUMENT = re.compile(r"\(\) missing \d+ required .*arguments?: (.*)$")
 _UNEXPECTED_ARGUMENT = re.compile(r"([\w.]+)\(\) got an unexpected keyword argument '([^']+)'")
 
@@ -70,7 +74,9 @@ def explain(error: BaseException, subject: str, fallback: SourceLocation | None 
     span = place.span(source) if place else None
     callers = dict.fromkeys(reversed(user_places[:-1]))  # report a recursive function only once
     notes = tuple(Note(phrase("called from here"), caller.span(read_source(caller.file))) for caller in callers)
-    diagnostic = Diagnostic("LAUNCH104", message, span, notes=notes, hint=_hint(error, source, span), source=source)
+    diagnostic = Diagnostic(
+        "LAUNCH104", message, span, notes=notes, hint=hint_about(error, source, span), source=source
+    )
     return as_ros_error(error if isinstance(error, Exception) else None, diagnostic)
 
 
@@ -100,20 +106,51 @@ def _user_places(traceback: TracebackType | None) -> Iterable[SourceLocation]:
         traceback_entry = traceback_entry.tb_next
 
 
-def _hint(error: BaseException, source: SourceText | None, span: Span | None) -> Phrase | None:
-    """Return a hint with the name that the user may have meant, or None if no name is similar."""
+def hint_about(error: BaseException, source: SourceText | None = None, span: Span | None = None) -> Phrase | None:
+    """Return a hint with the name that the user may have meant, or None if no name is similar.
+
+    Args:
+        error: the exception.
+        source: the file in which it was raised, if it is known.
+        span: the call that failed, if it is known.
+    """
     if isinstance(error, ImportError):
         return _import_hint(error)
     if isinstance(error, NameError):
         frame = _innermost_frame(error)
         visible_names = {**frame.f_globals, **frame.f_locals} if frame else {}
         name = getattr(error, "name", None)
-        return did_you_mean(name, visible_names) if name else None
+        return (did_you_mean(name, visible_names) or import_hint(name)) if name else None
     if isinstance(error, AttributeError):
         name, owner = getattr(error, "name", None), getattr(error, "obj", None)
         return did_you_mean(name, _public_names(owner)) if name else None
     if isinstance(error, TypeError):
-        return _keyword_hint(error) or _missing_hint(error, source, span)
+        return _keyword_hint(error) or _missing_hint(error, source, span) or _substitution_hint(error)
+    return None
+
+
+def import_hint(name: str) -> Phrase | None:
+    """Return a hint with the module from which an undefined name can be imported, or None."""
+    from linkwright.messages.presentation import interface_names
+    from linkwright.standins.table import modules_providing
+
+    if name in sys.stdlib_module_names and name not in _MODULES:
+        return phrase("write 'import {name}' at the top of the file", name=name)
+    interfaces = [full for kind in ("msg", "srv", "action") for full in interface_names(kind)]
+    places = [".".join(full.split("/")[:-1]) for full in interfaces if full.endswith(f"/{name}")]
+    modules = [*_MODULES.get(name, ()), *places, *modules_providing(name)][:_MOST_MODULES]
+    if not modules:
+        return None
+    return phrase("import it from {modules}", modules=quoted_names(modules, " or "))
+
+
+def _substitution_hint(error: TypeError) -> Phrase | None:
+    """Return a hint for text that is joined with a substitution, or an action in place of a list, or None."""
+    text = str(error)
+    if _JOINED_SUBSTITUTION.search(text):
+        return phrase("a substitution has no text before the launch runs; put the parts into a list: ['xacro ', model]")
+    if _ACTION_FOR_LIST.search(text):
+        return phrase("put the actions into a list: LaunchDescription([...])")
     return None
 
 

@@ -54,7 +54,9 @@ def parse_xacro_arguments(words: Sequence[str], text: str, folder: Path) -> tupl
                     count=len(files),
                     files=quoted_names(files),
                 ),
-                phrase("put quotes around a path with spaces: Command(['xacro \"', path, '\"'])"),
+                _SUBSTITUTION_HINT
+                if text.lstrip().startswith("<launch.")
+                else phrase("put quotes around a path with spaces: Command(['xacro \"', path, '\"'])"),
             )
         files = [joined_path.strip()]
         warning = phrase(
@@ -64,6 +66,12 @@ def parse_xacro_arguments(words: Sequence[str], text: str, folder: Path) -> tupl
     if not files:
         raise _usage_error(phrase("the xacro command names no model file"), phrase("write Command(['xacro ', path])"))
     return XacroCall(folder / files[0], tuple(arguments.items())), warning
+
+
+_SUBSTITUTION_HINT = phrase(
+    "the text of a substitution is known only when the launch runs; pass it as it is, without str() or an f-string: "
+    "Command(['xacro ', model])"
+)
 
 
 def _usage_error(message: Phrase, hint: Phrase) -> LinkwrightError:

@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 import importlib
+import re
 import sys
 import traceback
 from collections.abc import Callable
 from pathlib import Path
 
 from linkwright.diagnostics import Phrase, foreign, nearest, phrase
+from linkwright.diagnostics.lookalikes import lookalike_hint
+from linkwright.learning.checks.findings import add_hint
 from linkwright.learning.checks.not_yet import NotYet
+
+_ADDRESS = re.compile(r" at 0x[0-9a-f]+")
 
 
 def find_program(folder: Path, package: str, name: str) -> Callable[[], object]:
@@ -60,13 +65,19 @@ def find_program(folder: Path, package: str, name: str) -> Callable[[], object]:
 
 def describe_failure(error: Exception, workspace: Path) -> Phrase:
     """Return an exception as one sentence, with the last line of the learner's files that it passed."""
-    text = foreign(f"{type(error).__name__}: {error}")
+    from linkwright.launch.errors.user_code import hint_about
+
+    text = _ADDRESS.sub("", f"{type(error).__name__}: {error}")
     frames = traceback.extract_tb(error.__traceback__)
     own = [frame for frame in frames if Path(frame.filename).is_relative_to(workspace)]
     if isinstance(error, SyntaxError) and error.filename and Path(error.filename).is_relative_to(workspace):
-        return phrase(
-            "{file}, line {line}: {error}", file=Path(error.filename).name, line=error.lineno or 1, error=text
-        )
-    if own:
-        return phrase("{file}, line {line}: {error}", file=Path(own[-1].filename).name, line=own[-1].lineno, error=text)
-    return phrase("the check failed: {error}", error=text)
+        text = f"{type(error).__name__}: {error.msg}"
+        hint = lookalike_hint(error.text or "") if "invalid character" in error.msg else None
+        place, line = error.filename, error.lineno or 1
+    elif own:
+        hint = hint_about(error)
+        place, line = own[-1].filename, own[-1].lineno or 1
+    else:
+        return phrase("the check failed: {error}", error=foreign(text))
+    described = phrase("{file}, line {line}: {error}", file=Path(place).name, line=line, error=foreign(text))
+    return add_hint(described, hint)
