@@ -36,6 +36,28 @@ print(json.dumps(files))
 """
 
 
+def expect_valid_setup(folder: Path) -> None:
+    """Require a package to have a ``setup.py`` that is valid Python, if it is a Python package.
+
+    Raises:
+        NotYet: it is missing, or has a syntax error.
+    """
+    path = folder / "setup.py"
+    if not path.is_file():
+        if (folder / "CMakeLists.txt").is_file():
+            return
+        raise NotYet(phrase("'{folder}' has no file '{name}'", folder=folder.name, name="setup.py"))
+    try:
+        compile(path.read_bytes(), str(path), "exec")
+    except (SyntaxError, ValueError) as error:
+        line = getattr(error, "lineno", None) or 1
+        described = phrase(
+            "{file}, line {line}: {error}", file="setup.py", line=line, error=foreign(str(error.args[0]))
+        )
+        text = getattr(error, "text", None) or ""
+        raise NotYet(add_hint(described, lookalike_hint(text))) from None
+
+
 def files_of_setup(folder: Path) -> dict[PurePosixPath, Path]:
     """Return the data files that a ``setup.py`` installs.
 

@@ -39,7 +39,7 @@ def explain_missing(path: Path, finder: PackageFinder, kind: str, name: str) -> 
         for macro in sorted(macro for macro in macros if macro):
             if f"xacro:{macro}" not in tags:
                 return phrase("the macro '{macro}' is never called; write <xacro:{macro} .../>", macro=macro)
-        return _unread(path)
+        return describe_unread(path)
     except LinkwrightError:
         return None
 
@@ -79,7 +79,7 @@ def _without_prefix(element: Element, path: Path) -> Phrase:
     )
 
 
-def _unread(path: Path) -> Phrase | None:
+def describe_unread(path: Path) -> Phrase | None:
     """Return the first finding about an element of the file that is not read, or None."""
     from linkwright.lint.checking import Checker
     from linkwright.lint.targets import find_targets

@@ -14,7 +14,7 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, Severity
 from linkwright.learning.checks.findings import add_hint, describe_error, describe_finding
 from linkwright.learning.checks.installed import files_of_setup
 from linkwright.learning.checks.launched import LaunchCheck
-from linkwright.learning.checks.misplaced import XML_SUFFIXES, explain_missing
+from linkwright.learning.checks.misplaced import XML_SUFFIXES, describe_unread, explain_missing
 from linkwright.learning.checks.missing_files import describe_missing_file
 from linkwright.learning.checks.not_yet import NotYet
 from linkwright.learning.checks.programs import find_program
@@ -134,6 +134,7 @@ class FileFolder:
             path,
             circumstance=circumstance,
             explain_missing=partial(explain_missing, path, self.finder),
+            explain_unread=partial(describe_unread, path),
         )
 
     def yaml(self, name: str) -> Any:

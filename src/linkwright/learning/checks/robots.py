@@ -15,6 +15,8 @@ from linkwright.diagnostics import Phrase, nearest, phrase, quoted_names
 from linkwright.geometry.arrays import matrix_from_pose, row_from_pose
 from linkwright.geometry.shapes import Box, Cylinder, Sphere
 from linkwright.kinematics.tree import KinematicTree
+from linkwright.learning.checks.findings import add_hint
+from linkwright.learning.checks.inertias import inertia_matrix, moments_of_inertia
 from linkwright.learning.checks.not_yet import NotYet
 from linkwright.urdf.model import Collision, Joint, Link, Mesh, Robot, Visual
 
@@ -77,6 +79,7 @@ class RobotCheck(_Checked):
         *,
         circumstance: Phrase | None = None,
         explain_missing: Callable[[str, str], Phrase | None] | None = None,
+        explain_unread: Callable[[], Phrase | None] | None = None,
     ) -> None:
         """Keep a robot.
 
@@ -85,11 +88,13 @@ class RobotCheck(_Checked):
             path: the file that it was read from.
             circumstance: what is special about this robot, such as a property with another value.
             explain_missing: returns why a link or joint that the files contain is missing, from its kind and name.
+            explain_unread: returns which element of the files is not read.
         """
         super().__init__(circumstance)
         self.robot = robot
         self.path = path
         self._explain_missing = explain_missing
+        self._explain_unread = explain_unread
 
     def link(self, name: str) -> LinkCheck:
         """Return a link.
@@ -100,7 +105,7 @@ class RobotCheck(_Checked):
         link = self.robot.links.get(name)
         if link is None:
             raise self._refusal(self._missing("link", name, self.robot.links))
-        return LinkCheck(link, self._rotation(name), self._circumstance)
+        return LinkCheck(link, self._rotation(name), self._circumstance, self._explain_unread)
 
     def joint(self, name: str) -> JointCheck:
         """Return a joint.
@@ -320,10 +325,15 @@ class LinkCheck(_Checked):
     """
 
     def __init__(
-        self, link: Link, rotation: NDArray[np.float64] | None = None, circumstance: Phrase | None = None
+        self,
+        link: Link,
+        rotation: NDArray[np.float64] | None = None,
+        circumstance: Phrase | None = None,
+        explain_unread: Callable[[], Phrase | None] | None = None,
     ) -> None:
         super().__init__(circumstance)
         self.link = link
+        self._explain_unread = explain_unread
         self._rotation = np.eye(3) if rotation is None else rotation
 
     def expect_shape(self, expected: ShapeSpec, part: Part = "visual") -> None:
@@ -339,14 +349,55 @@ class LinkCheck(_Checked):
             NotYet: no visual or collision is this shape.
         """
         parts: Sequence[Visual | Collision] = self.link.visuals if part == "visual" else self.link.collisions
-        if not parts:
-            raise self._refusal(phrase("the link '{link}' has no <{part}>", link=self.link.name, part=part))
+        self.expect_part(part)
         all_objections = (_object_to(candidate, expected, self._rotation) for candidate in parts)
         objections = [objection for objection in all_objections if objection is not None]
         if len(objections) == len(parts):
             raise self._refusal(
                 phrase("the {part} of '{link}': {reason}", part=part, link=self.link.name, reason=objections[0])
             )
+
+    def expect_part(self, part: Part) -> None:
+        """Require the link to have a visual or a collision.
+
+        Raises:
+            NotYet: it has none; the text names an element of the file that is not read.
+        """
+        if self.link.visuals if part == "visual" else self.link.collisions:
+            return
+        message = phrase("the link '{link}' has no <{part}>", link=self.link.name, part=part)
+        raise self._refusal(add_hint(message, self._explain_unread and self._explain_unread()))
+
+    def expect_inertia(self, shape: Box | Cylinder | Sphere, *, along: Vector | None = None, factor: float) -> None:
+        """Require the moments of inertia of a solid shape with the link's mass.
+
+        Args:
+            shape: the shape.
+            along: the direction of a cylinder's axis in the root frame, with all joints at zero.
+            factor: the greatest ratio between a moment and the right one.
+
+        Raises:
+            NotYet: the link has no inertia, or another one.
+        """
+        inertial = self.link.inertial
+        if inertial is None:
+            raise self._refusal(phrase("the link '{link}' has no <{part}>", link=self.link.name, part="inertial"))
+        rotation = self._rotation @ matrix_from_pose(row_from_pose(inertial.origin))[:3, :3]
+        actual = np.diag(rotation @ inertia_matrix(inertial) @ rotation.T)
+        expected = moments_of_inertia(shape, inertial.mass, along)
+        for name, moment, right in zip(("ixx", "iyy", "izz"), actual, expected, strict=True):
+            if not right / factor <= moment <= right * factor:
+                raise self._refusal(
+                    phrase(
+                        "the moment {name} of '{link}' is {actual:.3g} kg m², but should be about {expected:.3g} for a "
+                        "mass of {mass:g} kg; compare the sizes and the rpy that the inertia macro gets",
+                        name=name,
+                        link=self.link.name,
+                        actual=moment,
+                        expected=right,
+                        mass=inertial.mass,
+                    )
+                )
 
     def expect_color(self, rgb: Vector) -> None:
         """Require a visual of the link to have a color.

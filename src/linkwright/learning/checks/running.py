@@ -16,7 +16,6 @@ from typing import Any
 from linkwright.diagnostics import LinkwrightError, foreign, phrase
 from linkwright.files.scratch_folders import ScratchFolder
 from linkwright.learning.checks.declaring import Check, load_checks
-from linkwright.learning.checks.findings import describe_error
 from linkwright.learning.checks.not_yet import NotYet
 from linkwright.learning.checks.programs import describe_failure
 from linkwright.learning.checks.results import CheckResult, StepResult
@@ -65,8 +64,6 @@ def _run(check: Check, work: Work) -> CheckResult:
         check.function(work)
     except NotYet as reason:
         return CheckResult(check.title, passed=False, message=reason.text)
-    except LinkwrightError as error:
-        return CheckResult(check.title, passed=False, message=LocalText.from_phrase(describe_error(error)))
     except Exception as error:  # noqa: BLE001 - the learner's files can be anything
         message = describe_failure(error, work.folder.resolve())
         return CheckResult(check.title, passed=False, message=LocalText.from_phrase(message))
