@@ -70,7 +70,7 @@ CASES = [
         "interfaces",
         "the argument is not used",
         Edit(XACRO, "<plugin>$(arg hardware)", "<plugin>mock_components/GenericSystem"),
-        says="should be gazebo_ros2_control/GazeboSystem",
+        says="write <plugin>$(arg hardware)</plugin>",
     ),
     right("controllers", "a faster manager", Edit(CONTROLLERS, "update_rate: 50", "update_rate: 100")),
     right("controllers", "a wildcard", Edit(CONTROLLERS, "\nbase_controller:\n", "\n/**:\n")),
@@ -159,7 +159,7 @@ CASES = [
         "simulate",
         "no space before the argument",
         Edit(WORLD, "' hardware:=", "'hardware:="),
-        says="the xacro command names no model file",
+        says="write a space before 'hardware:='",
     ),
     wrong(
         "simulate",

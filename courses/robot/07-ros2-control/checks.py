@@ -4,8 +4,8 @@ from linkwright import load
 from linkwright.control.hardware.description import hardware_from_robot
 from linkwright.diagnostics import LinkwrightError
 from linkwright.graph.parameters.files import read_parameter_file
-from linkwright.learning import LocalText, NotYet, check
-from linkwright.xmltree import parse_file
+from linkwright.learning import NotYet, check
+from linkwright.learning.checks.findings import describe_error, describe_finding
 
 XACRO, CONTROLLERS = "urdf/mbot_control.xacro", "config/controllers.yaml"
 WHEELS = ("left_wheel_joint", "right_wheel_joint")
@@ -22,20 +22,16 @@ def package(work):
 
 
 def systems(work, **arguments):
-    found, _ = hardware_from_robot(package(work).robot(XACRO, **arguments).robot)
+    found, findings = hardware_from_robot(package(work).robot(XACRO, **arguments).robot)
+    if not found and findings:
+        raise NotYet(describe_finding(findings[0]))
     if not found:
         raise NotYet(en="The robot has no <ros2_control>.", zh="机器人没有 <ros2_control>。")
     return found
 
 
 def expect_dependencies(work, names):
-    root = parse_file(package(work).file("package.xml")).root
-    listed = {element.text().strip() for element in root.elements() if element.tag in {"depend", "exec_depend"}}
-    if missing := sorted(names - listed):
-        raise NotYet(
-            en=f"package.xml does not list '{missing[0]}' as a dependency at run time.",
-            zh=f"package.xml 没有把“{missing[0]}”列为运行时依赖。",
-        )
+    package(work).expect_dependencies(*names)
 
 
 @check("interfaces", en="Both wheels take velocities.", zh="两个轮子都接受速度命令。")
@@ -76,8 +72,9 @@ def argument_selects_hardware(work):
         if plugins != {expected}:
             names = ", ".join(sorted(plugins))
             raise NotYet(
-                en=f"With {arguments or 'no argument'}, the hardware is {names} and should be {expected}.",
-                zh=f"参数为 {arguments or '空'} 时，硬件是 {names}，应当是 {expected}。",
+                en=f"With hardware:={expected}, the hardware is {names}; write <plugin>$(arg hardware)</plugin>, and "
+                f"{MOCK} as the default.",
+                zh=f"hardware:={expected} 时，硬件是 {names}；请写 <plugin>$(arg hardware)</plugin>，默认值是 {MOCK}。",
             )
 
 
@@ -86,12 +83,7 @@ def parameters(work, node):
     try:
         found = read_parameter_file(package(work).file(CONTROLLERS)).for_node("/" + node)
     except LinkwrightError as error:
-        mistake = error.diagnostics[0]
-        texts, line = LocalText.from_phrase(mistake.message), mistake.span.line if mistake.span else 1
-        raise NotYet(
-            en=f"controllers.yaml, line {line}: {texts.get('en')}.",
-            zh=f"controllers.yaml 第 {line} 行：{texts.get('zh')}。",
-        ) from None
+        raise NotYet(describe_error(error)) from None
     if not found:
         raise NotYet(
             en=f"controllers.yaml has no {node}: with ros__parameters: below it.",
@@ -119,15 +111,15 @@ def controller_knows_wheels(work):
     for name, expected in wanted.items():
         if found.get(name) != expected:
             raise NotYet(
-                en=f"{name} is {found.get(name)}, but should be {expected}.",
-                zh=f"{name} 是 {found.get(name)}，应当是 {expected}。",
+                en=f"{name} is {found.get(name)!r}, but should be the list {expected}.",
+                zh=f"{name} 是 {found.get(name)!r}，应当是列表 {expected}。",
             )
     for name, size in (("wheel_separation", 0.38), ("wheel_radius", 0.06)):
         value = found.get(name)
         if not isinstance(value, (int, float)) or abs(value - size) > 0.001:
             raise NotYet(
-                en=f"{name} is {value}, but should be {size} (in m).",
-                zh=f"{name} 是 {value}，应当是 {size}（单位 m）。",
+                en=f"{name} is {value!r}, but should be {size}, a number in m.",
+                zh=f"{name} 是 {value!r}，应当是数 {size}（单位 m）。",
             )
 
 

@@ -109,7 +109,7 @@ CASES = [
         "words",
         "another topic",
         Edit(DRIVER, "'voice/text'", "'text'"),
-        says="word_driver publishes nothing on /cmd_vel",
+        says="such messages come on /voice/text",
     ),
     wrong(
         "words",

@@ -186,7 +186,9 @@ class _Reader:
                             key=key,
                             parameters_key=PARAMETERS_KEY,
                         ),
-                        did_you_mean(key, [PARAMETERS_KEY]) or _FORM_HINT,
+                        did_you_mean(key, [PARAMETERS_KEY])
+                        or (did_you_mean(parents[-1], [PARAMETERS_KEY]) if parents else None)
+                        or _FORM_HINT,
                     )
                 self._read_names((*parents, *tokens))
             self._advance()

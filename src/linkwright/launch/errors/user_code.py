@@ -142,6 +142,10 @@ def _class_hint(error: AttributeError) -> Phrase | None:
         return phrase("a class stands where its instance belongs; write its name with parentheses: NAME()")
     if name.startswith("_Node__"):
         return phrase("call super().__init__('NAME') first in __init__")
+    if hasattr(owner, "TYPE_NAME"):
+        inner = next((field for field in _public_names(owner) if hasattr(getattr(owner, field, None), name)), None)
+        if name and inner is not None:
+            return phrase("did you mean '{name}'?", name=f".{inner}.{name}")
     frame = _innermost_frame(error)
     if frame is not None and callable(frame.f_globals.get(name)) and "self" in frame.f_locals:
         return phrase("'{name}' is a function outside of the class; indent it as the other methods", name=name)

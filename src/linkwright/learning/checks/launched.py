@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import io
 import math
+import re
 import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
@@ -43,6 +44,7 @@ _QUIET_SECONDS_OF_PROCESSES = 6.0
 
 _PERIOD_SECONDS = 0.02
 _NODE = "lesson_check"
+_LOG_PREFIX = re.compile(r"^\[[^\]]+\] \[\w+\] \[[\d.]+\] \[([^\]]+)\]: ")
 
 
 class LaunchCheck:
@@ -401,7 +403,8 @@ class LaunchCheck:
     def _errors(self) -> list[str]:
         """Return the lines of the launch's output that report errors."""
         words = ("error", "fatal")
-        return [line for line in self._output.getvalue().splitlines() if any(word in line.casefold() for word in words)]
+        lines = self._output.getvalue().splitlines()
+        return [_LOG_PREFIX.sub(r"\1: ", line) for line in lines if any(word in line.casefold() for word in words)]
 
 
 def _offered_profile(node: Node, topic: str) -> QoSProfile:

@@ -161,7 +161,11 @@ def describe_failure(error: Exception, workspace: Path) -> Phrase:
         place, line = error.filename, error.lineno or 1
     elif own:
         place, line = own[-1].filename, own[-1].lineno or 1
-        hint = hint_about(error) or _hint_about_line(error, linecache.getline(place, line))
+        hint = (
+            _own_module_hint(error, Path(place))
+            or hint_about(error)
+            or _hint_about_line(error, linecache.getline(place, line))
+        )
         if isinstance(error, LinkwrightError):
             text, hint = error.diagnostics[0].message, error.diagnostics[0].hint or hint
     elif isinstance(error, LinkwrightError):
@@ -179,6 +183,14 @@ def describe_failure(error: Exception, workspace: Path) -> Phrase:
     return add_hint(described, hint)
 
 
+def _own_module_hint(error: Exception, path: Path) -> Phrase | None:
+    """Return a hint about a module of the same package that is imported without the package, or None."""
+    name = error.name if isinstance(error, ModuleNotFoundError) else None
+    if name is None or not path.with_name(f"{name}.py").is_file():
+        return None
+    return phrase("write 'from {package}.{module} import ...'", package=path.parent.name, module=name)
+
+
 def _hint_about_line(error: Exception, line: str) -> Phrase | None:
     """Return a hint about a line of a node that fails, or None."""
     text = str(error)
@@ -186,6 +198,8 @@ def _hint_about_line(error: Exception, line: str) -> Phrase | None:
         return phrase("pass the function without parentheses, such as self.on_message")
     if "create_" in line and "'type' is not iterable" in text:
         return phrase("first comes the type, then the name, such as create_publisher(Twist, 'cmd_vel', 10)")
+    if "must be of type 'float'" in text:
+        return phrase("write the number with a point, such as 1.0; float(...) converts a value")
     if "the response of" in text:
         return phrase("the callback of a service must end with 'return response'")
     return None

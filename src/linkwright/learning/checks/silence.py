@@ -42,7 +42,7 @@ def _explain_silence(test: Any, topic: str, type_name: str) -> Phrase:
             actual=min(types),
         )
     if types is not None:
-        return phrase("{silent}: {reason}", silent=silent, reason=_explain_idle(test, topic))
+        return phrase("{silent}: {reason}", silent=silent, reason=_explain_idle(test))
     if similar := _similar(topic, publishers):
         return phrase("{silent}; the program publishes {similar}", silent=silent, similar=similar)
     if publishers:
@@ -52,19 +52,25 @@ def _explain_silence(test: Any, topic: str, type_name: str) -> Phrase:
     return phrase("{silent}: the node has no publisher; call create_publisher in __init__", silent=silent)
 
 
-def _explain_idle(test: Any, topic: str) -> Phrase:
+def _explain_idle(test: Any) -> Phrase:
     """Return why a program that has a publisher does not publish."""
     graph = test.graph
-    everywhere = {name for name, _ in graph.get_topic_names_and_types() if graph.get_publishers_info_by_topic(name)}
-    subscriptions = set(_endpoints(test, published=False)) - _GENERAL_TOPICS
-    unheard = sorted(name for name in subscriptions if name not in everywhere)
-    if unheard:
-        others = sorted(everywhere - _GENERAL_TOPICS - {topic})
-        return phrase(
-            "the program subscribes to {topic}, on which no node publishes; there are {others}",
-            topic=unheard[0],
-            others=", ".join(others) or "-",
-        )
+    subscriptions = {
+        name: types for name, types in _endpoints(test, published=False).items() if name not in _GENERAL_TOPICS
+    }
+    published = {
+        name: set(types)
+        for name, types in graph.get_topic_names_and_types()
+        if graph.get_publishers_info_by_topic(name)
+    }
+    for name, types in sorted(subscriptions.items()):
+        others = sorted(other for other in published if other not in subscriptions and types & published[other])
+        if name not in published and others:
+            return phrase(
+                "the program subscribes to {topic}, on which no node publishes; such messages come on {other}",
+                topic=name,
+                other=others[0],
+            )
     for name in sorted(subscriptions):
         if _is_incompatible(graph, name):
             return phrase("the QoS of the subscription to {topic} does not fit that of the publisher", topic=name)
