@@ -37,6 +37,13 @@ MANAGER = """        Node(package='controller_manager', executable='ros2_control
 """
 
 CASES = [
+    wrong("interfaces", "no type", Edit(XACRO, ' type="system"', ""), says='write type="system"'),
+    wrong(
+        "controllers",
+        "a number in quotes",
+        Edit(CONTROLLERS, "wheel_radius: 0.06", 'wheel_radius: "0.06"'),
+        says="wheel_radius is '0.06'",
+    ),
     right(
         "interfaces",
         "joints without a macro",

@@ -58,8 +58,8 @@ class Listening:
             expect_published(self.test, self.topic, self.type_name, self.recording)
         except NotYet as reason:
             raise NotYet(
-                en=f"After '{self.said}' on {TEXTS}, {reason.text.get('en')}.",
-                zh=f"在 {TEXTS} 上收到“{self.said}”之后，{reason.text.get('zh')}。",
+                en=f"After '{self.said}' on {TEXTS}, {reason.text.get('en')}",
+                zh=f"在 {TEXTS} 上收到“{self.said}”之后，{reason.text.get('zh')}",
             ) from None
         return self.recording.last.linear.x, self.recording.last.angular.z
 

@@ -56,7 +56,7 @@ def see(work, color, encoding, profile=RELIABLE, target="red"):
             test.publish("/camera/camera_info", lens, profile)
             test.publish("/camera/image_raw", ball_image(color, encoding, stamp), profile)
             test.advance(0.1)
-        if color == target and encoding != "mono8":
+        if color == target and profile is BEST_EFFORT:
             expect_published(test, "/ball", "geometry_msgs/msg/PointStamped", balls)
         return list(balls)
 
