@@ -342,7 +342,7 @@ class _Fault:
         tag_start = self._text.rfind("<", 0, self._offset)
         tag = _QUOTED.sub(lambda value: " " * len(value[0]), self._text[max(tag_start, 0) : self._offset])
         match_ = _OPEN_QUOTE.search(tag)
-        if tag_start < 0 or match_ is None:
+        if tag_start < 0 or match_ is None or ">" not in match_[2]:
             return None
         message = phrase("the quotes around the value of '{open_quote}' are not closed", open_quote=match_[1])
         hint = lookalike_hint(match_[2]) or phrase("write a quote at the end of the value")

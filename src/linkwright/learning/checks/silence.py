@@ -76,8 +76,8 @@ def _explain_idle(test: Any) -> Phrase:
             return phrase("the QoS of the subscription to {topic} does not fit that of the publisher", topic=name)
     if subscriptions:
         return phrase(
-            "the program has a publisher, but does not call publish(); is the callback of {topics} called, and does "
-            "main() spin the node?",
+            "the program has a publisher, but does not call publish(); is there a timer, or is the callback of "
+            "{topics} called, and does main() spin the node?",
             topics=quoted_names(sorted(subscriptions)),
         )
     return phrase(
