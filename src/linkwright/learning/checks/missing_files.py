@@ -20,7 +20,15 @@ def describe_missing_file(folder: Path, name: str, workspace: Path) -> Phrase:
         name: the path in the folder.
         workspace: the workspace, which may have the file at another place.
     """
-    inside = _similar(folder, name)
+    inside = _same(folder, name)
+    if not inside and (elsewhere := _same(workspace, name)):
+        return phrase(
+            "'{folder}' has no file '{name}'; the workspace has {others}",
+            folder=folder.name,
+            name=name,
+            others=quoted_names(elsewhere),
+        )
+    inside = inside or _similar(folder, name)
     if inside:
         return phrase(
             "'{folder}' has no file '{name}'; it has {others}",
@@ -39,12 +47,15 @@ def describe_missing_file(folder: Path, name: str, workspace: Path) -> Phrase:
     return phrase("'{folder}' has no file '{name}'", folder=folder.name, name=name)
 
 
-def _similar(folder: Path, name: str) -> list[str]:
-    """Return the files of a folder whose names resemble that of a file, the most similar ones first."""
+def _same(folder: Path, name: str) -> list[str]:
+    """Return the files of a folder with the name of a file, apart from capitals and punctuation."""
     names = [file.relative_to(folder).as_posix() for file in _files(folder)]
-    same = [other for other in names if _key(Path(other).name) == _key(Path(name).name)]
-    if same:
-        return same[:_MOST_FILES]
+    return [other for other in names if _key(Path(other).name) == _key(Path(name).name)][:_MOST_FILES]
+
+
+def _similar(folder: Path, name: str) -> list[str]:
+    """Return the files of a folder whose names resemble that of a file."""
+    names = [file.relative_to(folder).as_posix() for file in _files(folder)]
     stem = _stem(name)
     related = [other for other in names if _stem(other) == stem]
     suffix = Path(name).suffix
