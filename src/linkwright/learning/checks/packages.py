@@ -149,7 +149,7 @@ class FileFolder:
         from linkwright.files.yaml_documents import YamlDocument, read_source
 
         try:
-            document = YamlDocument(read_source(self.file(name), phrase("file"), "LEARN109"), "LEARN109")
+            document = YamlDocument(read_source(self.file(name), phrase("file"), "LEARN117"), "LEARN117")
         except LinkwrightError as error:
             raise NotYet(describe_error(error)) from None
         return None if document.root is None else yaml.constructor.SafeConstructor().construct_document(document.root)
