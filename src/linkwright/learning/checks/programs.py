@@ -155,6 +155,8 @@ def describe_failure(error: Exception, workspace: Path) -> Phrase:
     text = _ADDRESS.sub("", f"{type(error).__name__}: {error}")
     frames = traceback.extract_tb(error.__traceback__)
     own = [frame for frame in frames if Path(frame.filename).is_relative_to(workspace)]
+    if isinstance(error, LinkwrightError) and (error.diagnostics[0].span is not None or not own):
+        return describe_error(error)
     if isinstance(error, SyntaxError) and error.filename and Path(error.filename).is_relative_to(workspace):
         text = f"{type(error).__name__}: {error.msg}"
         hint = lookalike_hint(error.text or "") if "invalid character" in error.msg else None
@@ -168,8 +170,6 @@ def describe_failure(error: Exception, workspace: Path) -> Phrase:
         )
         if isinstance(error, LinkwrightError):
             text, hint = error.diagnostics[0].message, error.diagnostics[0].hint or hint
-    elif isinstance(error, LinkwrightError):
-        return describe_error(error)
     elif match := _BUDGET.search(text):
         return phrase(
             "{file}, line {line}: the program computes without an end; a loop must wait, with rclpy.spin_once(node) or "
