@@ -131,7 +131,7 @@ CASES = [
         "load",
         "a forgotten dependency",
         Edit(WORLDS + "package.xml", "  <exec_depend>gazebo_ros</exec_depend>\n", ""),
-        says="package.xml does not depend: 'gazebo_ros' [LW848]",
+        says="package.xml does not list 'gazebo_ros' as a dependency at run time",
     ),
     wrong("wall", "the middle", says="middle of the wall", answer="3"),
     right("wall", "with noise", answer="2.91"),
