@@ -219,7 +219,7 @@ def test_a_finding_in_a_file_has_its_place_its_code_and_its_hint(tmp_path, capsy
     message = str(result.message)
     assert message.startswith(said)
     assert f"{finding.message} [{finding.code}]" in message
-    assert finding.hint is None or message.endswith(f"Hint: {finding.hint}")
+    assert finding.hint is None or message.endswith(f"; {finding.hint}")
     assert re.match(r"robot\.yaml 第 \d+ 行第 \d+ 列：", result.message.get("zh"))
 
 
@@ -228,7 +228,7 @@ def test_a_finding_without_place_names_only_what_is_known():
     assert describe_finding(finding) == "there is no 'x' [LEARN102]"
     assert describe_finding(finding, "a.launch.py") == "a.launch.py: there is no 'x' [LEARN102]"
     line = finding.with_changes(span=Span("/ws/a.yaml", 3, 1, 3, 1), hint=phrase("list them"))
-    assert describe_finding(line) == "a.yaml, line 3: there is no 'x' [LEARN102]. Hint: list them"
+    assert describe_finding(line) == "a.yaml, line 3: there is no 'x' [LEARN102]; list them"
 
 
 def is_running(pid: int) -> bool:

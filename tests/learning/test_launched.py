@@ -107,7 +107,7 @@ def test_a_topic_without_a_publisher_is_missing_and_the_error_of_the_launch_is_s
     launch.write_text(VOICE.format(commands=""))
     with (
         package.launch("voice.launch.py") as running,
-        pytest.raises(NotYet, match=r"^no node publishes '/voice/text_input'$"),
+        pytest.raises(NotYet, match=r"^no node publishes '/voice/text_input'; the running nodes are '/"),
     ):
         running.wait_for_message("/voice/text_input")
     launch.write_text(VOICE.format(commands="missing.yaml"))

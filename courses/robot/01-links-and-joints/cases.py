@@ -6,7 +6,50 @@ RIGHT_ORIGIN = '<origin xyz="0 -0.19 -0.05" rpy="0 0 0"/>'
 
 XACRO_PREFIX = '<robot name="mbot" xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:property name="r" value="0.2"/>'
 
+LEFT_JOINT = '<joint name="left_wheel_joint" type="continuous">'
+BODY_END = """      <material name="yellow"/>
+    </visual>
+  </link>
+"""
+TURNED = (
+    Edit(URDF, LEFT_ORIGIN, '<origin xyz="0 0.19 -0.05" rpy="-1.5708 0 0"/>'),
+    Edit(URDF, '<axis xyz="0 1 0"/>', '<axis xyz="0 0 1"/>'),
+    Edit(URDF, '<origin xyz="0 0 0" rpy="1.5707 0 0"/>', ""),
+)
+
 CASES = [
+    wrong(
+        "package",
+        "an ampersand in the description",
+        Edit("src/my_robot_description/package.xml", "<description>", "<description>wheels & "),
+        says="write '&amp;'",
+    ),
+    wrong("body", "curved quotes", Edit(URDF, '"base_link"', '"base_link”'), says="in place of '”'"),
+    wrong("body", "full-width digits", Edit(URDF, '"0.20"', '"０.２０"'), says="English keyboard: '0.20'"),
+    wrong("body", "a body above its frame", Edit(URDF, "<visual>", '<visual><origin xyz="0 0 0.08"/>'), says="center"),
+    right("left-wheel", "a frame that is turned with its axis", *TURNED),
+    wrong("left-wheel", "a frame that is turned alone", TURNED[0], says="the rpy of a joint's <origin> turns it"),
+    wrong("left-wheel", "behind the end", Edit(URDF, LEFT_JOINT, "</robot>" + LEFT_JOINT), says="after the end"),
+    wrong(
+        "left-wheel",
+        "a link that is not closed until the end",
+        Edit(URDF, BODY_END, BODY_END.replace("  </link>\n", "")),
+        Edit(URDF, "</robot>", "</link></robot>"),
+        says="it is inside <link>, but must be directly inside <robot>",
+    ),
+    wrong(
+        "casters",
+        "a material without a definition",
+        Edit(URDF, '<material name="black">', '<material name="blak">'),
+        says="did you mean 'blak'",
+    ),
+    wrong(
+        "camera",
+        "turned to the left",
+        Edit(URDF, 'xyz="0.17 0 0.10" rpy="0 0 0"', 'xyz="0.17 0 0.10" rpy="0 0 0.5"'),
+        says="is turned",
+    ),
+    wrong("ground", "millimeters", says="not the unit", answer="110"),
     right("body", "with another color", Edit(URDF, "1 0.4 0 1", "0 0 1 1")),
     right("body", "with numbers written differently", Edit(URDF, 'radius="0.20"', 'radius="2e-1"')),
     right(

@@ -14,7 +14,7 @@ def robot(work):
     zh="工作空间中有功能包 my_robot_description。",
 )
 def has_package(work):
-    work.package("my_robot_description")
+    work.package("my_robot_description").expect_manifest()
 
 
 @check("body", en="The robot has the link base_link.", zh="机器人有名为 base_link 的连杆。")
@@ -28,7 +28,7 @@ def has_base_link(work):
     zh="机身是半径 0.20 m、长度 0.16 m 的圆柱。",
 )
 def body_is_cylinder(work):
-    robot(work).link("base_link").expect_shape(ShapeSpec(Cylinder(0.20, 0.16), along=(0, 0, 1)))
+    robot(work).link("base_link").expect_shape(ShapeSpec(Cylinder(0.20, 0.16), along=(0, 0, 1), at=(0, 0, 0)))
 
 
 def expect_wheel(work, side, y):
@@ -100,6 +100,7 @@ def camera_is_fixed(work):
 )
 def camera_is_in_front(work):
     robot(work).expect_position("camera_link", (0.17, 0, 0.10), frame="base_link")
+    robot(work).expect_direction("camera_link", (1, 0, 0), (1, 0, 0), frame="base_link")
 
 
 @check("camera", en="The camera is a box of 0.03 m × 0.04 m × 0.04 m.", zh="相机是 0.03 m × 0.04 m × 0.04 m 的长方体。")

@@ -8,6 +8,34 @@ TWO_PARAMETERS, LEFT = 'params="prefix reflect"', '<xacro:wheel prefix="left" re
 FOOTPRINT = "${wheel_radius + 0.05}"
 
 CASES = [
+    wrong(
+        "properties",
+        "no dollar and no braces",
+        Edit(XACRO, 'radius="${base_radius}"', 'radius="base_radius"'),
+        says="write ${base_radius}",
+    ),
+    wrong(
+        "macro", "a call without the prefix", Edit(XACRO, LEFT, LEFT.replace("xacro:", "")), says="write <xacro:wheel"
+    ),
+    wrong(
+        "arithmetic", "the number", Edit(XACRO, CASTER_HEIGHT, "-0.095"), says="when the check sets base_length to 0.3"
+    ),
+    wrong(
+        "footprint",
+        "a joint that turns",
+        Edit(XACRO, 'name="base_joint" type="fixed"', 'name="base_joint" type="continuous"'),
+        says="should be 'fixed'",
+    ),
+    wrong(
+        "footprint",
+        "a point with a visual",
+        Edit(
+            XACRO,
+            '<link name="base_footprint"/>',
+            '<link name="base_footprint"><visual><geometry><sphere radius="0.1"/></geometry></visual></link>',
+        ),
+        says="without <visual>",
+    ),
     right(
         "properties",
         "a property from another one",

@@ -104,10 +104,20 @@ def casters_touch_body(work):
 @check("footprint", en="The tree of links begins with base_footprint.", zh="连杆树从 base_footprint 开始。")
 def footprint_is_root(work):
     robot = package(work).robot(XACRO)
-    robot.link("base_footprint")
+    footprint = robot.link("base_footprint").link
     root = robot.robot.root
     if root != "base_footprint":
-        raise NotYet(en=f"The root of the tree is '{root}'.", zh=f"树的根是“{root}”。")
+        raise NotYet(
+            en=f"The root of the tree is '{root}': base_footprint must be the parent of base_link, not its child.",
+            zh=f"树的根是“{root}”：base_footprint 应当是 base_link 的 parent，而不是它的 child。",
+        )
+    joint = next(joint for joint in robot.robot.joints.values() if joint.child == "base_link")
+    robot.joint(joint.name).expect_type("fixed")
+    if footprint.visuals or footprint.collisions:
+        raise NotYet(
+            en="base_footprint is a point on the ground: leave it without <visual> and <collision>.",
+            zh="base_footprint 是地面上的一个点：不要给它 <visual> 和 <collision>。",
+        )
 
 
 @check("footprint", en="base_link is 0.11 m above it.", zh="base_link 在它上方 0.11 m。")

@@ -52,6 +52,47 @@ setup(
 """
 
 CASES = [
+    wrong(
+        "publisher",
+        "a file with another ending",
+        {LAUNCH: None, PACKAGE + "launch/display.py": WITH_XACRO_MODULE},
+        says="it has 'launch/display.py'",
+    ),
+    wrong(
+        "publisher",
+        "a missing import",
+        Edit(LAUNCH, "from launch_ros.actions import Node\n", ""),
+        says="import it from 'launch_ros.actions'",
+    ),
+    wrong(
+        "publisher",
+        "a misspelt executable",
+        Edit(LAUNCH, "executable='robot_state_publisher'", "executable='state'"),
+        says="no executable 'state'",
+    ),
+    wrong(
+        "joints",
+        "the same name twice",
+        Edit(
+            LAUNCH,
+            "executable='joint_state_publisher'",
+            "executable='joint_state_publisher', name='robot_state_publisher'",
+        ),
+        says="two nodes have the name",
+    ),
+    wrong(
+        "rviz", "another topic", Edit(RVIZ, "Value: /robot_description", "Value: /robot_model"), says="is /robot_model"
+    ),
+    wrong("rviz", "a full-width colon", Edit(RVIZ, "Fixed Frame: base", "Fixed Frame：base"), says="full-width colon"),
+    wrong("rviz", "no -d", Edit(LAUNCH, "arguments=['-d', ", "arguments=["), says="rviz2 needs two arguments"),
+    wrong("argument", "an f-string", Edit(LAUNCH, "['xacro ', model]", "[f'xacro {model}']"), says="or an f-string"),
+    wrong("install", "no star", Edit(SETUP, "*shared_files()", "shared_files()"), says="write a star"),
+    wrong(
+        "install",
+        "package.xml is left out",
+        Edit(SETUP, "(str(share), ['package.xml']),", ""),
+        says="does not install 'package.xml'",
+    ),
     right("publisher", "with the module xacro", {LAUNCH: WITH_XACRO_MODULE}),
     right("joints", "with the module xacro", {LAUNCH: WITH_XACRO_MODULE}),
     wrong("publisher", "no space after xacro", Edit(LAUNCH, "'xacro '", "'xacro'"), says="display.launch.py"),
@@ -108,7 +149,7 @@ CASES = [
         "rviz",
         "wrong indentation",
         Edit(RVIZ, "  Displays:\n    - Class", "    Displays:\n  - Class"),
-        says="not an RViz configuration",
+        says="compare the indentation",
     ),
     wrong(
         "argument",

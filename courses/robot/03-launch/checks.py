@@ -1,7 +1,4 @@
-import yaml
-
 from linkwright.learning import NotYet, check
-from linkwright.xmltree import parse_file
 
 LAUNCH = "display.launch.py"
 JOINTS = {"left_wheel_joint", "right_wheel_joint", "front_caster_joint", "back_caster_joint"}
@@ -32,6 +29,7 @@ def publishes_robot(work):
 def publishes_joints(work):
     with package(work).launch(LAUNCH) as running:
         names = set(running.wait_for_message("/joint_states").name)
+        running.expect_distinct_nodes()
     if missing := sorted(JOINTS - names):
         raise NotYet(en=f"/joint_states has no {missing[0]}.", zh=f"/joint_states 中没有 {missing[0]}。")
 
@@ -46,25 +44,47 @@ def knows_wheel(work):
         running.expect_transform("base_link", "left_wheel_link", (0, 0.19, -0.05))
 
 
+def expect_robot_model(displays):
+    """Require one of the RobotModel displays to be on, with the topic /robot_description."""
+    shown = [display for display in displays if display.get("Value", display.get("Enabled")) is not False]
+    if not shown:
+        raise NotYet(
+            en="The RobotModel display is switched off; write 'Value: true'.",
+            zh="RobotModel 显示项被关闭了；请写“Value: true”。",
+        )
+    topics = [(display.get("Description Topic") or {}).get("Value", "-") for display in shown]
+    if not any(str(topic).lstrip("/") == "robot_description" for topic in topics):
+        raise NotYet(
+            en=f"The Description Topic of the RobotModel display is {topics[0]}, but should be /robot_description.",
+            zh=f"RobotModel 显示项的 Description Topic 是 {topics[0]}，应当是 /robot_description。",
+        )
+
+
 @check(
     "rviz",
     en="urdf.rviz shows the robot in the frame base_footprint.",
     zh="urdf.rviz 在坐标系 base_footprint 中显示机器人。",
 )
 def configuration_shows_robot(work):
-    path = package(work).file("rviz/urdf.rviz")
+    data = package(work).yaml("rviz/urdf.rviz")
     try:
-        manager = yaml.safe_load(path.read_text(encoding="utf-8"))["Visualization Manager"]
-        displays = {display["Class"]: display for display in manager["Displays"]}
+        manager = data["Visualization Manager"]
+        displays = [(str(display["Class"]), display) for display in manager["Displays"]]
         frame = manager["Global Options"]["Fixed Frame"]
-    except (yaml.YAMLError, KeyError, TypeError) as error:
+    except (KeyError, TypeError) as error:
+        what = str(error) if isinstance(error, KeyError) else "indentation"
         raise NotYet(
-            en=f"urdf.rviz is not an RViz configuration: {str(error).splitlines()[0]}.",
-            zh=f"urdf.rviz 不是 RViz 的配置：{str(error).splitlines()[0]}。",
+            en=f"urdf.rviz is not an RViz configuration: look for {what}, and compare the indentation with the text.",
+            zh=f"urdf.rviz 不是 RViz 的配置：请检查 {what}，并对照文中的缩进。",
         ) from None
-    robot = displays.get("rviz_default_plugins/RobotModel")
-    if robot is None:
-        raise NotYet(en="urdf.rviz has no RobotModel display.", zh="urdf.rviz 中没有 RobotModel 显示项。")
+    robots = [display for name, display in displays if name == "rviz_default_plugins/RobotModel"]
+    if not robots:
+        names = ", ".join(name for name, _ in displays)
+        raise NotYet(
+            en=f"urdf.rviz has no RobotModel display (rviz_default_plugins/RobotModel); it has {names}.",
+            zh=f"urdf.rviz 中没有 RobotModel 显示项（rviz_default_plugins/RobotModel）；有 {names}。",
+        )
+    expect_robot_model(robots)
     if frame != "base_footprint":
         raise NotYet(
             en=f"The fixed frame is '{frame}', but should be 'base_footprint'.",
@@ -75,7 +95,7 @@ def configuration_shows_robot(work):
 @check("rviz", en="The launch file starts rviz2.", zh="launch 文件启动 rviz2。")
 def starts_rviz(work):
     with package(work).launch(LAUNCH) as running:
-        running.expect_node("/rviz2")
+        running.expect_rviz(package(work).file("rviz/urdf.rviz"))
 
 
 @check(
@@ -105,14 +125,9 @@ def shows_default(work):
     zh="package.xml 列出了 launch 文件用到的功能包。",
 )
 def lists_dependencies(work):
-    root = parse_file(package(work).file("package.xml")).root
-    tags = {"depend", "exec_depend"}
-    listed = {element.text().strip() for element in root.elements() if element.tag in tags}
-    if missing := sorted(set(NEEDED) - listed):
-        raise NotYet(
-            en=f"package.xml does not list '{missing[0]}' as a dependency at run time.",
-            zh=f"package.xml 没有把“{missing[0]}”列为运行时依赖。",
-        )
+    package(work).expect_dependencies(*NEEDED)
+    if "ament_index_python" in package(work).file(f"launch/{LAUNCH}").read_text(encoding="utf-8"):
+        package(work).expect_dependencies("ament_index_python")
 
 
 @check(

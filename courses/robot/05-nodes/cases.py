@@ -36,11 +36,57 @@ def main(args=None):
         rclpy.spin_once(node, timeout_sec=0.1)
 """
 
+TICK = "        self.create_timer(0.1, self.move)\n"
+SPEED, SPEED_ONCE = "self.get_parameter('speed').value", "self.declare_parameter('speed', 0.2)"
+
 CASES = [
+    wrong("package", "no function", Edit(SETUP, "first_move:main", "first_move"), says="the entry names no function"),
+    wrong(
+        "package",
+        "a function that is missing",
+        Edit(SETUP, "first_move:main", "first_move:start"),
+        says="it has 'main'",
+    ),
+    wrong(
+        "publish",
+        "another type",
+        Edit(MOVE, "create_publisher(Twist,", "create_publisher(String,"),
+        Edit(MOVE, "import Twist\n", "import Twist\nfrom std_msgs.msg import String\n"),
+        Edit(MOVE, "publish(message)", "publish(String())"),
+        says="the program publishes std_msgs/msg/String there",
+    ),
+    wrong("publish", "no timer", Edit(MOVE, TICK, ""), says="is there a timer"),
+    wrong(
+        "publish",
+        "a class in place of a message",
+        Edit(MOVE, "publish(message)", "publish(Twist)"),
+        says="write Twist()",
+    ),
+    wrong(
+        "stop",
+        "signals are left to rclpy",
+        Edit(MOVE, "signal_handler_options=SignalHandlerOptions.NO", ""),
+        says="Ctrl-C shuts rclpy down",
+    ),
+    wrong(
+        "parameter",
+        "read only once",
+        Edit(MOVE, SPEED_ONCE, "self.speed = " + SPEED_ONCE + ".value"),
+        Edit(MOVE, "message.linear.x = " + SPEED, "message.linear.x = self.speed"),
+        says="read the parameter in move()",
+    ),
+    wrong(
+        "time",
+        "the clock of the computer",
+        Edit(MOVE, "self.get_clock().now()", "time.time()"),
+        Edit(MOVE, "(now - self.start).nanoseconds * 1e-9", "now - self.start"),
+        Edit(MOVE, "import rclpy\n", "import time\n\nimport rclpy\n"),
+        says="at half speed",
+    ),
     wrong(
         "package",
         "no executable",
-        Edit(SETUP, "'first_move = my_control.first_move:main'", ""),
+        Edit(SETUP, "'first_move = my_control.first_move:main',", ""),
         says="declares no executable 'first_move'",
     ),
     wrong(
@@ -51,8 +97,13 @@ CASES = [
     ),
     right("publish", "a loop with time.sleep", {MOVE: LOOP}),
     right("publish", "a loop with spin_once", {MOVE: RATE}),
-    wrong("publish", "no spin", Edit(MOVE, "rclpy.spin(FirstMove())", "FirstMove()"), says="does main() spin the node"),
-    wrong("publish", "another topic", Edit(MOVE, "'cmd_vel'", "'cmd_val'"), says="Nothing is published on /cmd_vel"),
+    wrong(
+        "publish",
+        "no spin",
+        Edit(MOVE, "rclpy.spin(FirstMove())", "FirstMove()"),
+        says="does main() create one and spin it",
+    ),
+    wrong("publish", "another topic", Edit(MOVE, "'cmd_vel'", "'cmd_val'"), says="publishes /cmd_val"),
     wrong(
         "publish", "a misspelt method", Edit(MOVE, "create_publisher", "create_publihser"), says="first_move.py, line 9"
     ),
@@ -107,12 +158,10 @@ CASES = [
     wrong(
         "subscribe",
         "not in setup.py",
-        Edit(SETUP, "            'odometer = my_control.odometer:main'", ""),
+        Edit(SETUP, "            'odometer = my_control.odometer:main',\n", ""),
         says="declares no executable 'odometer'",
     ),
-    wrong(
-        "subscribe", "the wrong topic", Edit(ODOMETER, "'odom'", "'odometry'"), says="Nothing is published on /distance"
-    ),
+    wrong("subscribe", "the wrong topic", Edit(ODOMETER, "'odom'", "'odometry'"), says="subscribes to /odometry"),
     wrong("service", "no return", Edit(ODOMETER, "        return response\n", ""), says="odometer.py"),
     wrong(
         "service",

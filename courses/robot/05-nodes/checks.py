@@ -1,10 +1,16 @@
 import math
+import re
 
 from linkwright import SteppedSimulation
-from linkwright.learning import NotYet, check
-from linkwright.messages import get_service
+from linkwright.learning import NotYet, check, expect_published
+from linkwright.messages import get_message, get_service
+from linkwright.testing import SteppedGraph
 
 SPEED, TURN = 0.2, 0.5
+TWIST = "geometry_msgs/msg/Twist"
+SET_PARAMETERS = "/set_parameters"
+BUDGET = 5.0
+"""The seconds for which the node may compute without waiting."""
 
 
 def program(work, name):
@@ -28,20 +34,13 @@ def run_first_move(work, seconds, *arguments):
     """Run the node, and return the recorded velocities."""
     main = program(work, "first_move")
     with simulate(work) as test:
-        commands = test.record("/cmd_vel", "geometry_msgs/msg/Twist")
-        test.start_program(main, ["--ros-args", "-p", "use_sim_time:=true", *arguments])
+        commands = test.record("/cmd_vel", TWIST)
+        test.start_program(main, ["--ros-args", "-p", "use_sim_time:=true", *arguments], budget=BUDGET)
         test.advance(seconds)
+        expect_published(test, "/cmd_vel", TWIST, commands)
         running = list(commands)
         position = test.robot_pose()[:2]
     return running, list(commands), position
-
-
-def expect_commands(commands):
-    if not commands:
-        raise NotYet(
-            en="Nothing is published on /cmd_vel; is the topic right, and does main() spin the node?",
-            zh="/cmd_vel 上没有消息；话题名对吗？main() 有没有让节点 spin？",
-        )
 
 
 @check(
@@ -49,18 +48,18 @@ def expect_commands(commands):
 )
 def publishes_at_rate(work):
     commands, _, _ = run_first_move(work, 2.0)
-    expect_commands(commands)
     if not 15 <= len(commands) <= 25:
         raise NotYet(
-            en=f"The node published {len(commands)} messages in 2 s, but should publish about 20.",
-            zh=f"节点在 2 s 内发布了 {len(commands)} 条消息，应当约为 20 条。",
+            en=f"The node published {len(commands)} messages in 2 s, but should publish about 20; compare the timer: "
+            "create_timer(0.1, self.move), with the period in seconds and the function without parentheses.",
+            zh=f"节点在 2 s 内发布了 {len(commands)} 条消息，应当约为 20 条；请检查定时器："
+            "create_timer(0.1, self.move)，周期以秒为单位，函数名后不加括号。",
         )
 
 
 @check("publish", en="It drives at 0.2 m/s and turns at 0.5 rad/s.", zh="它以 0.2 m/s 前进，以 0.5 rad/s 转弯。")
 def publishes_velocity(work):
     commands, _, _ = run_first_move(work, 1.0)
-    expect_commands(commands)
     last = commands[-1]
     if abs(last.linear.x - SPEED) > 0.001 or abs(last.angular.z - TURN) > 0.001:
         raise NotYet(
@@ -81,8 +80,7 @@ def knows_radius(work):
 
 @check("stop", en="The last velocity is zero when the node has ended.", zh="节点结束后，最后的速度是零。")
 def stops_robot(work):
-    running, all_commands, _ = run_first_move(work, 1.0)
-    expect_commands(running)
+    _, all_commands, _ = run_first_move(work, 1.0)
     last = all_commands[-1]
     if last.linear.x or last.angular.z:
         raise NotYet(
@@ -93,13 +91,26 @@ def stops_robot(work):
 
 def expect_speed(work, speed, *arguments):
     commands, _, _ = run_first_move(work, 1.0, *arguments)
-    expect_commands(commands)
     actual = commands[-1].linear.x
     if abs(actual - speed) > 0.001:
         what = " ".join(arguments) or "no arguments"
         raise NotYet(
             en=f"With {what}, the speed is {actual:g} m/s, but should be {speed:g}.",
             zh=f"参数为“{' '.join(arguments) or '无'}”时，速度是 {actual:g} m/s，应当是 {speed:g}。",
+        )
+
+
+@check("stop", en="rclpy leaves Ctrl-C to the program.", zh="rclpy 把 Ctrl-C 留给程序处理。")
+def leaves_signals(work):
+    sources = (work.package("my_control").folder / "my_control").glob("*.py")
+    if not any(
+        re.search(r"SignalHandlerOptions\.NO\b|\bsignal\.signal\(", source.read_text("utf-8")) for source in sources
+    ):
+        raise NotYet(
+            en="After rclpy.init() alone, Ctrl-C shuts rclpy down before the program can publish; write "
+            "rclpy.init(signal_handler_options=SignalHandlerOptions.NO).",
+            zh="只写 rclpy.init() 时，按 Ctrl-C 会先关闭 rclpy，程序来不及发布；请写成 "
+            "rclpy.init(signal_handler_options=SignalHandlerOptions.NO)。",
         )
 
 
@@ -113,10 +124,31 @@ def obeys_parameter(work):
     expect_speed(work, 0.4, "-p", "speed:=0.4")
 
 
+@check("parameter", en="A change while the node runs counts at once.", zh="节点运行时修改参数，立即生效。")
+def obeys_change(work):
+    with SteppedGraph() as test:
+        commands = test.record("/cmd_vel", TWIST)
+        test.start_program(program(work, "first_move"), budget=BUDGET)
+        test.advance(0.5)
+        expect_published(test, "/cmd_vel", TWIST, commands)
+        service = next(name for name, _ in test.graph.get_service_names_and_types() if name.endswith(SET_PARAMETERS))
+        request = get_service("rcl_interfaces/srv/SetParameters").Request()
+        value = get_message("rcl_interfaces/msg/ParameterValue")(type=3, double_value=0.1)
+        request.parameters = [get_message("rcl_interfaces/msg/Parameter")(name="speed", value=value)]
+        test.call(service, request, timeout=1.0)
+        test.advance(0.5)
+        speed = commands.last.linear.x
+    if abs(speed - 0.1) > 0.001:
+        raise NotYet(
+            en=f"After 'param set speed 0.1', the speed is still {speed:g} m/s; read the parameter in move().",
+            zh=f"执行“param set speed 0.1”之后，速度仍是 {speed:g} m/s；请在 move() 中读取参数。",
+        )
+
+
 def drive_with_odometer(work, test):
     """Drive forward and back, and return the recorded distances and the way driven."""
     distances = test.record("/distance", "std_msgs/msg/Float64")
-    test.start_program(program(work, "odometer"), ["--ros-args", "-p", "use_sim_time:=true"])
+    test.start_program(program(work, "odometer"), ["--ros-args", "-p", "use_sim_time:=true"], budget=BUDGET)
     test.advance(0.5)
     way, last = 0.0, test.robot_pose()[:2]
     for speed in (0.4, -0.4):
@@ -126,8 +158,7 @@ def drive_with_odometer(work, test):
             here = test.robot_pose()[:2]
             way += math.dist(last, here)
             last = here
-    if not len(distances):
-        raise NotYet(en="Nothing is published on /distance.", zh="/distance 上没有消息。")
+    expect_published(test, "/distance", "std_msgs/msg/Float64", distances)
     return distances, way
 
 
@@ -172,6 +203,12 @@ def service_resets(work):
 
 
 def call_reset(test):
+    types = dict(test.graph.get_service_names_and_types()).get("/reset_distance")
+    if types and "std_srvs/srv/Trigger" not in types:
+        raise NotYet(
+            en=f"The service /reset_distance has the type {types[0]}, but should have std_srvs/srv/Trigger.",
+            zh=f"服务 /reset_distance 的类型是 {types[0]}，应当是 std_srvs/srv/Trigger。",
+        )
     try:
         return test.call("/reset_distance", get_service("std_srvs/srv/Trigger").Request(), timeout=2.0)
     except LookupError:
@@ -186,7 +223,6 @@ def call_reset(test):
 @check("time", en="The robot drives during the four seconds.", zh="机器人在四秒之内行驶。")
 def drives_during_time(work):
     commands, _, _ = run_first_move(work, 3.0)
-    expect_commands(commands)
     if not commands[-1].linear.x:
         raise NotYet(en="After 3 s the robot has stopped already.", zh="3 s 之后机器人已经停下了。")
 
@@ -194,15 +230,36 @@ def drives_during_time(work):
 @check("time", en="It stands still after them.", zh="四秒之后静止。")
 def stands_after_time(work):
     commands, _, _ = run_first_move(work, 6.0)
-    expect_commands(commands)
     if commands[-1].linear.x or commands[-1].angular.z:
         raise NotYet(en="After 6 s the robot still drives.", zh="6 s 之后机器人仍在行驶。")
+
+
+@check("time", en="The four seconds are those of the node's clock.", zh="四秒由节点的时钟计量。")
+def uses_clock(work):
+    """Run the node with simulated time at half rate."""
+    with SteppedGraph() as test:
+        commands = test.record("/cmd_vel", TWIST)
+        test.start_program(program(work, "first_move"), ["--ros-args", "-p", "use_sim_time:=true"], budget=BUDGET)
+        clock = get_message("rosgraph_msgs/msg/Clock")
+        for step in range(130):
+            if step == 110:
+                early = list(commands)
+            now = clock()
+            now.clock.sec, now.clock.nanosec = step // 40, step % 40 * 25_000_000
+            test.publish("/clock", now)
+            test.advance(0.05)
+        expect_published(test, "/cmd_vel", TWIST, commands)
+    if early and not early[-1].linear.x:
+        raise NotYet(
+            en="With a simulation at half speed, the robot stops too early: use self.get_clock().now(), and the "
+            "difference to the first time.",
+            zh="仿真以一半速度运行时，机器人停得太早：请使用 self.get_clock().now()，并与第一次的时间相减。",
+        )
 
 
 @check("time", en="With duration:=1.0 it stops sooner.", zh="duration:=1.0 时更早停下。")
 def obeys_duration(work):
     commands, _, _ = run_first_move(work, 2.0, "-p", "duration:=1.0")
-    expect_commands(commands)
     if commands[-1].linear.x:
         raise NotYet(
             en="With duration:=1.0 the robot still drives after 2 s.",

@@ -48,7 +48,7 @@ CASES = [
         says="does not move",
     ),
     wrong("meter", "no stop", Edit(METER, "        else:\n            self.drive(0.0)\n", ""), says="still drives"),
-    wrong("meter", "the wrong topic", Edit(METER, "'odom'", "'odometry'"), says="does not move"),
+    wrong("meter", "the wrong topic", Edit(METER, "'odom'", "'odometry'"), says="such messages come on /odom"),
     wrong(
         "brake",
         "no braking",

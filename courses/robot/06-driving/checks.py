@@ -2,10 +2,13 @@ import math
 from itertools import pairwise
 
 from linkwright import SteppedSimulation
-from linkwright.learning import NotYet, check
+from linkwright.learning import NotYet, check, expect_published
 
 STARTS = ((0.0, 0.0, 0.0), (1.0, -2.0, 2.0))
 BODY = 0.2
+TWIST = "geometry_msgs/msg/Twist"
+BUDGET = 5.0
+"""The seconds for which a node may compute without waiting."""
 
 
 class Run:
@@ -21,7 +24,8 @@ class Run:
     def __enter__(self):
         self.test.__enter__()
         self.test.advance(0.2)
-        self.test.start_program(self.main, ["--ros-args", "-p", "use_sim_time:=true"])
+        self.commands = self.test.record("/cmd_vel", TWIST)
+        self.test.start_program(self.main, ["--ros-args", "-p", "use_sim_time:=true"], budget=BUDGET)
         return self
 
     def __exit__(self, *error):
@@ -37,6 +41,7 @@ class Run:
         for _ in range(round(seconds / period)):
             self.test.advance(period)
             positions.append(self.position)
+        expect_published(self.test, "/cmd_vel", TWIST, self.commands)
         return positions
 
 
@@ -47,11 +52,16 @@ def expect_meter(work, tolerance):
             driven = math.dist(run.start, positions[-1])
             still = math.dist(positions[-10], positions[-1]) < 0.005
         if driven < 0.05:
-            raise NotYet(en="The robot does not move.", zh="机器人没有动。")
+            raise NotYet(
+                en="The robot does not move: all velocities on /cmd_vel are zero.",
+                zh="机器人没有动：/cmd_vel 上的速度都是零。",
+            )
         if not still:
             raise NotYet(
-                en=f"After 12 s the robot still drives; it is {driven:.2f} m from its start.",
-                zh=f"12 s 之后机器人仍在行驶；离出发点 {driven:.2f} m。",
+                en=f"12 s after its start at x = {start[0]:g}, y = {start[1]:g}, yaw = {start[2]:g}, the robot still "
+                f"drives; it is {driven:.2f} m from there.",
+                zh=f"从 x = {start[0]:g}，y = {start[1]:g}，yaw = {start[2]:g} 出发 12 s 之后，机器人仍在行驶；"
+                f"离出发点 {driven:.2f} m。",
             )
         if abs(driven - 1.0) > tolerance:
             raise NotYet(

@@ -37,6 +37,13 @@ MANAGER = """        Node(package='controller_manager', executable='ros2_control
 """
 
 CASES = [
+    wrong("interfaces", "no type", Edit(XACRO, ' type="system"', ""), says='write type="system"'),
+    wrong(
+        "controllers",
+        "a number in quotes",
+        Edit(CONTROLLERS, "wheel_radius: 0.06", 'wheel_radius: "0.06"'),
+        says="wheel_radius is '0.06'",
+    ),
     right(
         "interfaces",
         "joints without a macro",
@@ -70,7 +77,7 @@ CASES = [
         "interfaces",
         "the argument is not used",
         Edit(XACRO, "<plugin>$(arg hardware)", "<plugin>mock_components/GenericSystem"),
-        says="should be gazebo_ros2_control/GazeboSystem",
+        says="write <plugin>$(arg hardware)</plugin>",
     ),
     right("controllers", "a faster manager", Edit(CONTROLLERS, "update_rate: 50", "update_rate: 100")),
     right("controllers", "a wildcard", Edit(CONTROLLERS, "\nbase_controller:\n", "\n/**:\n")),
@@ -159,7 +166,7 @@ CASES = [
         "simulate",
         "no space before the argument",
         Edit(WORLD, "' hardware:=", "'hardware:="),
-        says="the xacro command names no model file",
+        says="write a space before 'hardware:='",
     ),
     wrong(
         "simulate",

@@ -4,7 +4,7 @@ from linkwright import load
 from linkwright.control.hardware.description import hardware_from_robot
 from linkwright.graph.parameters.files import read_parameter_file
 from linkwright.learning import NotYet, check
-from linkwright.xmltree import parse_file
+from linkwright.learning.checks.findings import describe_finding
 
 XACRO, CONTROLLERS = "urdf/mbot_control.xacro", "config/controllers.yaml"
 WHEELS = ("left_wheel_joint", "right_wheel_joint")
@@ -21,20 +21,16 @@ def package(work):
 
 
 def systems(work, **arguments):
-    found, _ = hardware_from_robot(package(work).robot(XACRO, **arguments).robot)
+    found, findings = hardware_from_robot(package(work).robot(XACRO, **arguments).robot)
+    if not found and findings:
+        raise NotYet(describe_finding(findings[0]))
     if not found:
         raise NotYet(en="The robot has no <ros2_control>.", zh="机器人没有 <ros2_control>。")
     return found
 
 
 def expect_dependencies(work, names):
-    root = parse_file(package(work).file("package.xml")).root
-    listed = {element.text().strip() for element in root.elements() if element.tag in {"depend", "exec_depend"}}
-    if missing := sorted(names - listed):
-        raise NotYet(
-            en=f"package.xml does not list '{missing[0]}' as a dependency at run time.",
-            zh=f"package.xml 没有把“{missing[0]}”列为运行时依赖。",
-        )
+    package(work).expect_dependencies(*names)
 
 
 @check("interfaces", en="Both wheels take velocities.", zh="两个轮子都接受速度命令。")
@@ -75,8 +71,9 @@ def argument_selects_hardware(work):
         if plugins != {expected}:
             names = ", ".join(sorted(plugins))
             raise NotYet(
-                en=f"With {arguments or 'no argument'}, the hardware is {names} and should be {expected}.",
-                zh=f"参数为 {arguments or '空'} 时，硬件是 {names}，应当是 {expected}。",
+                en=f"With hardware:={expected}, the hardware is {names}; write <plugin>$(arg hardware)</plugin>, and "
+                f"{MOCK} as the default.",
+                zh=f"hardware:={expected} 时，硬件是 {names}；请写 <plugin>$(arg hardware)</plugin>，默认值是 {MOCK}。",
             )
 
 
@@ -110,15 +107,15 @@ def controller_knows_wheels(work):
     for name, expected in wanted.items():
         if found.get(name) != expected:
             raise NotYet(
-                en=f"{name} is {found.get(name)}, but should be {expected}.",
-                zh=f"{name} 是 {found.get(name)}，应当是 {expected}。",
+                en=f"{name} is {found.get(name)!r}, but should be the list {expected}.",
+                zh=f"{name} 是 {found.get(name)!r}，应当是列表 {expected}。",
             )
     for name, size in (("wheel_separation", 0.38), ("wheel_radius", 0.06)):
         value = found.get(name)
         if not isinstance(value, (int, float)) or abs(value - size) > 0.001:
             raise NotYet(
-                en=f"{name} is {value}, but should be {size} (in m).",
-                zh=f"{name} 是 {value}，应当是 {size}（单位 m）。",
+                en=f"{name} is {value!r}, but should be {size}, a number in m.",
+                zh=f"{name} 是 {value!r}，应当是数 {size}（单位 m）。",
             )
 
 

@@ -8,7 +8,6 @@ from linkwright.learning import NotYet, check
 from linkwright.messages import get_action
 from linkwright.navigation.grids.grid import FREE, OCCUPIED
 from linkwright.navigation.maps.map_yaml import read_map_yaml
-from linkwright.xmltree import parse_file
 
 MAPPING, NAVIGATION = "mapping.launch.py", "navigation.launch.py"
 ROOMS = {"kitchen": (3.8, -0.8, math.pi), "hall": (0.0, 0.0, 0.0)}
@@ -38,13 +37,7 @@ def expect_packaged(work, files, packages):
     """Require files to be installed, and packages to be listed in package.xml."""
     package = work.package(PACKAGE)
     package.expect_installed(*files)
-    root = parse_file(package.file("package.xml")).root
-    listed = {element.text().strip() for element in root.elements() if element.tag in {"depend", "exec_depend"}}
-    if missing := sorted(set(packages) - listed):
-        raise NotYet(
-            en=f"package.xml does not list '{missing[0]}' as a dependency at run time.",
-            zh=f"package.xml 没有把“{missing[0]}”列为运行时依赖。",
-        )
+    package.expect_dependencies(*packages)
     package.expect_no_findings()
 
 

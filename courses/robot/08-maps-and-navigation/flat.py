@@ -4,7 +4,6 @@ import math
 from functools import cache
 
 import numpy as np
-import yaml
 
 from linkwright import SteppedSimulation
 from linkwright.geometry.single import rpy_from_quaternion
@@ -43,13 +42,7 @@ def read_parameters(work, file, *names):
         names: the name of the node, or of a costmap twice.
     """
     path = work.package(PACKAGE).file(file)
-    try:
-        found = yaml.safe_load(path.read_text(encoding="utf-8"))
-    except yaml.YAMLError as error:
-        reason = " ".join(str(error).split())
-        raise NotYet(
-            en=f"{path.name} is not valid YAML: {reason}", zh=f"{path.name} 不是正确的 YAML：{reason}"
-        ) from None
+    found = work.package(PACKAGE).yaml(file)
     for name in (*names, "ros__parameters"):
         if not isinstance(found, dict) or not isinstance(found.get(name), dict):
             place = " / ".join(names)

@@ -88,6 +88,10 @@ commands:
 """
 
 CASES = [
+    wrong(
+        "words", "a text in place of a tuple", Edit(DRIVER, "('back', '后退')", "('back')"), says="('back',) is a tuple"
+    ),
+    wrong("words", "a key twice", Edit(DRIVER, "(0.0, -0.5)", "(0.0, 0.5)"), says="(0.0, 0.5) twice"),
     right("words", "regular expressions in a loop", {DRIVER: FUNCTIONS}),
     wrong("words", "capital letters", Edit(DRIVER, "    text = text.lower()\n", ""), says="After 'Turn LEFT, please'"),
     wrong("words", "equal texts only", Edit(DRIVER, "word in text for", "word == text for"), says="After 'Go back!'"),
@@ -109,7 +113,7 @@ CASES = [
         "words",
         "another topic",
         Edit(DRIVER, "'voice/text'", "'text'"),
-        says="word_driver publishes nothing on /cmd_vel",
+        says="such messages come on /voice/text",
     ),
     wrong(
         "words",

@@ -1,11 +1,11 @@
+import ast
 import math
 
 import numpy as np
 
-from linkwright.learning import NotYet, check
+from linkwright.learning import NotYet, check, expect_published
 from linkwright.messages import get_message
 from linkwright.testing import SteppedGraph
-from linkwright.xmltree import parse_file
 
 TWIST, STRING = "geometry_msgs/msg/Twist", "std_msgs/msg/String"
 String = get_message(STRING)
@@ -52,11 +52,13 @@ class Listening:
     @property
     def velocity(self):
         """The last speed and turn rate."""
-        if not len(self.recording):
+        try:
+            expect_published(self.test, self.topic, self.type_name, self.recording)
+        except NotYet as reason:
             raise NotYet(
-                en=f"After '{self.said}' on {TEXTS}, {self.name} publishes nothing on {self.topic}.",
-                zh=f"在 {TEXTS} 上收到“{self.said}”之后，{self.name} 没有在 {self.topic} 上发布消息。",
-            )
+                en=f"After '{self.said}' on {TEXTS}, {reason.text.get('en')}",
+                zh=f"在 {TEXTS} 上收到“{self.said}”之后，{reason.text.get('zh')}",
+            ) from None
         return self.recording.last.linear.x, self.recording.last.angular.z
 
 
@@ -66,6 +68,26 @@ def drive(work, *parameters):
 
 def is_near(actual, expected):
     return math.dist(actual, expected) < 0.001
+
+
+def expect_plain_commands(work):
+    """Require the dictionary of the lesson to have each velocity once, and tuples of words."""
+    source = (work.package("my_voice").folder / "my_voice/word_driver.py").read_text(encoding="utf-8")
+    for node in ast.walk(ast.parse(source)):
+        if not isinstance(node, ast.Dict) or not all(isinstance(key, ast.Tuple) for key in node.keys):
+            continue
+        keys = [ast.unparse(key) for key in node.keys]
+        if repeated := next((key for key in keys if keys.count(key) > 1), None):
+            raise NotYet(
+                en=f"The dictionary has {repeated} twice, so the last one counts; compare the signs.",
+                zh=f"字典中 {repeated} 出现了两次，只有最后一次有效；请检查正负号。",
+            )
+        for value in node.values:
+            if isinstance(value, ast.Constant) and isinstance(value.value, str):
+                raise NotYet(
+                    en=f"The words ('{value.value}') need a comma: ('{value.value}',) is a tuple.",
+                    zh=f"('{value.value}') 少了逗号：('{value.value}',) 才是元组。",
+                )
 
 
 def expect_velocities(work, texts):
@@ -84,6 +106,8 @@ def expect_velocities(work, texts):
 
 @check("words", en="word_driver obeys English texts.", zh="word_driver 服从英文文本。")
 def obeys_english(work):
+    work.package("my_voice").program("word_driver")
+    expect_plain_commands(work)
     expect_velocities(work, ENGLISH)
 
 
@@ -213,20 +237,17 @@ def knows_beginning(work):
     work.expect_number(2.9, tolerance=0.15, slips=slips)
 
 
-def goal_for(work, text):
+def goal_for(work, text, *, must_send=False):
     """Return the last goal after a text, or None."""
     with Listening(work, "goal_sender", "/goal_pose", "geometry_msgs/msg/PoseStamped") as sender:
         sender.say(text)
+        if must_send:
+            expect_published(sender.test, sender.topic, sender.type_name, sender.recording)
         return sender.recording.last if len(sender.recording) else None
 
 
 def expect_goal(work, text):
-    goal = goal_for(work, text)
-    if goal is None:
-        raise NotYet(
-            en=f"After '{text}', nothing is published on /goal_pose.", zh=f"听到“{text}”之后，/goal_pose 上没有消息。"
-        )
-    return goal
+    return goal_for(work, text, must_send=True)
 
 
 @check("goals", en="goal_sender sends goals in the frame map.", zh="goal_sender 发送坐标系 map 中的目标。")
@@ -281,6 +302,11 @@ def understand(work, text):
 
 def expect_action(work, text):
     found = understand(work, text)
+    if found is None and "，" in work.package("my_voice").file("config/commands.yaml").read_text(encoding="utf-8"):
+        raise NotYet(
+            en=f"'{text}' is not understood; commands.yaml has a full-width comma: write ', ' between the sentences.",
+            zh=f"听不懂“{text}”；commands.yaml 中有全角逗号：句子之间请用英文逗号“, ”。",
+        )
     if found is None:
         raise NotYet(en=f"'{text}' is not understood.", zh=f"听不懂“{text}”。")
     return found
@@ -306,8 +332,9 @@ def drives_by_numbers(work):
         signs = [int(math.copysign(1, value)) if value else 0 for value in (action.x, action.turn)]
         if signs != list(wanted[:2]):
             raise NotYet(
-                en=f"'{text}' drives with x = {action.x:g} and turn = {action.turn:g}.",
-                zh=f"“{text}”以 x = {action.x:g}，turn = {action.turn:g} 行驶。",
+                en=f"'{text}' drives with x = {action.x:g} and turn = {action.turn:g}, "
+                f"but should with {wanted[0]} and {wanted[1]}.",
+                zh=f"“{text}”以 x = {action.x:g}，turn = {action.turn:g} 行驶，应当是 {wanted[0]} 和 {wanted[1]}。",
             )
         amounts = [resolve_amount(value, values) for value in (action.distance, action.angle)]
         for name, actual, expected in zip(("distance", "angle"), amounts, wanted[2:], strict=True):
@@ -372,12 +399,5 @@ def recognizes_recording(work):
 def lists_dependencies(work):
     package = work.package("my_voice")
     package.expect_installed("launch/hearing.launch.py")
-    root = parse_file(package.file("package.xml")).root
-    listed = {element.text().strip() for element in root.elements() if element.tag in {"depend", "exec_depend"}}
-    for name in ("my_robot_voice", "my_worlds", "launch_ros"):
-        if name not in listed:
-            raise NotYet(
-                en=f"package.xml does not list '{name}' as a dependency at run time.",
-                zh=f"package.xml 没有把“{name}”列为运行时依赖。",
-            )
+    package.expect_dependencies("my_robot_voice", "my_worlds", "launch_ros")
     package.expect_no_findings()

@@ -10,7 +10,7 @@ import tempfile
 from pathlib import Path
 
 from linkwright import SteppedSimulation
-from linkwright.learning import NotYet
+from linkwright.learning import NotYet, expect_published
 from linkwright.messages import get_message
 from linkwright.testing import SteppedGraph
 
@@ -84,17 +84,12 @@ class Driver:
 
     @property
     def velocity(self):
-        if not len(self.commands):
-            raise NotYet(
-                en="go_to_ball publishes nothing on /cmd_vel; is there a timer, and does main() spin the node?",
-                zh="go_to_ball 没有在 /cmd_vel 上发布消息；有定时器吗？main() 有没有让节点 spin？",
-            )
+        expect_published(self.test, "/cmd_vel", TWIST, self.commands)
         return self.commands.last.linear.x, self.commands.last.angular.z
 
     @property
     def state(self):
-        if not len(self.states):
-            raise NotYet(en="Nothing is published on /state.", zh="/state 上没有消息。")
+        expect_published(self.test, "/state", STRING, self.states)
         return self.states.last.data
 
 

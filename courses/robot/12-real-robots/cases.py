@@ -33,6 +33,7 @@ TWO_SYSTEMS = """<?xml version="1.0"?>
 """
 
 CASES = [
+    wrong("install", "no ament_package", Edit(CMAKE, "ament_package()", ""), says="does not call ament_package()"),
     right(
         "camera",
         "the image is turned around",
@@ -88,13 +89,13 @@ CASES = [
         "qos",
         "only the images",
         Edit(FINDER, "self.on_lens,\n                                 qos_profile_sensor_data", "self.on_lens, 10"),
-        says="For a camera with best effort",
+        says="does not fit that of the publisher",
     ),
     wrong(
         "qos",
         "only the camera_info",
         Edit(FINDER, "self.on_image,\n                                 qos_profile_sensor_data", "self.on_image, 10"),
-        says="For a camera with best effort",
+        says="does not fit that of the publisher",
     ),
     wrong(
         "qos",

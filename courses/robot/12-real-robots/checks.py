@@ -1,13 +1,14 @@
+import re
+
 import numpy as np
 
 from linkwright.control.hardware.description import hardware_from_robot
 from linkwright.diagnostics import SourceText
 from linkwright.graph import QoSProfile, ReliabilityPolicy
-from linkwright.learning import NotYet, check
+from linkwright.learning import NotYet, check, expect_published
 from linkwright.messages import get_message
 from linkwright.packages.readers.cmake import read_cmake
 from linkwright.testing import SteppedGraph
-from linkwright.xmltree import parse_file
 
 String, Image, CameraInfo, PointStamped = (
     get_message(name)
@@ -55,6 +56,8 @@ def see(work, color, encoding, profile=RELIABLE, target="red"):
             test.publish("/camera/camera_info", lens, profile)
             test.publish("/camera/image_raw", ball_image(color, encoding, stamp), profile)
             test.advance(0.1)
+        if color == target and profile is BEST_EFFORT:
+            expect_published(test, "/ball", "geometry_msgs/msg/PointStamped", balls)
         return list(balls)
 
 
@@ -300,12 +303,16 @@ def cmake_installs(work):
 
 @check("install", en="package.xml lists what the launch file needs.", zh="package.xml 列出了 launch 文件需要的东西。")
 def manifest_lists_needed(work):
-    root = parse_file(work.package(BRINGUP).file("package.xml")).root
-    listed = {element.text().strip() for element in root.elements() if element.tag in {"depend", "exec_depend"}}
-    if missing := sorted(set(NEEDED) - listed):
+    work.package(BRINGUP).expect_dependencies(*NEEDED)
+
+
+@check("install", en="CMakeLists.txt ends with ament_package().", zh="CMakeLists.txt 以 ament_package() 结束。")
+def cmake_registers_package(work):
+    text = work.package(BRINGUP).file("CMakeLists.txt").read_text(encoding="utf-8")
+    if not re.search(r"^\s*ament_package\s*\(", text, re.MULTILINE):
         raise NotYet(
-            en=f"package.xml does not list '{missing[0]}' as a dependency at run time.",
-            zh=f"package.xml 没有把“{missing[0]}”列为运行时依赖。",
+            en="CMakeLists.txt does not call ament_package() at its end, so ROS does not find the built package.",
+            zh="CMakeLists.txt 的末尾没有调用 ament_package()，所以 ROS 找不到构建好的功能包。",
         )
 
 

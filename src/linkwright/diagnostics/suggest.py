@@ -192,6 +192,13 @@ def missing_file_hint(path: Path, is_candidate: Callable[[str], bool] | None = N
     """
     if any(part in path.parts for part in _ADDRESSES):
         return phrase("files are not fetched from the network: download the file, and give its path")
+    if "package:" in path.parts:
+        package = path.parts[path.parts.index("package:") + 1 :][:1]
+        return phrase(
+            "write $(find {package}) in place of package://{package}", package=package[0] if package else "..."
+        )
+    if any(part.startswith("(find ") for part in path.parts):
+        return phrase("write a dollar sign before '(find ...)'")
     folder = path.parent
     if is_candidate is None:
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -22,6 +23,7 @@ from linkwright.files.input_files import read_text
 
 _LOADER: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 _MAX_DEPTH = 50
+_COLON_WITHOUT_SPACE = re.compile(r"^\s*(?:- )?[A-Za-z_][\w ]*:[^\s:/]")
 
 
 def read_source(path: Path, file_kind: Phrase, code: str) -> SourceText:
@@ -95,4 +97,21 @@ class YamlDocument:
             reason = getattr(error, "problem", None) or getattr(error, "reason", None) or str(error)
             span = None if mark is None else self.source.span(self.source.offset(mark.line + 1, mark.column + 1))
             message = phrase("the file is not valid YAML: {problem}", problem=foreign(reason))
-            raise LinkwrightError(Diagnostic(self._code, message, span, source=self.source)) from None
+            hint = None if mark is None else yaml_hint(self.source, mark.line + 1)
+            raise LinkwrightError(Diagnostic(self._code, message, span, hint=hint, source=self.source)) from None
+
+
+def yaml_hint(source: SourceText, line: int) -> Phrase | None:
+    """Return a hint about the line at which a YAML parser failed, or the line before it, or None."""
+    before = next((number for number in range(line - 1, 0, -1) if source.line(number).strip()), line)
+    for number in (line, before):
+        text = source.line(number).partition("#")[0]
+        if "\t" in text:
+            return phrase("line {line}: indent with spaces: YAML does not allow tabs", line=number)
+        if "\uff1a" in text:
+            return phrase("line {line}: write ': ' in place of the full-width colon", line=number)
+        if _COLON_WITHOUT_SPACE.match(text):
+            return phrase("line {line}: write a space after the colon", line=number)
+    if before == line:
+        return None
+    return phrase("compare the indentation of line {line} with that of line {before}", line=line, before=before)

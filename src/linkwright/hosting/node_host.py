@@ -62,6 +62,11 @@ class NodeHost:
         return bool(self._viewers)
 
     @property
+    def viewer_arguments(self) -> list[list[str]]:
+        """The command-line arguments of each viewer that is running."""
+        return [plan.arguments for plan in self._viewers.plans()]
+
+    @property
     def shows_world(self) -> bool:
         """Whether a page shows the simulated world."""
         return self._viewers.shows_world

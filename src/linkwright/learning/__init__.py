@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from linkwright.learning.checks.declaring import check
     from linkwright.learning.checks.not_yet import NotYet, expect
     from linkwright.learning.checks.robots import JointCheck, LinkCheck, RobotCheck, ShapeSpec
+    from linkwright.learning.checks.silence import expect_published
     from linkwright.learning.checks.work import Work
     from linkwright.learning.lesson_tests import Edit, right, wrong
     from linkwright.learning.local_text import LocalText
@@ -28,6 +29,7 @@ __all__ = [
     "Work",
     "check",
     "expect",
+    "expect_published",
     "right",
     "wrong",
 ]
@@ -37,6 +39,7 @@ __getattr__ = deferred(
     {
         "checks.declaring": ("check",),
         "checks.not_yet": ("NotYet", "expect"),
+        "checks.silence": ("expect_published",),
         "checks.robots": ("JointCheck", "LinkCheck", "RobotCheck", "ShapeSpec"),
         "checks.work": ("Work",),
         "lesson_tests": ("Edit", "right", "wrong"),

@@ -316,6 +316,9 @@ def _read_error(message_class: type[Any], data: bytes, fault: Exception) -> Mess
 
 def _write_error(message: object, fault: Exception) -> MessageDataError:
     if not isinstance(message, Message):
+        if isinstance(message, type):
+            name = message.__name__
+            return data_error("MSG202", phrase("'{name}' is a class, not a message; write {name}()", name=name))
         return data_error("MSG202", phrase("'{name}' is not a message class", name=type(message).__name__))
     return data_error(
         "MSG202",

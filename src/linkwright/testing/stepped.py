@@ -109,6 +109,11 @@ class AsyncSteppedGraph:
         """The time since the start of the test, in seconds."""
         return self.clock.steady_ns() / 1e9
 
+    @property
+    def program_nodes(self) -> list[tuple[str, str]]:
+        """The name and the namespace of each node that programs have now."""
+        return [] if self._programs is None else self._programs.node_names
+
     def create_node(self, name: str, **options: Any) -> Node:
         """Create a node in the graph.
 

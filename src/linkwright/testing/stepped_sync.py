@@ -148,6 +148,11 @@ class SteppedGraph:
         """
         return self._steps.start_program(main, args, budget=budget, seed=seed)
 
+    @property
+    def program_nodes(self) -> list[tuple[str, str]]:
+        """The name and the namespace of each node that programs have now."""
+        return self._steps.program_nodes
+
     def create_node(self, name: str, **options: Any) -> Node:
         """Create a node in the graph.
 

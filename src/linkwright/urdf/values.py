@@ -13,6 +13,7 @@ from functools import lru_cache
 from math import isfinite, isinf, radians
 
 from linkwright.diagnostics import Phrase, phrase
+from linkwright.diagnostics.lookalikes import plain_text
 from linkwright.geometry.single import Quaternion, Vector3
 from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_typing import get_args
@@ -27,6 +28,8 @@ _VECTOR3 = re.compile(rf" *{_COMPONENT} +{_COMPONENT} +{_COMPONENT} *").fullmatc
 # value, the fastest test is to strip these characters.
 _NUMBER_CHARACTERS = "-+.0123456789eE "
 _PLAIN = re.compile(r"[-+.0-9eE ]*").fullmatch
+
+_NAME = re.compile(r"[A-Za-z_]\w*").fullmatch
 
 _UNITS = {
     "deg": (phrase("angles are in radians"), 0.017453292519943295),
@@ -108,6 +111,13 @@ def number_hint(text: str) -> Phrase | None:
         return phrase("URDF has no 'pi': write 3.14159..., or use xacro, where ${pi} works")
     if len(stripped.split()) > 1 and all(map(_is_number, stripped.split())):
         return phrase("give one number")
+    if stripped != plain_text(stripped) and _is_number(plain_text(stripped)):
+        return phrase("write it with an English keyboard: '{text}'", text=plain_text(stripped))
+    if stripped in _UNITS:
+        return _UNITS[stripped][0]
+    name = stripped.strip("${}\uff5b\uff5d")
+    if _NAME(name) and ("_" in name or name != stripped):
+        return phrase("if it is the name of a xacro property, write {written}", written=f"${{{name}}}")
     match = _WITH_UNIT.fullmatch(text)
     if match and match[2] in _UNITS:
         reason, factor = _UNITS[match[2]]
@@ -130,6 +140,12 @@ def vector_hint(text: str, count: int) -> Phrase | None:
     pieces = text.replace(",", ".").split()
     if "," in text and len(pieces) == count and all(map(_is_number, pieces)):
         return phrase("write a point as decimal separator: '{text}'", text=" ".join(pieces))
+    pieces = plain_text(text).split()
+    if len(pieces) == count and text != plain_text(text) and all(map(_is_number, pieces)):
+        return phrase("write it with an English keyboard: '{text}'", text=" ".join(pieces))
+    pieces = re.split(r"\s*[x\u00d7*]\s*", text.strip())
+    if len(pieces) == count and all(map(_is_number, pieces)):
+        return phrase("separate the numbers with spaces: '{pieces}'", pieces=" ".join(pieces))
     malformed = next((piece for piece in text.split() if not _is_number(piece)), None)
     if malformed is None:
         return phrase("give {count} numbers, not {text_split}", count=count, text_split=len(text.split()))

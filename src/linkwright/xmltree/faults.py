@@ -7,6 +7,7 @@ from xml.parsers.expat import ExpatError
 from xml.parsers.expat import errors as expat_errors
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Phrase, SourceText, foreign, phrase
+from linkwright.diagnostics.lookalikes import lookalike_hint
 from linkwright.loading.deferred import lazy_pattern
 
 _CODE = expat_errors.codes
@@ -26,6 +27,8 @@ _BARE_ATTRIBUTE = lazy_pattern(r"([^\s=/>\"'<]+)\s*$")
 _UNQUOTED = lazy_pattern(r"([^\s=/>\"'<]+)\s*=\s*$")
 _UNCLOSED_QUOTE = lazy_pattern(r"""([^\s=/>"'<]+)\s*=\s*(["'])[^"'<>]*\s[^\s=/>"'<]+\s*=\s*\2$""")
 """A value that ends with the name of the next attribute, as in ``name="a type="``."""
+_QUOTED = lazy_pattern(r""""[^"]*"|'[^']*'""")
+_OPEN_QUOTE = lazy_pattern(r"""([^\s=/>"'<]+)\s*=\s*["']([^"']*)$""")
 _LONE_AMPERSAND = lazy_pattern(r"&[^\s;&<>\"']*$")
 _TEMPLATE_LANGUAGES = (
     (
@@ -39,6 +42,7 @@ _TEMPLATE_LANGUAGES = (
 _DASHES_IN_COMMENT = lazy_pattern(r"<!--(?:(?!-->).)*--$", re.DOTALL)
 _NAME = lazy_pattern(r"[^\s=/>\"'&;<]+")
 
+_ANGLE_LOOKALIKES = ("\uff1c", "\u300a")
 _CURVED_QUOTES = tuple("\u201c\u201d\u2018\u2019\u201e")
 _SEARCH_LENGTH = 200
 """The number of characters before an error that are searched for its cause."""
@@ -186,6 +190,12 @@ class _Fault:
             if closes_ancestor
             else phrase("write '</{inner}>', or remove it", inner=inner)
         )
+        if name.casefold() == inner.casefold():
+            hint = phrase("write both alike: '<{name}>' and '</{name}>'", name=name.casefold())
+        before = self._text[opened_at:start]
+        opening = next((character for character in _ANGLE_LOOKALIKES if f"{character}{name}" in before), None)
+        if opening is not None:
+            hint = lookalike_hint(opening) or hint
         return Diagnostic(
             "XML201",
             phrase("'</{name}>' does not close '<{inner}>'", name=name, inner=inner),
@@ -245,7 +255,8 @@ class _Fault:
         character = self._character
         if not character:
             return self._diagnostic("XML206", phrase("the file ends unexpectedly"))
-        return self._diagnostic("XML206", phrase("unexpected character {character}", character=repr(character)))
+        message = phrase("unexpected character {character}", character=repr(character))
+        return self._diagnostic("XML206", message, hint=lookalike_hint(character))
 
     @property
     def _character(self) -> str:
@@ -322,7 +333,20 @@ class _Fault:
     def _less_than_in_tag(self) -> Diagnostic | None:
         if self._character != "<":
             return None
+        if open_quote := self._open_quote():
+            return open_quote
         return self._diagnostic("XML206", phrase("'<' is not allowed inside a tag"), hint=_LESS_HINT)
+
+    def _open_quote(self) -> Diagnostic | None:
+        """Return the error for a value of the tag before the current one whose quotes are not closed, or None."""
+        tag_start = self._text.rfind("<", 0, self._offset)
+        tag = _QUOTED.sub(lambda value: " " * len(value[0]), self._text[max(tag_start, 0) : self._offset])
+        match_ = _OPEN_QUOTE.search(tag)
+        if tag_start < 0 or match_ is None or ">" not in match_[2]:
+            return None
+        message = phrase("the quotes around the value of '{open_quote}' are not closed", open_quote=match_[1])
+        hint = lookalike_hint(match_[2]) or phrase("write a quote at the end of the value")
+        return self._diagnostic("XML206", message, len(match_[1]), at=tag_start + match_.start(), hint=hint)
 
     def _unclosed_quote(self) -> Diagnostic | None:
         match_ = _UNCLOSED_QUOTE.search(self._preceding_text)
@@ -343,7 +367,7 @@ class _Fault:
         if bare_attribute is None:
             return None
         message = phrase("the attribute '{bare}' has no value", bare=bare_attribute[1])
-        hint = phrase('write {name}="..."', name=bare_attribute[1])
+        hint = lookalike_hint(self._character) or phrase('write {name}="..."', name=bare_attribute[1])
         return self._diagnostic(
             "XML206", message, len(bare_attribute[1]), at=self._offset - len(bare_attribute[0]), hint=hint
         )

@@ -170,10 +170,7 @@ def test_files_may_say_nothing(text):
             "node:\n  ros_parameters:\n    a: 1",
             "3:8",
             "'a' has a value, but only parameters below 'ros__parameters' can have values",
-            (
-                "write a mapping from node names to 'ros__parameters', and below it a mapping from parameter "
-                "names to values"
-            ),
+            "did you mean 'ros__parameters'?",
         ),
         (
             "node:\n  ros__parametrs: 1",
@@ -225,7 +222,7 @@ def test_what_is_wrong_is_told_with_its_place(text, place, message, hint):
 def test_tabs_and_other_faults_of_yaml():
     with pytest.raises(LinkwrightError, match=r"params.yaml:2:1: parameter file is not YAML: ") as caught:
         read("node:\n\tros__parameters:\n\t\ta: 1")
-    assert caught.value.diagnostics[0].hint == "indent with spaces, not tabs"
+    assert caught.value.diagnostics[0].hint == "line 2: indent with spaces: YAML does not allow tabs"
     with pytest.raises(LinkwrightError, match="parameter file is not YAML"):
         read("node: {ros__parameters: {a: [1, ")
 

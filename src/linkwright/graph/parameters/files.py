@@ -186,7 +186,9 @@ class _Reader:
                             key=key,
                             parameters_key=PARAMETERS_KEY,
                         ),
-                        did_you_mean(key, [PARAMETERS_KEY]) or _FORM_HINT,
+                        did_you_mean(key, [PARAMETERS_KEY])
+                        or (did_you_mean(parents[-1], [PARAMETERS_KEY]) if parents else None)
+                        or _FORM_HINT,
                     )
                 self._read_names((*parents, *tokens))
             self._advance()
@@ -305,9 +307,9 @@ class _Reader:
             return LinkwrightError(
                 Diagnostic("GRAPH212", phrase("parameter file is not YAML: {problem}", problem=foreign(problem)))
             )
-        hint = None
-        if "\t" in self._source.line(mark.line + 1)[: mark.column + 1] or "'\\t'" in problem:
-            hint = phrase("indent with spaces, not tabs")
+        from linkwright.files.yaml_documents import yaml_hint
+
+        hint = yaml_hint(self._source, mark.line + 1)
         return self._error_at(
             mark.line, mark.column, phrase("parameter file is not YAML: {problem}", problem=foreign(problem)), hint
         )

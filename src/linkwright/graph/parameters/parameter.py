@@ -124,7 +124,9 @@ class ParameterNotDeclaredException(ParameterException):
 
     def __init__(self, parameters: str | list[str], declared_names: Iterable[str] = ()) -> None:
         first_name = parameters if isinstance(parameters, str) else next(iter(parameters), "")
-        hint = did_you_mean(first_name, declared_names)
+        hint = did_you_mean(first_name, declared_names) or phrase(
+            "declare it first: self.declare_parameter('{name}', DEFAULT)", name=first_name
+        )
         super().__init__(phrase("Invalid access to undeclared parameter(s)"), parameters, code="GRAPH202", hint=hint)
 
 

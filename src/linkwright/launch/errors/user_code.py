@@ -38,6 +38,12 @@ Includes, groups, and functions that return actions increase the depth.
 Python's own limit would be exceeded only slightly later, at an unrelated location."""
 
 _MODULE_PATH = re.compile(r" \((?:/|[A-Z]:|unknown location).*\)$")
+_NO_SELF = re.compile(r"\w+\.\w+\(\) takes 0 positional arguments but 1 was given")
+_JOINED_SUBSTITUTION = re.compile(r'(concatenate str \(not "|operand type\(s\).*)(LaunchConfiguration|Command|Find\w+)')
+_ACTION_FOR_LIST = re.compile(r"^'(Node|ExecuteProcess|IncludeLaunchDescription|\w+Action)' object is not iterable")
+_MODULES = {"Path": ("pathlib",), "glob": ("glob",)}
+_MOST_MODULES = 3
+_ROS_1_MODULES = ("rospy", "roslib")
 _MISSING_ARGUMENT = re.compile(r"\(\) missing \d+ required .*arguments?: (.*)$")
 _UNEXPECTED_ARGUMENT = re.compile(r"([\w.]+)\(\) got an unexpected keyword argument '([^']+)'")
 
@@ -70,7 +76,9 @@ def explain(error: BaseException, subject: str, fallback: SourceLocation | None 
     span = place.span(source) if place else None
     callers = dict.fromkeys(reversed(user_places[:-1]))  # report a recursive function only once
     notes = tuple(Note(phrase("called from here"), caller.span(read_source(caller.file))) for caller in callers)
-    diagnostic = Diagnostic("LAUNCH104", message, span, notes=notes, hint=_hint(error, source, span), source=source)
+    diagnostic = Diagnostic(
+        "LAUNCH104", message, span, notes=notes, hint=hint_about(error, source, span), source=source
+    )
     return as_ros_error(error if isinstance(error, Exception) else None, diagnostic)
 
 
@@ -100,20 +108,72 @@ def _user_places(traceback: TracebackType | None) -> Iterable[SourceLocation]:
         traceback_entry = traceback_entry.tb_next
 
 
-def _hint(error: BaseException, source: SourceText | None, span: Span | None) -> Phrase | None:
-    """Return a hint with the name that the user may have meant, or None if no name is similar."""
+def hint_about(error: BaseException, source: SourceText | None = None, span: Span | None = None) -> Phrase | None:
+    """Return a hint with the name that the user may have meant, or None if no name is similar.
+
+    Args:
+        error: the exception.
+        source: the file in which it was raised, if it is known.
+        span: the call that failed, if it is known.
+    """
     if isinstance(error, ImportError):
         return _import_hint(error)
     if isinstance(error, NameError):
         frame = _innermost_frame(error)
         visible_names = {**frame.f_globals, **frame.f_locals} if frame else {}
         name = getattr(error, "name", None)
-        return did_you_mean(name, visible_names) if name else None
+        return (did_you_mean(name, visible_names) or import_hint(name)) if name else None
     if isinstance(error, AttributeError):
+        if hint := _class_hint(error):
+            return hint
         name, owner = getattr(error, "name", None), getattr(error, "obj", None)
         return did_you_mean(name, _public_names(owner)) if name else None
     if isinstance(error, TypeError):
-        return _keyword_hint(error) or _missing_hint(error, source, span)
+        if _NO_SELF.search(str(error)):
+            return phrase("the first parameter of a method is self: def NAME(self, ...)")
+        return _keyword_hint(error) or _missing_hint(error, source, span) or _substitution_hint(error)
+    return None
+
+
+def _class_hint(error: AttributeError) -> Phrase | None:
+    """Return a hint about a class in place of its instance, or a method outside of its class, or None."""
+    name, owner = getattr(error, "name", None) or "", getattr(error, "obj", None)
+    if isinstance(owner, property):
+        return phrase("a class stands where its instance belongs; write its name with parentheses: NAME()")
+    if name.startswith("_Node__"):
+        return phrase("call super().__init__('NAME') first in __init__")
+    if hasattr(owner, "TYPE_NAME"):
+        inner = next((field for field in _public_names(owner) if hasattr(getattr(owner, field, None), name)), None)
+        if name and inner is not None:
+            return phrase("did you mean '{name}'?", name=f".{inner}.{name}")
+    frame = _innermost_frame(error)
+    if frame is not None and callable(frame.f_globals.get(name)) and "self" in frame.f_locals:
+        return phrase("'{name}' is a function outside of the class; indent it as the other methods", name=name)
+    return None
+
+
+def import_hint(name: str) -> Phrase | None:
+    """Return a hint with the module from which an undefined name can be imported, or None."""
+    from linkwright.messages.presentation import interface_names
+    from linkwright.standins.table import modules_providing
+
+    if name in sys.stdlib_module_names and name not in _MODULES:
+        return phrase("write 'import {name}' at the top of the file", name=name)
+    interfaces = [full for kind in ("msg", "srv", "action") for full in interface_names(kind)]
+    places = [".".join(full.split("/")[:-1]) for full in interfaces if full.endswith(f"/{name}")]
+    modules = [*_MODULES.get(name, ()), *places, *modules_providing(name)][:_MOST_MODULES]
+    if not modules:
+        return None
+    return phrase("import it from {modules}", modules=quoted_names(modules, " or "))
+
+
+def _substitution_hint(error: TypeError) -> Phrase | None:
+    """Return a hint for text that is joined with a substitution, or an action in place of a list, or None."""
+    text = str(error)
+    if _JOINED_SUBSTITUTION.search(text):
+        return phrase("a substitution has no text before the launch runs; put the parts into a list: ['xacro ', model]")
+    if _ACTION_FOR_LIST.search(text):
+        return phrase("put the actions into a list: LaunchDescription([...])")
     return None
 
 
@@ -130,12 +190,15 @@ def _public_names(owner: object) -> list[str]:
 
 
 def _import_hint(error: ImportError) -> Phrase | None:
+    from linkwright.messages.presentation import interface_names
     from linkwright.packages.programs.missing_modules import missing_name, other_module_hint, provider_hint
 
     missing_attribute = missing_name(error)
     if missing_attribute:
         name, module = missing_attribute
-        return other_module_hint(error) or did_you_mean(name, _public_names(sys.modules.get(module)))
+        return (
+            other_module_hint(error) or did_you_mean(name, _public_names(sys.modules.get(module))) or import_hint(name)
+        )
     missing_module = error.name or ""
     parent, _, name = missing_module.rpartition(".")
     if parent in sys.modules:
@@ -145,7 +208,11 @@ def _import_hint(error: ImportError) -> Phrase | None:
             iter_module.name for iter_module in pkgutil.iter_modules(getattr(sys.modules[parent], "__path__", ()))
         ]
         return did_you_mean(name, siblings)
-    suggestion = did_you_mean(missing_module, ("launch", "launch_ros", "ament_index_python"))
+    if missing_module in _ROS_1_MODULES:
+        return phrase("'{module}' is part of ROS 1; in ROS 2 it is 'rclpy'", module=missing_module)
+    packages = {full.split("/")[0] for full in interface_names("msg")}
+    known = ("launch", "launch_ros", "ament_index_python", "rclpy", *sorted(packages))
+    suggestion = did_you_mean(missing_module, known)
     if suggestion or not missing_module:
         return suggestion
     return provider_hint(missing_module)

@@ -20,6 +20,7 @@ from linkwright.diagnostics import (
     missing_file_hint,
     phrase,
 )
+from linkwright.diagnostics.lookalikes import lookalike_hint
 from linkwright.files.input_files import read_text
 from linkwright.launch.errors.exceptions import InvalidPythonLaunchFileError, as_ros_error
 from linkwright.launch.errors.places import MarkupLocation, SourceLocation, error_at, outside_markup
@@ -161,9 +162,9 @@ def _syntax_diagnostic(error: SyntaxError, source: SourceText) -> Diagnostic:
     if end_line < line or (end_line == line and end_column <= column):
         end_line, end_column = line, column + 1
     span = Span(source.name, line, column, end_line, end_column)
-    return Diagnostic(
-        "LAUNCH103", phrase("the launch file has a syntax error: {msg}", msg=foreign(error.msg)), span, source=source
-    )
+    hint = lookalike_hint(source.line(line)[column - 1 :]) if "invalid character" in error.msg else None
+    message = phrase("the launch file has a syntax error: {msg}", msg=foreign(error.msg))
+    return Diagnostic("LAUNCH103", message, span, hint=hint, source=source)
 
 
 def _type_phrase(value: object) -> Phrase:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -32,6 +33,11 @@ def parse_xacro_arguments(words: Sequence[str], text: str, folder: Path) -> tupl
     for argument in remaining_arguments:
         name, separator, value = argument.partition(":=")
         if separator:
+            if glued := _GLUED_FILE.match(name):
+                raise _usage_error(
+                    phrase("the argument '{name}' of xacro stands directly behind the file", name=glued[2]),
+                    phrase("write a space before '{name}:='", name=glued[2]),
+                )
             if value and not name.startswith("_"):
                 arguments[name] = value
         elif argument in _OPTIONS_WITH_VALUE:
@@ -54,7 +60,9 @@ def parse_xacro_arguments(words: Sequence[str], text: str, folder: Path) -> tupl
                     count=len(files),
                     files=quoted_names(files),
                 ),
-                phrase("put quotes around a path with spaces: Command(['xacro \"', path, '\"'])"),
+                _SUBSTITUTION_HINT
+                if text.lstrip().startswith("<launch.")
+                else phrase("put quotes around a path with spaces: Command(['xacro \"', path, '\"'])"),
             )
         files = [joined_path.strip()]
         warning = phrase(
@@ -64,6 +72,13 @@ def parse_xacro_arguments(words: Sequence[str], text: str, folder: Path) -> tupl
     if not files:
         raise _usage_error(phrase("the xacro command names no model file"), phrase("write Command(['xacro ', path])"))
     return XacroCall(folder / files[0], tuple(arguments.items())), warning
+
+
+_GLUED_FILE = re.compile(r"(.*\.(?:xacro|urdf))(\w+)$")
+_SUBSTITUTION_HINT = phrase(
+    "the text of a substitution is known only when the launch runs; pass it as it is, without str() or an f-string: "
+    "Command(['xacro ', model])"
+)
 
 
 def _usage_error(message: Phrase, hint: Phrase) -> LinkwrightError:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from linkwright.diagnostics import Diagnostic, Phrase, Span, phrase
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, Span, phrase
 
 
 def describe_finding(finding: Diagnostic, file: str | None = None) -> Phrase:
@@ -19,9 +19,17 @@ def describe_finding(finding: Diagnostic, file: str | None = None) -> Phrase:
         text = _place(finding.span, text)
     elif file is not None:
         text = phrase("{file}: {message}", file=file, message=text)
-    if finding.hint is not None:
-        text = phrase("{finding}. Hint: {hint}", finding=text, hint=finding.hint)
-    return text
+    return add_hint(text, finding.hint)
+
+
+def describe_error(error: LinkwrightError, file: str | None = None) -> Phrase:
+    """Return the first finding of an error as one line; see `describe_finding`."""
+    return describe_finding(error.diagnostics[0], file)
+
+
+def add_hint(message: Phrase, hint: Phrase | None) -> Phrase:
+    """Return a message with a hint behind it, or the message alone if there is no hint."""
+    return message if hint is None else phrase("{message}; {hint}", message=message, hint=hint)
 
 
 def _place(span: Span, text: Phrase) -> Phrase:

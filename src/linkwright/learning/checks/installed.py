@@ -3,20 +3,29 @@
 from __future__ import annotations
 
 import json
+import re
 import subprocess
 import sys
+from collections.abc import Sequence
 from pathlib import Path, PurePosixPath
 
-from linkwright.diagnostics import foreign, phrase
+from linkwright.diagnostics import Phrase, foreign, phrase
+from linkwright.diagnostics.lookalikes import lookalike_hint
+from linkwright.learning.checks.findings import add_hint
 from linkwright.learning.checks.not_yet import NotYet
 
 _TIMEOUT_SECONDS = 10.0
+_LINE = re.compile(r'File ".*setup\.py", line (\d+)')
 _RUNNER = """
 import json, runpy, sys, types
 files = []
 fake = types.ModuleType("setuptools")
 def setup(**given):
-    files.extend((str(place), list(map(str, names))) for place, names in given.get("data_files", ()))
+    for entry in given.get("data_files", ()):
+        if not (isinstance(entry, (tuple, list)) and len(entry) == 2 and isinstance(entry[1], (tuple, list))):
+            print(json.dumps({"entry": type(entry).__name__ if hasattr(entry, "__next__") else repr(entry)}))
+            sys.exit(0)
+        files.append((str(entry[0]), list(map(str, entry[1]))))
 fake.setup = setup
 fake.find_packages = fake.find_namespace_packages = lambda *_, **__: []
 fake.__getattr__ = lambda name: type(name, (), {})
@@ -25,6 +34,28 @@ sys.argv = ["setup.py"]
 runpy.run_path("setup.py", run_name="__main__")
 print(json.dumps(files))
 """
+
+
+def expect_valid_setup(folder: Path) -> None:
+    """Require a package to have a ``setup.py`` that is valid Python, if it is a Python package.
+
+    Raises:
+        NotYet: it is missing, or has a syntax error.
+    """
+    path = folder / "setup.py"
+    if not path.is_file():
+        if (folder / "CMakeLists.txt").is_file():
+            return
+        raise NotYet(phrase("'{folder}' has no file '{name}'", folder=folder.name, name="setup.py"))
+    try:
+        compile(path.read_bytes(), str(path), "exec")
+    except (SyntaxError, ValueError) as error:
+        line = getattr(error, "lineno", None) or 1
+        described = phrase(
+            "{file}, line {line}: {error}", file="setup.py", line=line, error=foreign(str(error.args[0]))
+        )
+        text = getattr(error, "text", None) or ""
+        raise NotYet(add_hint(described, lookalike_hint(text))) from None
 
 
 def files_of_setup(folder: Path) -> dict[PurePosixPath, Path]:
@@ -56,7 +87,29 @@ def files_of_setup(folder: Path) -> dict[PurePosixPath, Path]:
     except subprocess.TimeoutExpired:
         raise NotYet(phrase("setup.py took longer than {seconds:g} s", seconds=_TIMEOUT_SECONDS)) from None
     except subprocess.CalledProcessError as error:
-        last = (error.stderr.strip().splitlines() or [""])[-1]
-        raise NotYet(phrase("setup.py fails: {error}", error=foreign(last))) from None
-    entries = json.loads(process.stdout.splitlines()[-1])
+        raise NotYet(_describe_failure(error.stderr.strip().splitlines() or [""])) from None
+    lines = process.stdout.splitlines()
+    if not lines:
+        raise NotYet(phrase("setup.py ends without an error, but does not call setup(...)"))
+    entries = json.loads(lines[-1])
+    if isinstance(entries, dict):
+        if entries["entry"] == "generator":
+            raise NotYet(phrase("setup.py: an entry of data_files is a generator; write a star before the call"))
+        raise NotYet(
+            phrase(
+                "setup.py: {entry} in data_files is not a pair of a folder and a list of files", entry=entries["entry"]
+            )
+        )
     return {PurePosixPath(place) / Path(name).name: folder / name for place, names in entries for name in names}
+
+
+def _describe_failure(lines: Sequence[str]) -> Phrase:
+    """Return the last line of a traceback with the last line of ``setup.py`` that it names."""
+    numbers = [match[1] for line in lines if (match := _LINE.search(line))]
+    error = foreign(lines[-1])
+    hint = lookalike_hint(lines[-1]) if "invalid character" in lines[-1] else None
+    if "can't multiply sequence" in lines[-1]:
+        hint = phrase("a comma is missing before the star")
+    if not numbers:
+        return phrase("setup.py fails: {error}", error=error)
+    return add_hint(phrase("{file}, line {line}: {error}", file="setup.py", line=int(numbers[-1]), error=error), hint)

@@ -5,18 +5,23 @@ from __future__ import annotations
 import asyncio
 import io
 import math
+import re
 import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
+from functools import partial
+from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
-from linkwright.diagnostics import LinkwrightError, Phrase, nearest, phrase
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, nearest, phrase, quoted_names
+from linkwright.graph.faults import InvalidHandleError
 from linkwright.learning.checks.findings import describe_finding
 from linkwright.learning.checks.not_yet import NotYet
+from linkwright.learning.checks.rviz_arguments import object_to_rviz_arguments
 
 if TYPE_CHECKING:
     from typing_extensions import Self
@@ -39,6 +44,7 @@ _QUIET_SECONDS_OF_PROCESSES = 6.0
 
 _PERIOD_SECONDS = 0.02
 _NODE = "lesson_check"
+_LOG_PREFIX = re.compile(r"^\[[^\]]+\] \[\w+\] \[[\d.]+\] \[([^\]]+)\]: ")
 
 
 class LaunchCheck:
@@ -61,6 +67,7 @@ class LaunchCheck:
         self._loop = asyncio.new_event_loop()
         self._thread = threading.Thread(target=self._loop.run_forever, daemon=True)
         self._output = io.StringIO()
+        self._findings: list[Diagnostic] = []
         self._session: LaunchSession | None = None
         self._run: Any = None
         self._node: Node | None = None
@@ -82,7 +89,6 @@ class LaunchCheck:
         return self
 
     async def _launch(self) -> bool:
-        from linkwright.hosting.launch_log import LaunchLog
         from linkwright.hosting.signals import own_environment
         from linkwright.hosting.xacro_calls import Descriptions, use_descriptions
         from linkwright.launch.engine.session import LaunchSession
@@ -90,6 +96,7 @@ class LaunchCheck:
         from linkwright.launch.frontend.launch_file import load_launch_file
         from linkwright.launch.model.context import LaunchContext
         from linkwright.launch.target import LaunchTarget
+        from linkwright.learning.checks.launch_findings import CheckedLog
 
         path = LaunchTarget(self._file, self._package).resolve(self._finder)
         with own_environment(self._finder), use_descriptions(Descriptions(self._finder)):
@@ -98,7 +105,7 @@ class LaunchCheck:
             context = LaunchContext(argv=argv, noninteractive=True)
             context.launch_configurations.update(self._arguments)
             options = SessionOptions("127.0.0.1", None, False, self._file, history=0)
-            self._session = LaunchSession(self._finder, options, LaunchLog(self._output, self._output), context)
+            self._session = LaunchSession(self._finder, options, CheckedLog(self._output, self._findings), context)
             self._node = self._session.host.graph.create_node(_NODE)
             self._session.host.network.join_soon(with_viewer=False)
             places = {"current_launch_file_path": str(path), "current_launch_file_directory": str(path.parent)}
@@ -119,6 +126,34 @@ class LaunchCheck:
         if not self._thread.is_alive():
             self._loop.close()
 
+    def expect_rviz(self, path: Path) -> None:
+        """Require the launch to open RViz with a configuration.
+
+        Args:
+            path: the file of the configuration.
+
+        Raises:
+            NotYet: RViz did not start in time, or opens another configuration.
+        """
+        self.expect_node("/rviz2")
+        self._wait_until(lambda: bool(self._viewer_arguments()), phrase("the node '/rviz2' is not RViz"))
+        object_to_rviz_arguments(self._viewer_arguments()[0], path)
+
+    def _viewer_arguments(self) -> list[list[str]]:
+        return [] if self._session is None else self._session.host.viewer_arguments
+
+    def expect_distinct_nodes(self) -> None:
+        """Require the nodes that run now to have names of their own.
+
+        Raises:
+            NotYet: two nodes have the same name.
+        """
+        names = self.nodes()
+        if repeated := sorted(name for name in set(names) if names.count(name) > 1):
+            raise NotYet(
+                phrase("two nodes have the name '{name}'; each node needs a name of its own", name=repeated[0])
+            )
+
     def expect_node(self, name: str) -> None:
         """Require a node to run.
 
@@ -128,7 +163,7 @@ class LaunchCheck:
         Raises:
             NotYet: the node did not start in time.
         """
-        self._wait_until(lambda: name in self.nodes(), lambda: _missing("node", name, self.nodes()))
+        self._wait_until(lambda: name in self.nodes(), lambda: self._missing_node(name))
 
     def nodes(self) -> list[str]:
         """Return the full names of the nodes that run now."""
@@ -279,15 +314,27 @@ class LaunchCheck:
         """
         deadline = time.monotonic() + _WAIT_SECONDS
         last_change, last_graph = time.monotonic(), self._graph()
-        while not condition():
-            if self._run.done():
-                raise NotYet(self._failure())
+        while not self._is_true(condition):
             graph = self._graph()
             if graph != last_graph:
                 last_change, last_graph = time.monotonic(), graph
             if time.monotonic() > min(deadline, last_change + self._quiet_seconds):
                 raise NotYet(problem() if callable(problem) else problem)
             time.sleep(_PERIOD_SECONDS)
+
+    def _is_true(self, condition: Callable[[], bool]) -> bool:
+        """Return whether a condition of the graph is true.
+
+        Raises:
+            NotYet: the launch has ended, and its nodes with it.
+        """
+        try:
+            is_true = condition()
+        except InvalidHandleError:
+            is_true = False
+        if not is_true and self._run.done():
+            raise NotYet(self._failure())
+        return is_true
 
     def _graph(self) -> tuple[Sequence[str], Sequence[str]]:
         """Return the nodes and topics of the graph; both are empty before the launch starts."""
@@ -304,26 +351,60 @@ class LaunchCheck:
         try:
             self._run.result()
         except LinkwrightError as error:
-            return describe_finding(error.diagnostics[0], self._file)
+            return self._located(error.diagnostics[0])
+        if problem := self._problem():
+            return problem
+        return phrase(
+            "the launch of '{file}' ended by itself: it starts no node that keeps running; are the nodes in the list "
+            "of LaunchDescription([...])?",
+            file=self._file,
+        )
+
+    def _located(self, finding: Diagnostic) -> Phrase:
+        """Return a finding with the name of the launch file, unless it has a file of its own."""
+        described = describe_finding(finding)
+        return described if finding.span else phrase("{file}: {message}", file=self._file, message=described)
+
+    def _problem(self) -> Phrase | None:
+        """Return the first problem that the launch reported, or None."""
+        if self._findings:
+            return self._located(self._findings[0])
         errors = self._errors()
-        if errors:
-            return phrase("{file}: {message}", file=self._file, message=errors[0])
-        return phrase("the launch of '{file}' ended by itself", file=self._file)
+        return phrase("{file}: {message}", file=self._file, message=errors[0]) if errors else None
 
     def _missing_topic(self, topic: str) -> Phrase:
         """Return that no node publishes a topic, with the first error that the launch printed."""
         topics = self._topics()
-        errors = self._errors()
-        if errors:
-            return phrase("no node publishes '{topic}'; the launch says: {message}", topic=topic, message=errors[0])
-        if topic in topics:
-            return phrase("no node publishes '{topic}'", topic=topic)
-        return _missing("topic", topic, topics)
+        if problem := self._problem():
+            return phrase("no node publishes '{topic}'; the launch says: {message}", topic=topic, message=problem)
+        published = [name for name in topics if self._call(partial(self._checker.count_publishers, name))]
+        name = topic.rpartition("/")[2]
+        similar = [other for other in published if other.rpartition("/")[2] == name]
+        if not similar and topic not in topics:
+            similar = list(nearest(topic, topics, 1))
+        if similar:
+            return phrase("there is no topic '{name}'; there is '{similar}'", name=topic, similar=similar[0])
+        return phrase(
+            "no node publishes '{topic}'; the running nodes are {nodes}",
+            topic=topic,
+            nodes=quoted_names(sorted(self.nodes())) or "-",
+        )
+
+    def _missing_node(self, name: str) -> Phrase:
+        """Return that a node does not run, with a similar name, the problem of the launch, or the nodes that do."""
+        nodes = self.nodes()
+        if similar := nearest(name, nodes, 1):
+            return phrase("there is no node '{name}'; there is '{similar}'", name=name, similar=similar[0])
+        if problem := self._problem():
+            return phrase("there is no node '{name}'; the launch says: {message}", name=name, message=problem)
+        others = quoted_names(sorted(nodes)) or "-"
+        return phrase("there is no node '{name}'; the running nodes are {nodes}", name=name, nodes=others)
 
     def _errors(self) -> list[str]:
         """Return the lines of the launch's output that report errors."""
         words = ("error", "fatal")
-        return [line for line in self._output.getvalue().splitlines() if any(word in line.casefold() for word in words)]
+        lines = self._output.getvalue().splitlines()
+        return [_LOG_PREFIX.sub(r"\1: ", line) for line in lines if any(word in line.casefold() for word in words)]
 
 
 def _offered_profile(node: Node, topic: str) -> QoSProfile:
@@ -337,10 +418,3 @@ def _offered_profile(node: Node, topic: str) -> QoSProfile:
     if any(each.reliability == ReliabilityPolicy.BEST_EFFORT for each in offered):
         profile.reliability = ReliabilityPolicy.BEST_EFFORT
     return profile
-
-
-def _missing(kind: str, name: str, names: Sequence[str]) -> Phrase:
-    similar = nearest(name, names, 1)
-    if similar:
-        return phrase("there is no {kind} '{name}'; there is '{similar}'", kind=kind, name=name, similar=similar[0])
-    return phrase("there is no {kind} '{name}'", kind=kind, name=name)

@@ -3,13 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from functools import partial
 from pathlib import Path, PurePosixPath
+from typing import Any
+
+import yaml
 
 from linkwright.descriptions import examine
-from linkwright.diagnostics import LinkwrightError, Severity, did_you_mean, phrase, quoted_names
-from linkwright.learning.checks.findings import describe_finding
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, Severity, did_you_mean, phrase
+from linkwright.learning.checks.findings import add_hint, describe_error, describe_finding
 from linkwright.learning.checks.installed import files_of_setup
 from linkwright.learning.checks.launched import LaunchCheck
+from linkwright.learning.checks.misplaced import XML_SUFFIXES, describe_unread, explain_missing
+from linkwright.learning.checks.missing_files import describe_missing_file
 from linkwright.learning.checks.not_yet import NotYet
 from linkwright.learning.checks.programs import find_program
 from linkwright.learning.checks.robots import RobotCheck
@@ -25,11 +31,13 @@ class FileFolder:
     Attributes:
         folder: the folder.
         finder: the finder of the workspace's packages.
+        workspace: the workspace.
     """
 
-    def __init__(self, folder: Path, finder: PackageFinder) -> None:
+    def __init__(self, folder: Path, finder: PackageFinder, workspace: Path | None = None) -> None:
         self.folder = folder
         self.finder = finder
+        self.workspace = folder if workspace is None else workspace
         self._robots: dict[tuple[str, tuple[tuple[str, str], ...]], RobotCheck] = {}
 
     def file(self, name: str) -> Path:
@@ -43,25 +51,10 @@ class FileFolder:
         """
         path = self.folder / name
         if path.is_file():
-            if path.stat().st_size == 0:
+            if not path.read_bytes().strip():
                 raise NotYet(phrase("the file '{name}' is empty", name=name))
             return path
-        others = [
-            other.relative_to(self.folder).as_posix()
-            for other in self.folder.rglob(f"*{path.suffix}")
-            if other.is_file()
-        ]
-        suggestion = did_you_mean(name, others)
-        if others and suggestion is not None:
-            raise NotYet(
-                phrase(
-                    "'{folder}' has no file '{name}'; it has {others}",
-                    folder=self.folder.name,
-                    name=name,
-                    others=quoted_names(others[:3]),
-                )
-            )
-        raise NotYet(phrase("'{folder}' has no file '{name}'", folder=self.folder.name, name=name))
+        raise NotYet(describe_missing_file(self.folder, name, self.workspace))
 
     def robot(self, name: str, **arguments: str) -> RobotCheck:
         """Return the robot of a URDF or xacro file.
@@ -96,8 +89,11 @@ class FileFolder:
         for source in expand(path, packages=self.finder).dependencies:
             overlay = _with_property(source, property_name, value)
             if overlay is not None:
-                return self._read_robot(path, {}, overlay)
-        raise NotYet(phrase("no file sets the property '{name}'", name=property_name))
+                circumstance = phrase("when the check sets {name} to {value}", name=property_name, value=value)
+                return self._read_robot(path, {}, overlay, circumstance)
+        names = [element.attributes.get("name", "") for element in self.source_elements(name, "xacro:property")]
+        message = phrase("no file sets the property '{name}'", name=property_name)
+        raise NotYet(add_hint(message, did_you_mean(property_name, names)))
 
     def source_elements(self, name: str, tag: str) -> list[Element]:
         """Return the elements with a tag in a file and in the files that it includes, before expansion.
@@ -111,20 +107,52 @@ class FileFolder:
         return [
             element
             for source in sources
-            if source.suffix in _XML_SUFFIXES
+            if source.suffix in XML_SUFFIXES
             for element in parse_file(source).root.walk()
             if element.tag == tag
         ]
 
-    def _read_robot(self, path: Path, arguments: Mapping[str, str], overlay: Overlay | None = None) -> RobotCheck:
+    def _read_robot(
+        self,
+        path: Path,
+        arguments: Mapping[str, str],
+        overlay: Overlay | None = None,
+        circumstance: Phrase | None = None,
+    ) -> RobotCheck:
         try:
             description = examine(path, arguments=arguments, packages=self.finder, overlay=overlay)
         except LinkwrightError as error:
-            raise NotYet(describe_finding(error.diagnostics[0])) from None
-        errors = [finding for finding in description.diagnostics if finding.severity is Severity.ERROR]
+            raise NotYet(describe_error(error)) from None
+        errors = [finding for finding in description.diagnostics if _is_mistake(finding)]
         if errors or description.robot is None:
             raise NotYet(describe_finding(errors[0]))
-        return RobotCheck(description.robot, path)
+        if arguments:
+            words = " ".join(f"{key}:={value}" for key, value in arguments.items())
+            circumstance = phrase("with {arguments}", arguments=words)
+        return RobotCheck(
+            description.robot,
+            path,
+            circumstance=circumstance,
+            explain_missing=partial(explain_missing, path, self.finder),
+            explain_unread=partial(describe_unread, path),
+        )
+
+    def yaml(self, name: str) -> Any:
+        """Return the data of a YAML file.
+
+        Args:
+            name: the path in the folder.
+
+        Raises:
+            NotYet: the file is missing, or is not YAML.
+        """
+        from linkwright.files.yaml_documents import YamlDocument, read_source
+
+        try:
+            document = YamlDocument(read_source(self.file(name), phrase("file"), "LEARN117"), "LEARN117")
+        except LinkwrightError as error:
+            raise NotYet(describe_error(error)) from None
+        return None if document.root is None else yaml.constructor.SafeConstructor().construct_document(document.root)
 
     def expect_no_findings(self, name: str = "") -> None:
         """Require that ``linkwright check`` finds no mistakes in a file, or in the whole folder.
@@ -153,12 +181,20 @@ _MISTAKES = frozenset({"LW848"})
 Other findings of this level are advice, which a right solution may ignore.
 """
 
-_XML_SUFFIXES = {".xacro", ".urdf", ".xml"}
+_RUN_TIME_TAGS = {"depend", "exec_depend"}
+_UNDEFINED_MATERIAL = "URDF160"
+
+
+def _is_mistake(finding: Diagnostic) -> bool:
+    """Return whether a finding is one that other readers of XML or URDF refuse, although urdfdom may not."""
+    if finding.severity is Severity.ERROR:
+        return True
+    return finding.code.startswith("XML") or finding.code == _UNDEFINED_MATERIAL
 
 
 def _with_property(source: Path, name: str, value: str) -> Overlay | None:
     """Return a file's text with another value of a property, or None if the file does not set it."""
-    if source.suffix not in _XML_SUFFIXES:
+    if source.suffix not in XML_SUFFIXES:
         return None
     document = parse_file(source)
     text = source.read_text(encoding="utf-8")
@@ -177,11 +213,61 @@ class PackageCheck(FileFolder):
         name: the name.
         folder: the folder with its sources.
         finder: the finder of the workspace's packages.
+        workspace: the workspace.
     """
 
-    def __init__(self, name: str, folder: Path, finder: PackageFinder) -> None:
-        super().__init__(folder, finder)
+    def __init__(self, name: str, folder: Path, finder: PackageFinder, workspace: Path | None = None) -> None:
+        super().__init__(folder, finder, workspace)
         self.name = name
+
+    def expect_manifest(self) -> None:
+        """Require ``package.xml`` to be well-formed XML with a package name.
+
+        Raises:
+            NotYet: it is not.
+        """
+        try:
+            parse_file(self.file("package.xml"))
+        except LinkwrightError as error:
+            raise NotYet(describe_error(error)) from None
+
+    def expect_dependencies(self, *names: str) -> None:
+        """Require ``package.xml`` to list packages that are needed at run time.
+
+        Raises:
+            NotYet: it is not well-formed, or lacks one of the packages at the right place.
+        """
+        self.expect_manifest()
+        root = parse_file(self.folder / "package.xml").root
+        at_run_time = {child.text().strip() for child in root.elements() if child.tag in _RUN_TIME_TAGS}
+        for name in sorted(set(names) - at_run_time):
+            other = next((element for element in root.walk() if element.text().strip() == name), None)
+            if other is None:
+                raise NotYet(
+                    phrase(
+                        "package.xml does not list '{name}' as a dependency at run time; "
+                        "add <exec_depend>{name}</exec_depend>",
+                        name=name,
+                    )
+                )
+            line = other.source.position(other.offset)[0] if other.source else 1
+            if other.tag in _RUN_TIME_TAGS:
+                raise NotYet(
+                    phrase(
+                        "package.xml, line {line}: the dependency '{name}' must be directly inside <package>",
+                        line=line,
+                        name=name,
+                    )
+                )
+            raise NotYet(
+                phrase(
+                    "package.xml does not list '{name}' as a dependency at run time; line {line} has <{tag}>, "
+                    "but <exec_depend> is needed",
+                    name=name,
+                    line=line,
+                    tag=other.tag,
+                )
+            )
 
     def expect_installed(self, *names: str) -> None:
         """Require that ``setup.py`` installs files, each in the package's share folder at its path in the package.
@@ -193,7 +279,16 @@ class PackageCheck(FileFolder):
             NotYet: ``setup.py`` fails, or does not install one of the files there.
         """
         installed = files_of_setup(self.folder)
-        for name in names:
+        marker = PurePosixPath("share/ament_index/resource_index/packages", self.name)
+        if marker not in installed:
+            raise NotYet(
+                phrase(
+                    "setup.py does not install 'resource/{name}' in '{folder}', so ROS does not find the package",
+                    name=self.name,
+                    folder=marker.parent,
+                )
+            )
+        for name in ("package.xml", *names):
             place = PurePosixPath("share", self.name, name)
             source = installed.get(place)
             if source is None or not source.is_file():

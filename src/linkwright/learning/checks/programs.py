@@ -2,14 +2,28 @@
 
 from __future__ import annotations
 
+import ast
 import importlib
+import linecache
+import re
 import sys
 import traceback
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from linkwright.diagnostics import Phrase, foreign, nearest, phrase
+from linkwright.diagnostics import LinkwrightError, Phrase, foreign, nearest, phrase, quoted_names
+from linkwright.diagnostics.lookalikes import lookalike_hint
+from linkwright.learning.checks.findings import add_hint, describe_error
 from linkwright.learning.checks.not_yet import NotYet
+
+if TYPE_CHECKING:
+    from linkwright.packages.readers.entry_points import EntryPoint
+
+_BUDGET = re.compile(r"without waiting, at (.+?):(\d+)")
+_WITHOUT_COMMA = re.compile(r"""['"]\s*[\w-]+\s*=\s*[\w.]+:\w+\s*['"][ \t]*\n\s*['"]""")
+_WITHOUT_FUNCTION = re.compile(r"""['"]\s*([\w-]+)\s*=\s*([A-Za-z_]\w*(?:\.\w+)+)\s*['"]""")
+_ADDRESS = re.compile(r" at 0x[0-9a-f]+")
 
 
 def find_program(folder: Path, package: str, name: str) -> Callable[[], object]:
@@ -26,24 +40,20 @@ def find_program(folder: Path, package: str, name: str) -> Callable[[], object]:
         NotYet: the package declares no such executable, or has no such module.
     """
     from linkwright import standins
+    from linkwright.learning.checks.installed import expect_valid_setup
     from linkwright.packages.programs.source_programs import module_file, python_root, source_programs
 
+    expect_valid_setup(folder)
+    _expect_complete_entries(folder / "setup.py")
     entries = source_programs(folder).entry_points
     if name not in entries:
-        similar = nearest(name, entries, 1)
-        if similar:
-            raise NotYet(
-                phrase("setup.py declares no executable '{name}'; there is '{similar}'", name=name, similar=similar[0])
-            )
-        raise NotYet(phrase("setup.py declares no executable '{name}' in 'console_scripts'", name=name))
+        raise NotYet(_missing_executable(name, entries))
     entry = entries[name]
     root = python_root(folder, package)
-    if root is None or module_file(root, entry.module) is None:
-        raise NotYet(
-            phrase(
-                "the executable '{name}' names the module '{module}', which is missing", name=name, module=entry.module
-            )
-        )
+    path = None if root is None else module_file(root, entry.module)
+    if root is None or path is None:
+        raise NotYet(_missing_module(name, entry, folder, package))
+    _expect_function(path, entry.function)
     standins.activate()
     if str(root) not in sys.path:
         sys.path.insert(0, str(root))
@@ -58,15 +68,138 @@ def find_program(folder: Path, package: str, name: str) -> Callable[[], object]:
     return main
 
 
+def _expect_complete_entries(path: Path) -> None:
+    """Require the entries of ``setup.py`` to be separate and to name a function.
+
+    Raises:
+        NotYet: a comma is missing between two entries, or an entry names only a module.
+    """
+    text = path.read_text(encoding="utf-8") if path.is_file() else ""
+    if match := _WITHOUT_COMMA.search(text):
+        line = text.count("\n", 0, match.start()) + 1
+        raise NotYet(phrase("setup.py, line {line}: a comma is missing at the end of the line", line=line))
+    if match := _WITHOUT_FUNCTION.search(text):
+        line = text.count("\n", 0, match.start()) + 1
+        written = f"{match[1]} = {match[2]}:main"
+        raise NotYet(
+            phrase("setup.py, line {line}: the entry names no function; write '{written}'", line=line, written=written)
+        )
+
+
+def _missing_executable(name: str, entries: Mapping[str, EntryPoint]) -> Phrase:
+    """Return the message for an executable that ``setup.py`` does not declare."""
+    if similar := nearest(name, entries, 1):
+        return phrase("setup.py declares no executable '{name}'; there is '{similar}'", name=name, similar=similar[0])
+    message = phrase("setup.py declares no executable '{name}' in 'console_scripts'", name=name)
+    if not entries:
+        return message
+    return phrase("{message}; there is '{similar}'", message=message, similar=next(iter(entries)))
+
+
+def _missing_module(name: str, entry: EntryPoint, folder: Path, package: str) -> Phrase:
+    """Return the message for an executable whose module is missing, with the form that is right."""
+    message = phrase(
+        "the executable '{name}' names the module '{module}', which is missing", name=name, module=entry.module
+    )
+    for ending in (".py", f".{entry.function}", ".main"):
+        shorter = entry.module.removesuffix(ending)
+        if shorter != entry.module:
+            written = f"{name} = {shorter}:{entry.function}"
+            return phrase("{message}; write '{written}'", message=message, written=written)
+    if not entry.module.startswith(f"{package}."):
+        written = f"{name} = {package}.{entry.module}:{entry.function}"
+        return phrase("{message}; write '{written}'", message=message, written=written)
+    inner = folder / package
+    if not (inner / "__init__.py").is_file() and inner.is_dir():
+        return phrase("{message}: the folder '{folder}' needs a file __init__.py", message=message, folder=inner.name)
+    place = entry.module.replace(".", "/") + ".py"
+    return phrase("{message}; its file must be '{place}' in the package", message=message, place=place)
+
+
+def _expect_function(path: Path, function: str) -> None:
+    """Require a module to have a function, without running it.
+
+    Raises:
+        NotYet: the module has no such name, or cannot be read.
+    """
+    try:
+        tree = ast.parse(path.read_bytes(), str(path))
+    except (SyntaxError, ValueError) as error:
+        raise NotYet(describe_failure(error, path.parent)) from None
+    names = {name for statement in tree.body for name in _names_of(statement)}
+    if function not in names and "*" not in names:
+        message = phrase("{file} has no function '{function}'", file=path.name, function=function)
+        functions = [statement.name for statement in tree.body if isinstance(statement, ast.FunctionDef)]
+        if not functions:
+            raise NotYet(message)
+        raise NotYet(phrase("{message}; it has {names}", message=message, names=quoted_names(functions)))
+
+
+def _names_of(statement: ast.stmt) -> Iterator[str]:
+    """Yield the names that a statement of a module defines."""
+    if isinstance(statement, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):
+        yield statement.name
+    elif isinstance(statement, (ast.Import, ast.ImportFrom)):
+        yield from (alias.asname or alias.name for alias in statement.names)
+    else:
+        yield from (node.id for node in ast.walk(statement) if isinstance(node, ast.Name))
+        for node in ast.walk(statement):
+            if isinstance(node, ast.FunctionDef):
+                yield node.name
+
+
 def describe_failure(error: Exception, workspace: Path) -> Phrase:
     """Return an exception as one sentence, with the last line of the learner's files that it passed."""
-    text = foreign(f"{type(error).__name__}: {error}")
+    from linkwright.launch.errors.user_code import hint_about
+
+    text = _ADDRESS.sub("", f"{type(error).__name__}: {error}")
     frames = traceback.extract_tb(error.__traceback__)
     own = [frame for frame in frames if Path(frame.filename).is_relative_to(workspace)]
+    if isinstance(error, LinkwrightError) and (error.diagnostics[0].span is not None or not own):
+        return describe_error(error)
     if isinstance(error, SyntaxError) and error.filename and Path(error.filename).is_relative_to(workspace):
-        return phrase(
-            "{file}, line {line}: {error}", file=Path(error.filename).name, line=error.lineno or 1, error=text
+        text = f"{type(error).__name__}: {error.msg}"
+        hint = lookalike_hint(error.text or "") if "invalid character" in error.msg else None
+        place, line = error.filename, error.lineno or 1
+    elif own:
+        place, line = own[-1].filename, own[-1].lineno or 1
+        hint = (
+            _own_module_hint(error, Path(place))
+            or hint_about(error)
+            or _hint_about_line(error, linecache.getline(place, line))
         )
-    if own:
-        return phrase("{file}, line {line}: {error}", file=Path(own[-1].filename).name, line=own[-1].lineno, error=text)
-    return phrase("the check failed: {error}", error=text)
+        if isinstance(error, LinkwrightError):
+            text, hint = error.diagnostics[0].message, error.diagnostics[0].hint or hint
+    elif match := _BUDGET.search(text):
+        return phrase(
+            "{file}, line {line}: the program computes without an end; a loop must wait, with rclpy.spin_once(node) or "
+            "time.sleep(...)",
+            file=Path(match[1]).name,
+            line=int(match[2]),
+        )
+    else:
+        return phrase("the check failed: {error}", error=foreign(text))
+    described = phrase("{file}, line {line}: {error}", file=Path(place).name, line=line, error=foreign(text))
+    return add_hint(described, hint)
+
+
+def _own_module_hint(error: Exception, path: Path) -> Phrase | None:
+    """Return a hint about a module of the same package that is imported without the package, or None."""
+    name = error.name if isinstance(error, ModuleNotFoundError) else None
+    if name is None or not path.with_name(f"{name}.py").is_file():
+        return None
+    return phrase("write 'from {package}.{module} import ...'", package=path.parent.name, module=name)
+
+
+def _hint_about_line(error: Exception, line: str) -> Phrase | None:
+    """Return a hint about a line of a node that fails, or None."""
+    text = str(error)
+    if "create_" in line and "missing" in text and "()" in line:
+        return phrase("pass the function without parentheses, such as self.on_message")
+    if "create_" in line and "'type' is not iterable" in text:
+        return phrase("first comes the type, then the name, such as create_publisher(Twist, 'cmd_vel', 10)")
+    if "must be of type 'float'" in text:
+        return phrase("write the number with a point, such as 1.0; float(...) converts a value")
+    if "the response of" in text:
+        return phrase("the callback of a service must end with 'return response'")
+    return None

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -15,6 +15,8 @@ from linkwright.diagnostics import Phrase, nearest, phrase, quoted_names
 from linkwright.geometry.arrays import matrix_from_pose, row_from_pose
 from linkwright.geometry.shapes import Box, Cylinder, Sphere
 from linkwright.kinematics.tree import KinematicTree
+from linkwright.learning.checks.findings import add_hint
+from linkwright.learning.checks.inertias import inertia_matrix, moments_of_inertia
 from linkwright.learning.checks.not_yet import NotYet
 from linkwright.urdf.model import Collision, Joint, Link, Mesh, Robot, Visual
 
@@ -29,6 +31,9 @@ _ANGLE_TOLERANCE = 0.02
 
 _COLOR_TOLERANCE = 0.15
 
+_DEFAULT_AXIS = (1.0, 0.0, 0.0)
+_MOST_NAMES = 8
+
 
 @dataclass(frozen=True)
 class ShapeSpec:
@@ -36,8 +41,9 @@ class ShapeSpec:
 
     Attributes:
         shape: the shape with its size in m.
-        along: the direction of a cylinder's axis in the link's frame; None for any direction.
-        at: the position of its center in the link's frame, in m; None for any position.
+        along: the direction of a cylinder's axis in the root frame, with all joints at zero; None for any direction.
+        at: the position of its center relative to the link's frame, in the directions of the root frame, in m; None for
+            any position.
     """
 
     shape: Box | Cylinder | Sphere
@@ -45,7 +51,20 @@ class ShapeSpec:
     at: Vector | None = None
 
 
-class RobotCheck:
+class _Checked:
+    """A robot, or a part of it, that a check compares under a circumstance."""
+
+    def __init__(self, circumstance: Phrase | None) -> None:
+        self._circumstance = circumstance
+
+    def _refusal(self, message: Phrase) -> NotYet:
+        """Return the result of a check that is not satisfied, with the circumstance of the check."""
+        if self._circumstance is None:
+            return NotYet(message)
+        return NotYet(phrase("{circumstance}: {message}", circumstance=self._circumstance, message=message))
+
+
+class RobotCheck(_Checked):
     """A robot of the learner.
 
     Attributes:
@@ -53,9 +72,29 @@ class RobotCheck:
         path: the file that it was read from.
     """
 
-    def __init__(self, robot: Robot, path: Path) -> None:
+    def __init__(
+        self,
+        robot: Robot,
+        path: Path,
+        *,
+        circumstance: Phrase | None = None,
+        explain_missing: Callable[[str, str], Phrase | None] | None = None,
+        explain_unread: Callable[[], Phrase | None] | None = None,
+    ) -> None:
+        """Keep a robot.
+
+        Args:
+            robot: the robot.
+            path: the file that it was read from.
+            circumstance: what is special about this robot, such as a property with another value.
+            explain_missing: returns why a link or joint that the files contain is missing, from its kind and name.
+            explain_unread: returns which element of the files is not read.
+        """
+        super().__init__(circumstance)
         self.robot = robot
         self.path = path
+        self._explain_missing = explain_missing
+        self._explain_unread = explain_unread
 
     def link(self, name: str) -> LinkCheck:
         """Return a link.
@@ -65,8 +104,8 @@ class RobotCheck:
         """
         link = self.robot.links.get(name)
         if link is None:
-            raise NotYet(_missing("link", name, self.robot.links))
-        return LinkCheck(link)
+            raise self._refusal(self._missing("link", name, self.robot.links))
+        return LinkCheck(link, self._rotation(name), self._circumstance, self._explain_unread)
 
     def joint(self, name: str) -> JointCheck:
         """Return a joint.
@@ -76,8 +115,27 @@ class RobotCheck:
         """
         joint = self.robot.joints.get(name)
         if joint is None:
-            raise NotYet(_missing("joint", name, self.robot.joints))
-        return JointCheck(joint)
+            raise self._refusal(self._missing("joint", name, self.robot.joints))
+        return JointCheck(joint, self._rotation(joint.child), self._circumstance)
+
+    def _rotation(self, link: str) -> NDArray[np.float64]:
+        """Return the rotation of a link's frame in the root frame, with all joints at zero."""
+        tree, frames = self._frames
+        return np.asarray(frames[tree.link_index(link)][:3, :3])
+
+    def _missing(self, kind: Literal["link", "joint"], name: str, names: Iterable[str]) -> Phrase:
+        """Return the message for a link or joint that is missing, with the reason or the names that there are."""
+        message = phrase("no link is called '{name}'", name=name)
+        if kind == "joint":
+            message = phrase("no joint is called '{name}'", name=name)
+        names = list(names)
+        if similar := nearest(name, names, 1):
+            return phrase("{message}; there is '{similar}'", message=message, similar=similar[0])
+        if self._explain_missing is not None and (reason := self._explain_missing(kind, name)):
+            return phrase("{message}; {reason}", message=message, reason=reason)
+        if not names:
+            return message
+        return phrase("{message}; the robot has {names}", message=message, names=quoted_names(names[:_MOST_NAMES]))
 
     def pose(self, link: str, frame: str | None = None) -> NDArray[np.float64]:
         """Return the pose of a link's frame with all joints at zero.
@@ -116,7 +174,7 @@ class RobotCheck:
         """
         actual = self.pose(link, frame)[:3, 3]
         if np.linalg.norm(actual - np.asarray(position)) > tolerance:
-            raise NotYet(
+            raise self._refusal(
                 phrase(
                     "the frame of '{link}' is at {actual} in the frame of '{frame}', but should be at {expected}",
                     link=link,
@@ -126,21 +184,51 @@ class RobotCheck:
                 )
             )
 
+    def expect_direction(self, link: str, axis: Vector, direction: Vector, *, frame: str | None = None) -> None:
+        """Require an axis of a link's frame to point in a direction, with all joints at zero.
+
+        Args:
+            link: the link.
+            axis: the axis in the link's frame, such as ``(1, 0, 0)``.
+            direction: the direction in the frame of reference.
+            frame: the link whose frame is the reference; None for the root link.
+
+        Raises:
+            NotYet: the link is missing, or turned.
+        """
+        actual = self.pose(link, frame)[:3, :3] @ np.asarray(axis, float)
+        if _angle(actual, direction, either_sign=False) > _ANGLE_TOLERANCE:
+            raise self._refusal(
+                phrase(
+                    "the frame of '{link}' is turned: its axis {axis} points along {actual} in the frame of '{frame}', "
+                    "but should point along {expected}; compare the rpy of its joint",
+                    link=link,
+                    axis=_vector_text(axis),
+                    actual=_vector_text(actual),
+                    frame=frame or self.robot.root,
+                    expected=_vector_text(direction),
+                )
+            )
+
     @cached_property
     def _frames(self) -> tuple[KinematicTree, NDArray[np.float64]]:
         tree = KinematicTree(self.robot)
         return tree, np.asarray(tree.forward({}))
 
 
-class JointCheck:
+class JointCheck(_Checked):
     """A joint of the learner's robot.
 
     Attributes:
         joint: the joint.
     """
 
-    def __init__(self, joint: Joint) -> None:
+    def __init__(
+        self, joint: Joint, rotation: NDArray[np.float64] | None = None, circumstance: Phrase | None = None
+    ) -> None:
+        super().__init__(circumstance)
         self.joint = joint
+        self._rotation = np.eye(3) if rotation is None else rotation
 
     def expect_type(self, *types: str) -> None:
         """Require the joint to have one of the given types.
@@ -149,7 +237,7 @@ class JointCheck:
             NotYet: it has another type.
         """
         if self.joint.type not in types:
-            raise NotYet(
+            raise self._refusal(
                 phrase(
                     "the joint '{joint}' has the type '{actual}', but should be {expected}",
                     joint=self.joint.name,
@@ -167,14 +255,14 @@ class JointCheck:
         if (self.joint.parent, self.joint.child) == (parent, child):
             return
         if (self.joint.parent, self.joint.child) == (child, parent):
-            raise NotYet(
+            raise self._refusal(
                 phrase(
                     "the joint '{joint}' has parent and child exchanged: the parent is '{parent}'",
                     joint=self.joint.name,
                     parent=parent,
                 )
             )
-        raise NotYet(
+        raise self._refusal(
             phrase(
                 "the joint '{joint}' connects '{actual_parent}' and '{actual_child}', but should connect '{parent}' "
                 "and '{child}'",
@@ -187,20 +275,39 @@ class JointCheck:
         )
 
     def expect_axis(self, axis: Vector, *, either_sign: bool = False) -> None:
-        """Require the joint to turn about, or move along, an axis of its frame.
+        """Require the joint to turn about, or move along, an axis.
 
         Args:
-            axis: the direction.
+            axis: the direction in the frame of the root link, with all joints at zero.
             either_sign: whether the opposite direction passes, too.
 
         Raises:
             NotYet: the axis is another one.
         """
-        if _angle(self.joint.axis, axis, either_sign=either_sign) <= _ANGLE_TOLERANCE:
+        actual = self._rotation @ np.asarray(self.joint.axis, float)
+        if _angle(actual, axis, either_sign=either_sign) <= _ANGLE_TOLERANCE:
             return
-        if _angle(self.joint.axis, axis, either_sign=True) <= _ANGLE_TOLERANCE:
-            raise NotYet(phrase("the axis of the joint '{joint}' has the wrong sign", joint=self.joint.name))
-        raise NotYet(
+        if _angle(actual, self.joint.axis, either_sign=True) > _ANGLE_TOLERANCE:
+            raise self._refusal(
+                phrase(
+                    "the axis of the joint '{joint}' points along {actual}, because the rpy of a joint's <origin> "
+                    "turns it, but should point along {expected}",
+                    joint=self.joint.name,
+                    actual=_vector_text(actual),
+                    expected=_vector_text(axis),
+                )
+            )
+        if _angle(actual, axis, either_sign=True) <= _ANGLE_TOLERANCE:
+            raise self._refusal(phrase("the axis of the joint '{joint}' has the wrong sign", joint=self.joint.name))
+        if tuple(self.joint.axis) == _DEFAULT_AXIS:
+            raise self._refusal(
+                phrase(
+                    "the axis of the joint '{joint}' is 1 0 0, as without <axis>, but should be {expected}",
+                    joint=self.joint.name,
+                    expected=_vector_text(axis),
+                )
+            )
+        raise self._refusal(
             phrase(
                 "the axis of the joint '{joint}' is {actual}, but should be {expected}",
                 joint=self.joint.name,
@@ -210,15 +317,24 @@ class JointCheck:
         )
 
 
-class LinkCheck:
+class LinkCheck(_Checked):
     """A link of the learner's robot.
 
     Attributes:
         link: the link.
     """
 
-    def __init__(self, link: Link) -> None:
+    def __init__(
+        self,
+        link: Link,
+        rotation: NDArray[np.float64] | None = None,
+        circumstance: Phrase | None = None,
+        explain_unread: Callable[[], Phrase | None] | None = None,
+    ) -> None:
+        super().__init__(circumstance)
         self.link = link
+        self._explain_unread = explain_unread
+        self._rotation = np.eye(3) if rotation is None else rotation
 
     def expect_shape(self, expected: ShapeSpec, part: Part = "visual") -> None:
         """Require the link to have a shape of a size.
@@ -233,13 +349,55 @@ class LinkCheck:
             NotYet: no visual or collision is this shape.
         """
         parts: Sequence[Visual | Collision] = self.link.visuals if part == "visual" else self.link.collisions
-        if not parts:
-            raise NotYet(phrase("the link '{link}' has no <{part}>", link=self.link.name, part=part))
-        objections = [objection for candidate in parts if (objection := _object_to(candidate, expected)) is not None]
+        self.expect_part(part)
+        all_objections = (_object_to(candidate, expected, self._rotation) for candidate in parts)
+        objections = [objection for objection in all_objections if objection is not None]
         if len(objections) == len(parts):
-            raise NotYet(
+            raise self._refusal(
                 phrase("the {part} of '{link}': {reason}", part=part, link=self.link.name, reason=objections[0])
             )
+
+    def expect_part(self, part: Part) -> None:
+        """Require the link to have a visual or a collision.
+
+        Raises:
+            NotYet: it has none; the text names an element of the file that is not read.
+        """
+        if self.link.visuals if part == "visual" else self.link.collisions:
+            return
+        message = phrase("the link '{link}' has no <{part}>", link=self.link.name, part=part)
+        raise self._refusal(add_hint(message, self._explain_unread and self._explain_unread()))
+
+    def expect_inertia(self, shape: Box | Cylinder | Sphere, *, along: Vector | None = None, factor: float) -> None:
+        """Require the moments of inertia of a solid shape with the link's mass.
+
+        Args:
+            shape: the shape.
+            along: the direction of a cylinder's axis in the root frame, with all joints at zero.
+            factor: the greatest ratio between a moment and the right one.
+
+        Raises:
+            NotYet: the link has no inertia, or another one.
+        """
+        inertial = self.link.inertial
+        if inertial is None:
+            raise self._refusal(phrase("the link '{link}' has no <{part}>", link=self.link.name, part="inertial"))
+        rotation = self._rotation @ matrix_from_pose(row_from_pose(inertial.origin))[:3, :3]
+        actual = np.diag(rotation @ inertia_matrix(inertial) @ rotation.T)
+        expected = moments_of_inertia(shape, inertial.mass, along)
+        for name, moment, right in zip(("ixx", "iyy", "izz"), actual, expected, strict=True):
+            if not right / factor <= moment <= right * factor:
+                raise self._refusal(
+                    phrase(
+                        "the moment {name} of '{link}' is {actual:.3g} kg m², but should be about {expected:.3g} for a "
+                        "mass of {mass:g} kg; compare the sizes and the rpy that the inertia macro gets",
+                        name=name,
+                        link=self.link.name,
+                        actual=moment,
+                        expected=right,
+                        mass=inertial.mass,
+                    )
+                )
 
     def expect_color(self, rgb: Vector) -> None:
         """Require a visual of the link to have a color.
@@ -252,9 +410,9 @@ class LinkCheck:
         """
         colors = [visual.material.rgba for visual in self.link.visuals if visual.material and visual.material.rgba]
         if not colors:
-            raise NotYet(phrase("the visual of '{link}' has no color", link=self.link.name))
+            raise self._refusal(phrase("the visual of '{link}' has no color", link=self.link.name))
         if all(np.abs(np.subtract(color[:3], rgb)).max() > _COLOR_TOLERANCE for color in colors):
-            raise NotYet(
+            raise self._refusal(
                 phrase(
                     "the visual of '{link}' has the color {actual}, but should have {expected}",
                     link=self.link.name,
@@ -274,10 +432,10 @@ class LinkCheck:
             NotYet: the link has no mass, or another one.
         """
         if self.link.inertial is None:
-            raise NotYet(phrase("the link '{link}' has no <{part}>", link=self.link.name, part="inertial"))
+            raise self._refusal(phrase("the link '{link}' has no <{part}>", link=self.link.name, part="inertial"))
         mass = self.link.inertial.mass
         if not lowest <= mass <= highest:
-            raise NotYet(
+            raise self._refusal(
                 phrase(
                     "the mass of '{link}' is {mass:g} kg, but should be between {lowest:g} and {highest:g} kg",
                     link=self.link.name,
@@ -288,8 +446,11 @@ class LinkCheck:
             )
 
 
-def _object_to(part: Visual | Collision, expected: ShapeSpec) -> Phrase | None:
-    """Return what distinguishes a part from the expected shape, or None if nothing does."""
+def _object_to(part: Visual | Collision, expected: ShapeSpec, rotation: NDArray[np.float64]) -> Phrase | None:
+    """Return what distinguishes a part from the expected shape, or None if nothing does.
+
+    The rotation is that of the link's frame in the root frame.
+    """
     shape = part.geometry
     if isinstance(shape, Mesh) or type(shape) is not type(expected.shape):
         return phrase(
@@ -301,21 +462,22 @@ def _object_to(part: Visual | Collision, expected: ShapeSpec) -> Phrase | None:
                 "its {size} is {actual:g} m, but should be {expected:g} m", size=name, actual=actual, expected=wanted
             )
     matrix = matrix_from_pose(row_from_pose(part.origin))
+    direction, center = rotation @ matrix[:3, 2], rotation @ matrix[:3, 3]
     largest_angle = max(map(abs, part.origin.rpy))
     if expected.along is not None and largest_angle > 2 * np.pi:
         return phrase(
             "its rpy contains {angle:g}: angles are in radians, and a quarter turn is 1.5708", angle=largest_angle
         )
-    if expected.along is not None and _angle(matrix[:3, 2], expected.along, either_sign=True) > _ANGLE_TOLERANCE:
+    if expected.along is not None and _angle(direction, expected.along, either_sign=True) > _ANGLE_TOLERANCE:
         return phrase(
             "its axis points along {actual}, but should point along {expected}",
-            actual=_vector_text(matrix[:3, 2]),
+            actual=_vector_text(direction),
             expected=_vector_text(expected.along),
         )
-    if expected.at is not None and np.linalg.norm(matrix[:3, 3] - np.asarray(expected.at)) > _LENGTH_TOLERANCE:
+    if expected.at is not None and np.linalg.norm(center - np.asarray(expected.at)) > _LENGTH_TOLERANCE:
         return phrase(
             "its center is at {actual}, but should be at {expected}",
-            actual=_vector_text(matrix[:3, 3]),
+            actual=_vector_text(center),
             expected=_vector_text(expected.at),
         )
     return None
@@ -332,14 +494,6 @@ def _sizes(shape: object, expected: object) -> list[tuple[str, float, float]]:
 
 def _kind(shape: object) -> str:
     return type(shape).__name__.lower()
-
-
-def _missing(kind: str, name: str, names: Iterable[str]) -> Phrase:
-    """Return the message for a link or joint that is missing, with a name that resembles it."""
-    similar = nearest(name, names, 1)
-    if similar:
-        return phrase("no {kind} is called '{name}'; there is '{similar}'", kind=kind, name=name, similar=similar[0])
-    return phrase("no {kind} is called '{name}'", kind=kind, name=name)
 
 
 def _angle(first: Vector | NDArray[np.float64], second: Vector, *, either_sign: bool) -> float:

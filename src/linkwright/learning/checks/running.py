@@ -65,10 +65,6 @@ def _run(check: Check, work: Work) -> CheckResult:
         check.function(work)
     except NotYet as reason:
         return CheckResult(check.title, passed=False, message=reason.text)
-    except LinkwrightError as error:
-        return CheckResult(
-            check.title, passed=False, message=LocalText.from_phrase(describe_finding(error.diagnostics[0]))
-        )
     except Exception as error:  # noqa: BLE001 - the learner's files can be anything
         message = describe_failure(error, work.folder.resolve())
         return CheckResult(check.title, passed=False, message=LocalText.from_phrase(message))

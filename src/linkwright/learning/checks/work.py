@@ -6,12 +6,14 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from linkwright.diagnostics import did_you_mean, phrase, quoted_names
+from linkwright.diagnostics.lookalikes import plain_text
 from linkwright.learning.checks.not_yet import NotYet
 from linkwright.learning.checks.packages import FileFolder, PackageCheck
 from linkwright.packages import PackageFinder
 from linkwright.packages.manifest import package_name
 
 SOURCE_FOLDER = "src"
+_UNIT_FACTORS = (10.0, 100.0, 1000.0)
 
 
 class Work(FileFolder):
@@ -42,7 +44,7 @@ class Work(FileFolder):
             NotYet: there is no such package below ``src``.
         """
         if name not in self._packages:
-            self._packages[name] = PackageCheck(name, self._find_package(name), self.finder)
+            self._packages[name] = PackageCheck(name, self._find_package(name), self.finder, self.folder)
         return self._packages[name]
 
     def _find_package(self, name: str) -> Path:
@@ -76,9 +78,11 @@ class Work(FileFolder):
         if self._answer is None or not self._answer.strip():
             raise NotYet(phrase("the step has no answer yet"))
         try:
-            return float(self._answer.strip().replace(",", "."))
+            return float(plain_text(self._answer.strip()).replace(",", "."))
         except ValueError:
-            raise NotYet(phrase("the answer '{text}' is not a number", text=self._answer)) from None
+            raise NotYet(
+                phrase("the answer '{text}' is not a number; write the number alone, without a unit", text=self._answer)
+            ) from None
 
     def expect_number(self, value: float, *, tolerance: float, slips: Mapping[float, object] | None = None) -> None:
         """Require the learner's number to be near a value.
@@ -97,4 +101,14 @@ class Work(FileFolder):
         for wrong, message in (slips or {}).items():
             if abs(number - wrong) <= tolerance and isinstance(message, NotYet):
                 raise message
+        if abs(number + value) <= tolerance:
+            raise NotYet(phrase("{number:g} has the wrong sign", number=number))
+        for factor in _UNIT_FACTORS:
+            if abs(number / factor - value) <= tolerance:
+                raise NotYet(
+                    phrase(
+                        "{number:g} has the right digits, but not the unit of the question; look at the decimal point",
+                        number=number,
+                    )
+                )
         raise NotYet(phrase("{number:g} is not the right number; measure once more", number=number))

@@ -16,6 +16,7 @@ from typing import Any
 import yaml
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, SourceText, Span, foreign, phrase
+from linkwright.files.yaml_documents import yaml_hint
 
 _Loader: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 _Resolver: Any = yaml.resolver.Resolver
@@ -414,9 +415,7 @@ def _yaml_diagnostic(error: yaml.YAMLError, source: SourceText) -> Diagnostic:
     span = None
     if mark is not None:
         span = source.span(source.offset(mark.line + 1, mark.column + 1))
-    hint = None
-    if span is not None and "\t" in source.line(span.line):
-        hint = phrase("indent with spaces: YAML does not allow tabs")
+    hint = None if span is None else yaml_hint(source, span.line)
     return Diagnostic(
         "RVIZ102",
         phrase("the file is not valid YAML: {problem}", problem=foreign(problem)),

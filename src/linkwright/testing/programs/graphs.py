@@ -23,6 +23,7 @@ class ProgramGraph:
     def __init__(self, graph: Graph) -> None:
         self._graph = graph
         self._handles: list[NodeHandle] = []
+        self._identities: list[NodeIdentity] = []
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self._graph, name)
@@ -32,10 +33,17 @@ class ProgramGraph:
         handle = self._graph.open_node(identity, remappings, **options)
         handle.set_dispatcher(None)
         self._handles.append(handle)
+        self._identities.append(identity)
         return handle
+
+    @property
+    def node_names(self) -> list[tuple[str, str]]:
+        """The name and the namespace of each node."""
+        return [(identity.name, identity.namespace) for identity in self._identities]
 
     def close_threadsafe(self) -> None:
         """Destroy the nodes."""
         for handle in self._handles:
             handle.destroy()
         self._handles.clear()
+        self._identities.clear()

@@ -60,6 +60,11 @@ class Program:
         """Whether a thread of the program has not ended."""
         return any(not thread.ended.ended() for thread in self._threads)
 
+    @property
+    def node_names(self) -> list[tuple[str, str]]:
+        """The name and the namespace of each node that the program has now."""
+        return [names for graph in self._graphs for names in graph.node_names]
+
     def interrupt(self) -> None:
         """Send the program Ctrl-C, as ``ros2 run`` does: rclpy shuts down, and the main thread is interrupted."""
         self.is_interrupted = True

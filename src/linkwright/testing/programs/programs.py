@@ -50,6 +50,11 @@ class Programs:
         self._programs.append(program)
         return program
 
+    @property
+    def node_names(self) -> list[tuple[str, str]]:
+        """The name and the namespace of each node that the programs have now."""
+        return [names for program in self._programs for names in program.node_names]
+
     async def settle(self) -> None:
         """Run the programs and the callbacks of the graph until all wait."""
         self._turns.wake_pollers()

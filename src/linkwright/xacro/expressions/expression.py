@@ -11,6 +11,7 @@ import re
 from types import GeneratorType
 
 from linkwright.diagnostics import foreign, phrase
+from linkwright.diagnostics.lookalikes import lookalike_hint
 from linkwright.loading.lean_typing import Any
 from linkwright.xacro.cache import TextCompiler
 from linkwright.xacro.expressions.compiler import FAILURES, Closure, Compiler, failure
@@ -144,6 +145,8 @@ def _syntax_fault(source: str, stripped: str, error: SyntaxError) -> Fault:
     hint = next((hint for sign, hint in _SYNTAX_HINTS if sign in stripped), None)
     if "!=" in stripped and hint == "write 'not'":
         hint = None
+    if hint is None and "invalid character" in reason:
+        hint = lookalike_hint(stripped)
     if hint is None and "was never closed" in reason:
         hint = phrase("close it with '{closing}'", closing=_CLOSING_BRACKETS.get(reason[1:2], ")"))
     fault = Fault("XAC102", message, hint=hint)

@@ -107,7 +107,8 @@ class Command(DeclaredSubstitution, tag="command", shown="Command({command})"):
                 words=words[0],
             )
             ros_error = SubstitutionFailure(f"file not found: {error}")
-            raise error_at(self.place, "LAUNCH129", message, ros_error=ros_error) from error
+            hint = phrase("write a space after 'xacro'") if words[0].startswith("xacro/") else None
+            raise error_at(self.place, "LAUNCH129", message, hint, ros_error=ros_error) from error
         if process.returncode != 0:
             message = _append_output(
                 phrase("command '{text}' failed with exit status {status}", text=text, status=process.returncode),

@@ -1,0 +1,79 @@
+"""The message for a file that a check expects, with the files that the learner may have meant."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+from linkwright.diagnostics import Phrase, nearest, phrase, quoted_names
+
+_MOST_FILES = 3
+_SKIPPED_FOLDERS = {"build", "install", "log", "__pycache__"}
+
+
+def describe_missing_file(folder: Path, name: str, workspace: Path) -> Phrase:
+    """Return the message for a missing file.
+
+    Args:
+        folder: the folder that should have the file.
+        name: the path in the folder.
+        workspace: the workspace, which may have the file at another place.
+    """
+    inside = _same(folder, name)
+    if not inside and (elsewhere := _same(workspace, name)):
+        return phrase(
+            "'{folder}' has no file '{name}'; the workspace has {others}",
+            folder=folder.name,
+            name=name,
+            others=quoted_names(elsewhere),
+        )
+    inside = inside or _similar(folder, name)
+    if inside:
+        return phrase(
+            "'{folder}' has no file '{name}'; it has {others}",
+            folder=folder.name,
+            name=name,
+            others=quoted_names(inside),
+        )
+    elsewhere = _similar(workspace, Path(name).name)
+    if elsewhere:
+        return phrase(
+            "'{folder}' has no file '{name}'; the workspace has {others}",
+            folder=folder.name,
+            name=name,
+            others=quoted_names(elsewhere),
+        )
+    return phrase("'{folder}' has no file '{name}'", folder=folder.name, name=name)
+
+
+def _same(folder: Path, name: str) -> list[str]:
+    """Return the files of a folder with the name of a file, apart from capitals and punctuation."""
+    names = [file.relative_to(folder).as_posix() for file in _files(folder)]
+    return [other for other in names if _key(Path(other).name) == _key(Path(name).name)][:_MOST_FILES]
+
+
+def _similar(folder: Path, name: str) -> list[str]:
+    """Return the files of a folder whose names resemble that of a file."""
+    names = [file.relative_to(folder).as_posix() for file in _files(folder)]
+    stem = _stem(name)
+    related = [other for other in names if _stem(other) == stem]
+    suffix = Path(name).suffix
+    typos = nearest(name, [other for other in names if Path(other).suffix == suffix], _MOST_FILES)
+    return list(dict.fromkeys([*related, *typos]))[:_MOST_FILES]
+
+
+def _key(name: str) -> str:
+    """Return a name in small letters, with letters and digits only: ``Display_launch.py`` is ``display.launch.py``."""
+    return re.sub(r"[^a-z0-9]", "", name.casefold())
+
+
+def _stem(name: str) -> str:
+    return _key(Path(name).name.partition(".")[0])
+
+
+def _files(folder: Path) -> Iterator[Path]:
+    for path in sorted(folder.rglob("*")):
+        parts = path.relative_to(folder).parts
+        if path.is_file() and not any(part in _SKIPPED_FOLDERS or part.startswith(".") for part in parts):
+            yield path

@@ -1,0 +1,34 @@
+"""The arguments with which a learner's launch file starts RViz."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import pairwise
+from pathlib import Path
+
+from linkwright.diagnostics import phrase
+from linkwright.learning.checks.not_yet import NotYet
+
+_OPTIONS = ("-d", "--display-config")
+
+
+def object_to_rviz_arguments(arguments: Sequence[str], path: Path) -> None:
+    """Require the arguments of RViz to name a configuration.
+
+    Raises:
+        NotYet: they name none, or another file.
+    """
+    given = [value for option, value in pairwise(arguments) if option in _OPTIONS]
+    if any(Path(value).exists() and Path(value).samefile(path) for value in given):
+        return
+    if given:
+        raise NotYet(
+            phrase("rviz2 opens '{given}', but should open 'rviz/{expected}'", given=given[0], expected=path.name)
+        )
+    raise NotYet(
+        phrase(
+            "rviz2 needs two arguments, '-d' and the path of {file}; it has {given}",
+            file=path.name,
+            given=" ".join(f"'{argument}'" for argument in arguments) or phrase("none"),
+        )
+    )
