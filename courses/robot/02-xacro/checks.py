@@ -15,8 +15,9 @@ def package(work):
 @contextmanager
 def robot_with(work, name, value):
     """Yield the robot with another value of a property, which a message about it names."""
+    robot = package(work).robot_with_property(XACRO, name, value)
     try:
-        yield package(work).robot_with_property(XACRO, name, value)
+        yield robot
     except NotYet as error:
         raise NotYet(
             en=f"The check sets {name} to {value}: {error.text.get('en')}",
