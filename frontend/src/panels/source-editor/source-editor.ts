@@ -109,6 +109,8 @@ export class SourceEditor implements Documents {
       const shownFiles = session.description.of(this.shownDisplay)?.description.files ?? [];
       this.service.filesChanged(this.open.filter(({ path }) => shownFiles.includes(path)).map(({ uri }) => uri));
     });
+    // a course checks its step again when programs, such as those in the terminal, changed files
+    connection.on("step_checks", () => this.tree.reload());
     this.refresh();
   }
 
