@@ -6,58 +6,58 @@ Tests of how a process starts, of what it imports and of what Python itself read
 
 from __future__ import annotations
 
-import json
 import os
-import select
-import signal
-import socket
-import subprocess
 import sys
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import IO
 
-from tests.fork_server import NUMBER
+from linkwright.process import forked
 
-ROOT = Path(__file__).resolve().parent.parent
-IS_POSSIBLE = hasattr(os, "pidfd_open")
-"""Whether the system can do it: Linux."""
+_IMPORTED = (
+    "linkwright.cli.command",
+    "linkwright.cli.view",
+    "linkwright.cli.launch.*",
+    "linkwright.cli.sim.*",
+    "linkwright.bag.*",
+    "linkwright.hosting.*",
+    "linkwright.inertia.*",
+    "linkwright.messages.*",
+    "linkwright.nodes.joint_state_publisher_gui",
+    "linkwright.nodes.robot_state_publisher",
+    "linkwright.simulation.nodes.simulator",
+    "linkwright.packages.*",
+    "linkwright.page.*",
+    "linkwright.panels.*",
+    "linkwright.rviz.*",
+    "linkwright.viewer.*",
+    "aiohttp.web",
+    "encodings.idna",
+    "watchfiles",
+)
 
 
-class Forked:
-    """A running ``python -m linkwright WORDS``, with the part of `subprocess.Popen` that tests use.
+@dataclass
+class Program:
+    """A running ``python -m linkwright WORDS``, which reads nothing and prints into one pipe.
 
     Attributes:
+        process: the process, forked off or fresh.
         stdout: what it prints, standard error included, as text.
-        returncode: its exit status once that is known, or minus the number of the signal that ended it.
     """
 
+    process: forked.Program
     stdout: IO[str]
-    returncode: int | None = None
 
-    def __init__(self, server: ForkServer, words: list[str], cwd: Path, env: Mapping[str, str]) -> None:
-        self._server = server
-        printed, prints = os.pipe()
-        self._report, report = os.pipe()
-        nothing = os.open(os.devnull, os.O_RDONLY)
-        server.ask(words, cwd, env, [nothing, prints, prints, report])
-        for descriptor in (nothing, prints, report):
-            os.close(descriptor)
-        self.stdout = os.fdopen(printed, encoding="utf-8")
-        self.args = ["linkwright", *words]
-        try:
-            self.pid = self._read_number()
-        except BaseException:
-            self.stdout.close()
-            os.close(self._report)
-            raise
+    @property
+    def pid(self) -> int:
+        return self.process.pid
 
     def poll(self) -> int | None:
         """The exit status, or None while it runs."""
-        if self.returncode is None and select.select([self._report], [], [], 0)[0]:
-            self.returncode = self._read_number()
-            os.close(self._report)
-        return self.returncode
+        return self.process.poll()
 
     def wait(self, timeout: float | None = None) -> int:
         """Wait for its end, and give the exit status.
@@ -65,81 +65,43 @@ class Forked:
         Raises:
             subprocess.TimeoutExpired: when it did not end within that many seconds.
         """
-        if self.returncode is None and not select.select([self._report], [], [], timeout)[0]:
-            raise subprocess.TimeoutExpired(self.args, timeout or 0.0)
-        status = self.poll()
-        assert status is not None
-        return status
+        return self.process.wait(timeout)
 
     def send_signal(self, number: int) -> None:
         """Send a signal unless it has ended."""
-        if self.poll() is None:
-            os.kill(self.pid, number)
+        self.process.send_signal(number)
 
     def terminate(self) -> None:
         """Send SIGTERM."""
-        self.send_signal(signal.SIGTERM)
+        self.process.terminate()
 
     def kill(self) -> None:
         """Send SIGKILL."""
-        self.send_signal(signal.SIGKILL)
-
-    def _read_number(self) -> int:
-        result = os.read(self._report, NUMBER.size)
-        assert result, f"the fork server has ended: {self._server.close()}"
-        number: int = NUMBER.unpack(result)[0]
-        return number
-
-
-Program = Forked | subprocess.Popen[str]
+        self.process.kill()
 
 
 def start_process(words: list[str], *, cwd: Path, env: Mapping[str, str]) -> Program:
-    """A ``python -m linkwright WORDS`` that reads nothing and prints into one pipe."""
-    return subprocess.Popen(
-        [sys.executable, "-m", "linkwright", *words],
-        cwd=cwd,
-        env=env,
-        stdin=subprocess.DEVNULL,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        encoding="utf-8",
-    )
+    """Start a program that imports everything itself."""
+    return _start(partial(forked.start_fresh, [sys.executable]), words, cwd, env)
 
 
 class ForkServer:
     """The process that programs are forked off; it starts with the first of them."""
 
     def __init__(self) -> None:
-        self._process: subprocess.Popen[bytes] | None = None
+        self._server = forked.ForkServer(_IMPORTED, variables={"PYTHONUNBUFFERED": "1"})
 
     def start(self, words: list[str], *, cwd: Path, env: Mapping[str, str]) -> Program:
         """The same as `start_process`, forked off where the system can do that."""
-        return Forked(self, words, cwd, env) if IS_POSSIBLE else start_process(words, cwd=cwd, env=env)
+        return _start(self._server.start, words, cwd, env)
 
-    def ask(self, words: list[str], cwd: Path, env: Mapping[str, str], descriptors: list[int]) -> None:
-        """Send what `tests.fork_server.Request` has."""
-        if self._process is None:
-            self._control, far = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
-            with far:
-                self._process = subprocess.Popen(
-                    [sys.executable, "-m", "tests.fork_server", str(far.fileno())],
-                    cwd=ROOT,
-                    env={**os.environ, "PYTHONUNBUFFERED": "1"},
-                    pass_fds=[far.fileno()],
-                    # Of the kind that its programs get, as Python looks at them only once.
-                    stdin=subprocess.DEVNULL,
-                    stdout=subprocess.PIPE,
-                    stderr=subprocess.STDOUT,
-                )
-        request = {"words": words, "folder": str(cwd), "environment": dict(env)}
-        socket.send_fds(self._control, [json.dumps(request).encode()], descriptors)
+    def close(self) -> None:
+        """End the process; programs that run go on."""
+        self._server.close()
 
-    def close(self) -> str:
-        """End the process and tell what it printed; programs that run go on."""
-        if self._process is None:
-            return ""
-        self._control.close()
-        printed, _ = self._process.communicate()
-        self._process = None
-        return printed.decode(errors="replace")
+
+def _start(start: Callable[..., forked.Program], words: list[str], cwd: Path, env: Mapping[str, str]) -> Program:
+    reader, writer = os.pipe()
+    with Path(os.devnull).open("rb") as nothing, os.fdopen(writer, "wb"):
+        process = start("linkwright", words, cwd=cwd, env=env, streams=(nothing.fileno(), writer, writer))
+    return Program(process, os.fdopen(reader, encoding="utf-8"))

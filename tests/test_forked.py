@@ -8,12 +8,12 @@ import subprocess
 
 import pytest
 
-from tests import forked
-from tests.forked import ForkServer, start_process
+from linkwright.process import forked
+from tests.forked import ForkServer, Program, start_process
 from tests.places import PACKAGE
 from tests.waiting import SECONDS, wait_until
 
-pytestmark = pytest.mark.skipif(not forked.IS_POSSIBLE, reason="only Linux can wait for a process by a file")
+pytestmark = pytest.mark.skipif(not forked.IS_POSSIBLE, reason="programs are forked off on Linux only")
 
 ROBOT = PACKAGE / "urdf" / "mbot_base.xacro"
 QUIET = {**os.environ, "LINKWRIGHT_DDS": "0", "NO_COLOR": "1"}
@@ -24,7 +24,7 @@ def start(request, fork_server):
     return fork_server.start if request.param == "forked" else start_process
 
 
-def ended(program: forked.Program) -> tuple[str, int]:
+def ended(program: Program) -> tuple[str, int]:
     with program.stdout:
         return program.stdout.read(), program.wait(SECONDS)
 
@@ -80,9 +80,10 @@ def test_signals_end_it(start, tmp_path, number, status):
 def test_several_run_at_once_and_one_that_nobody_waits_for_hinders_none(fork_server, tmp_path):
     first, second = (fork_server.start(["view", str(ROBOT), "--no-open"], cwd=tmp_path, env=QUIET) for _ in range(2))
     forgotten = fork_server.start(["--version"], cwd=tmp_path, env=QUIET)
-    os.close(forgotten._report)
-    with first.stdout, second.stdout, forgotten.stdout:
-        forgotten.stdout.read()
+    printed_of_forgotten = forgotten.stdout
+    del forgotten
+    with first.stdout, second.stdout, printed_of_forgotten:
+        printed_of_forgotten.read()
         second.terminate()
         second.wait(SECONDS)
         assert first.poll() is None
@@ -91,11 +92,27 @@ def test_several_run_at_once_and_one_that_nobody_waits_for_hinders_none(fork_ser
         assert first.wait(SECONDS) == -signal.SIGKILL
 
 
-def test_a_server_that_cannot_begin_says_why(tmp_path, monkeypatch):
-    monkeypatch.setattr(forked, "ROOT", tmp_path)  # where there is no module of that name
+def test_programs_start_afresh_where_the_server_cannot_begin(tmp_path, monkeypatch):
+    monkeypatch.setattr(forked, "_MODULE", "no_such_module")
     server = ForkServer()
-    with pytest.raises(AssertionError, match="No module named 'tests'"):
-        server.start(["--version"], cwd=tmp_path, env=QUIET)
+    program = server.start(["--version"], cwd=tmp_path, env=QUIET)
+    assert isinstance(program.process, subprocess.Popen)
+    assert ended(program)[1] == 0
+    server.close()
+
+
+def test_a_server_that_was_killed_is_replaced(tmp_path):
+    server = ForkServer()
+    program = server.start(["view", str(ROBOT), "--no-open"], cwd=tmp_path, env={**QUIET, "PYTHONUNBUFFERED": "1"})
+    with program.stdout:
+        assert any(line.startswith("Viewer: ") for line in program.stdout)
+        server._server._process.kill()
+        server._server._process.wait()
+        assert program.wait(SECONDS) == -signal.SIGKILL  # nobody can know its status any more
+        os.kill(program.pid, signal.SIGTERM)
+    again = server.start(["--version"], cwd=tmp_path, env=QUIET)
+    assert isinstance(again.process, forked.ForkedProcess)
+    assert ended(again)[1] == 0
     server.close()
 
 

@@ -1,9 +1,11 @@
 """A learner's way through a course: files, checks, hints, solutions, and the progress that is kept."""
 
 import json
+import os
 import re
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
@@ -12,10 +14,11 @@ from linkwright.cli import main
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Span, phrase
 from linkwright.graph.parameters.files import read_parameter_file
 from linkwright.learning.checks.findings import describe_finding
-from linkwright.learning.checks.running import check_in_process
+from linkwright.learning.checks.running import check_in_process, new_check_server
 from linkwright.learning.classroom import open_classroom
 from linkwright.learning.course import find_course, load_course
 from linkwright.learning.lesson_tests import test_lesson as run_lesson_tests
+from linkwright.process.forked import IS_POSSIBLE
 from tests.waiting import SECONDS, wait_until
 
 SOLUTION = "01-one-link/solution/one-link/robot.urdf"
@@ -172,7 +175,18 @@ def test_the_tests_of_a_lesson_find_its_mistakes(tmp_path, capsys, file, old, ne
     assert any(problem in found for found in problems), problems
 
 
-def test_a_check_that_hangs_or_dies_fails_and_leaves_no_process(tmp_path, capsys):
+@pytest.fixture(params=["forked", "fresh"])
+def check_server(request):
+    if request.param == "fresh":
+        yield None
+        return
+    if not IS_POSSIBLE:
+        pytest.skip("programs are forked off on Linux only")
+    with new_check_server() as server:
+        yield server
+
+
+def test_a_check_that_hangs_or_dies_fails_and_leaves_no_process(tmp_path, capsys, check_server):
     folder = tmp_path / "mine"
     learn(capsys, "new", str(folder))
     checks = folder / "01-one-link" / "checks.py"
@@ -184,16 +198,51 @@ def test_a_check_that_hangs_or_dies_fails_and_leaves_no_process(tmp_path, capsys
     )
     step = load_course(folder).steps[0]
     checks.write_text(start + "while True: time.sleep(1)\n")
-    result = check_in_process(step, tmp_path, time_limit=3.0)
+    check_in_process(step, tmp_path, time_limit=3.0, server=check_server)  # which may take long to begin
+    result = check_in_process(step, tmp_path, time_limit=3.0, server=check_server)
     assert "took longer than 3 s" in str(result.checks[0].message)
     if sys.platform != "win32":
         wait_until(lambda: not is_running(int(marker.read_text())), SECONDS)
     checks.write_text("import os\nos._exit(7)\n")
-    result = check_in_process(step, tmp_path)
+    result = check_in_process(step, tmp_path, server=check_server)
     assert "ended early" in str(result.checks[0].message)
+    checks.write_text("import os, sys\nprint('a' * 10**6, '\\nthe last line', file=sys.stderr)\nos._exit(7)\n")
+    result = check_in_process(step, tmp_path, server=check_server)
+    assert "ended early: the last line" in str(result.checks[0].message)
     checks.write_text("1 / 0\n")
-    result = check_in_process(step, tmp_path)
+    result = check_in_process(step, tmp_path, server=check_server)
     assert "ZeroDivisionError" in str(result.checks[0].message)
+
+
+def test_each_check_has_a_domain_folder_environment_and_random_numbers_of_its_own(
+    tmp_path, capsys, check_server, monkeypatch
+):
+    folder = tmp_path / "mine"
+    learn(capsys, "new", str(folder))
+    (folder / "01-one-link" / "checks.py").write_text(
+        "import json, os, time\nimport numpy\nfrom linkwright.learning import NotYet, check\n\n"
+        '@check("mass", en="It is said.", zh="说。")\n'
+        "def tell(work):\n"
+        "    names = 'ROS_DOMAIN_ID', 'A_WORD'\n"
+        "    facts = [*map(os.environ.get, names), os.getcwd(), os.getpid(), os.getsid(0), numpy.random.rand()]\n"
+        "    (work.folder / str(os.getpid())).write_text(json.dumps(facts))\n"
+        "    while len(list(work.folder.iterdir())) < 3:\n"
+        "        time.sleep(0.01)\n"
+    )
+    step = load_course(folder).find_step("mass")
+    workspace = tmp_path / "ws"
+    workspace.mkdir()
+    monkeypatch.setenv("A_WORD", "here")
+    with ThreadPoolExecutor(3) as pool:
+        results = [pool.submit(check_in_process, step, workspace, server=check_server) for _ in range(3)]
+    assert all(result.result().passed for result in results)
+    facts = [json.loads(path.read_text()) for path in workspace.iterdir()]
+    domains, words, folders, pids, sessions, numbers = zip(*facts, strict=True)
+    assert len({*domains, os.environ["ROS_DOMAIN_ID"]}) == 4
+    assert set(words) == {"here"}
+    assert set(folders) == {str(workspace)}
+    assert pids == sessions
+    assert len(set(numbers)) == 3
 
 
 @pytest.mark.parametrize(

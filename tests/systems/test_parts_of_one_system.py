@@ -39,7 +39,7 @@ KNOWN: dict[str, str] = {
     "launch/engine/guardian_program.py": "/proc /proc/ SIGHUP SIGKILL getpgid killpg",
     "launch/engine/process_table.py": "SIGKILL",
     "launch/engine/processes.py": "SIGKILL killpg openpty",
-    "learning/checks/running.py": "SIGKILL killpg platform start_new_session",
+    "learning/checks/running.py": "SIGKILL killpg platform",
     "learning/grading/running.py": "O_NOFOLLOW O_NONBLOCK",
     "learning/grading/workers.py": "get_context",
     "learning/packing/installer/install.py": "/bin/activate'",
@@ -68,6 +68,8 @@ KNOWN: dict[str, str] = {
     "panels/terminal/posix_pty.py": "add_reader add_writer fcntl openpty platform remove_reader remove_writer set_blocking start_new_session termios",  # noqa: E501
     "panels/terminal/process_session.py": "/proc /proc/ /proc/self/stat SIGHUP SIGKILL kill",
     "panels/terminal/take_terminal.py": "fcntl pthread_sigmask termios",
+    "process/fork_server.py": "fork setsid",
+    "process/forked.py": "AF_UNIX SIGKILL kill platform start_new_session",
     "process/interruption.py": "kill platform",
     "process/processors.py": "sched_getaffinity",
     "shell/programs.py": "platform",

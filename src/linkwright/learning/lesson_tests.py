@@ -11,9 +11,10 @@ from pathlib import Path
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.files.scratch_folders import ScratchFolder
 from linkwright.learning.checks.declaring import load_checks, load_module
-from linkwright.learning.checks.running import check_in_process
+from linkwright.learning.checks.running import check_in_process, new_check_server
 from linkwright.learning.course import CASES_FILE, CHECKS_FILE, Course, Lesson, Step
 from linkwright.learning.errors import file_error
+from linkwright.process.forked import ForkServer
 
 _IMAGE = re.compile(r"!\[[^\]]*\]\(([^)\s]+)")
 
@@ -100,7 +101,7 @@ def test_lesson(course: Course, lesson: Lesson) -> Iterator[TestResult]:
     if unknown:
         yield TestResult(lesson.id, CHECKS_FILE, phrase("there is no step '{step}'", step=unknown[0]))
     cases = load_cases(lesson)
-    with ScratchFolder("lesson") as scratch:
+    with ScratchFolder("lesson") as scratch, new_check_server() as server:
         workspace = Path(scratch) / "before"
         workspace.mkdir()
         for step in _steps_before(course, lesson):
@@ -111,7 +112,7 @@ def test_lesson(course: Course, lesson: Lesson) -> Iterator[TestResult]:
             if step.id not in checks:
                 yield TestResult(lesson.id, step.id, phrase("the step has no checks"))
             own = [case for case in cases if case.step == step.id]
-            yield from _test_step(step, workspace, own, Path(scratch) / "case")
+            yield from _test_step(step, workspace, own, Path(scratch) / "case", server)
 
 
 test_lesson.__test__ = False  # type: ignore[attr-defined]  # pytest would collect it
@@ -124,24 +125,28 @@ def _steps_before(course: Course, lesson: Lesson) -> Iterator[Step]:
         yield from earlier.steps
 
 
-def _test_step(step: Step, workspace: Path, cases: Sequence[Case], scratch: Path) -> Iterator[TestResult]:
+def _test_step(
+    step: Step, workspace: Path, cases: Sequence[Case], scratch: Path, server: ForkServer
+) -> Iterator[TestResult]:
     """Test a step, and leave its solution in the workspace."""
     answer = step.right_answer
-    if check_in_process(step, workspace).passed:
+    if check_in_process(step, workspace, server=server).passed:
         yield TestResult(step.lesson.id, step.id, phrase("the step passes before its solution"))
     _overlay(step.solution, workspace)
-    yield TestResult(step.lesson.id, step.id, _objection(step, workspace, answer, None))
+    yield TestResult(step.lesson.id, step.id, _objection(step, workspace, answer, None, server))
     for case in cases:
         shutil.rmtree(scratch, ignore_errors=True)
         shutil.copytree(workspace, scratch)
         _apply(case, scratch, step.lesson)
         given = answer if case.answer is None else case.answer
-        yield TestResult(step.lesson.id, f"{step.id}: {case.title}", _objection(step, scratch, given, case.says))
+        yield TestResult(
+            step.lesson.id, f"{step.id}: {case.title}", _objection(step, scratch, given, case.says, server)
+        )
 
 
-def _objection(step: Step, workspace: Path, answer: str | None, says: str | None) -> Phrase | None:
+def _objection(step: Step, workspace: Path, answer: str | None, says: str | None, server: ForkServer) -> Phrase | None:
     """Return what is wrong about the result of the checks, or None if nothing is."""
-    result = check_in_process(step, workspace, answer=answer)
+    result = check_in_process(step, workspace, answer=answer, server=server)
     messages = [str(check.message) for check in result.checks if check.message is not None]
     if says is None:
         return None if result.passed else phrase("a right solution fails: {message}", message=(messages or [""])[0])

@@ -1,1 +1,1 @@
-"""Functions for the whole process: arguments, standard streams, Ctrl-C and the event loop."""
+"""Functions for the whole process: arguments, standard streams, Ctrl-C, the event loop, forked programs."""

@@ -7,15 +7,18 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 import time
-from collections.abc import Sequence
-from contextlib import suppress
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, suppress
+from functools import partial
 from pathlib import Path
 from typing import Any
 
-from linkwright.diagnostics import LinkwrightError, foreign, phrase
+from linkwright.diagnostics import LinkwrightError, Phrase, foreign, phrase
 from linkwright.files.scratch_folders import ScratchFolder
 from linkwright.learning.checks.declaring import Check, load_checks
+from linkwright.learning.checks.domains import hold_domain
 from linkwright.learning.checks.findings import describe_finding
 from linkwright.learning.checks.not_yet import NotYet
 from linkwright.learning.checks.programs import describe_failure
@@ -23,15 +26,10 @@ from linkwright.learning.checks.results import CheckResult, StepResult
 from linkwright.learning.checks.work import Work
 from linkwright.learning.course import CHECKS_FILE, Step, load_lesson
 from linkwright.learning.local_text import LocalText
+from linkwright.process.forked import ForkServer, Program, start_fresh
 
 TIME_LIMIT = 120.0
 """The seconds after which the process of a step's checks is ended. Checks with simulated worlds take the longest."""
-
-_DOMAINS = 100
-"""The number of ROS domains among which the process of a check selects one, without domain 0, the default.
-
-The domain of the learner's own programs is left out, too.
-"""
 
 PYTHON = [sys.executable]
 """The command that runs Python for checks. Tests measure the coverage of its processes."""
@@ -39,7 +37,34 @@ PYTHON = [sys.executable]
 DOMAIN_VARIABLE = "LINKWRIGHT_CHECK_DOMAIN"
 """The variable with the ROS domain of a check, for callers that run several at a time in one network."""
 
-MODULE = "linkwright.learning.checks.running"
+MODULE = "linkwright.learning.checks"
+
+_IMPORTED = (
+    "linkwright.learning.checks.*",
+    "linkwright.graph.*",
+    "linkwright.hosting.*",
+    "linkwright.launch.*",
+    "linkwright.lint.*",
+    "linkwright.messages.*",
+    "linkwright.packages.*",
+    "linkwright.rviz.*",
+    "linkwright.sdf.*",
+    "linkwright.simulation.*",
+    "linkwright.standins.*",
+    "linkwright.testing.*",
+    "linkwright.viewer.*",
+    "linkwright.wire.*",
+    "markdown_it",
+    "mujoco",
+    "numpy.random",
+)
+"""The modules that most checks import."""
+
+_ERROR_BYTES = 1 << 16
+"""The number of bytes that are kept of the standard error of a process: the last ones."""
+
+_CLOSING_SECONDS = 5.0
+"""The seconds to wait for the end of the standard error. A program that has left the session can keep it open."""
 
 
 def check_step(step: Step, workspace: Path, *, answer: str | None = None) -> StepResult:
@@ -86,15 +111,29 @@ def _without_repetition(results: Sequence[CheckResult]) -> list[CheckResult]:
 
 def check_command(step: Step, workspace: Path, output: Path, *, answer: str | None = None) -> list[str]:
     """Return the command that runs the checks of a step and writes the result as JSON to a file."""
-    words = [*PYTHON, "-m", MODULE, str(step.lesson.folder), step.id, str(workspace), str(output)]
+    return [*PYTHON, "-m", MODULE, *_check_words(step, workspace, output, answer)]
+
+
+def _check_words(step: Step, workspace: Path, output: Path, answer: str | None) -> list[str]:
+    words = [str(step.lesson.folder), step.id, str(workspace), str(output)]
     return words if answer is None else [*words, answer]
 
 
+def new_check_server() -> ForkServer:
+    """Return a server for several processes of checks, which then start without imports. The caller closes it."""
+    return ForkServer(_IMPORTED, PYTHON)
+
+
 def check_in_process(
-    step: Step, workspace: Path, *, answer: str | None = None, time_limit: float = TIME_LIMIT
+    step: Step,
+    workspace: Path,
+    *,
+    answer: str | None = None,
+    time_limit: float = TIME_LIMIT,
+    server: ForkServer | None = None,
 ) -> StepResult:
     """Run the checks of a step in a process of their own; see `CheckProcess`."""
-    return CheckProcess(step, workspace, answer=answer, time_limit=time_limit).run()
+    return CheckProcess(step, workspace, answer=answer, time_limit=time_limit, server=server).run()
 
 
 class CheckProcess:
@@ -108,16 +147,24 @@ class CheckProcess:
         workspace: the learner's workspace.
         answer: the number that the learner answered, as text.
         time_limit: the seconds after which the process is ended.
+        server: starts the process; see `new_check_server`. None for a process that imports by itself.
     """
 
     def __init__(
-        self, step: Step, workspace: Path, *, answer: str | None = None, time_limit: float = TIME_LIMIT
+        self,
+        step: Step,
+        workspace: Path,
+        *,
+        answer: str | None = None,
+        time_limit: float = TIME_LIMIT,
+        server: ForkServer | None = None,
     ) -> None:
         self._step = step
         self._workspace = workspace
         self._answer = answer
         self._time_limit = time_limit
-        self._process: subprocess.Popen[str] | None = None
+        self._start = partial(start_fresh, PYTHON) if server is None else server.start
+        self._process: Program | None = None
         self._is_canceled = False
 
     def run(self) -> StepResult:
@@ -125,7 +172,7 @@ class CheckProcess:
         begin = time.monotonic()
         with ScratchFolder("check") as scratch:
             output = Path(scratch) / "result.json"
-            reason = self._run_command(check_command(self._step, self._workspace, output, answer=self._answer))
+            reason = self._run_program(_check_words(self._step, self._workspace, output, self._answer))
             data = _read(output)
         if data is not None and reason is None:
             return StepResult.from_data(data)
@@ -140,36 +187,50 @@ class CheckProcess:
         if process is not None:
             _end_group(process)
 
-    def _run_command(self, command: Sequence[str]) -> Any:
-        """Run a command, and return why it ended early, or None."""
-        with subprocess.Popen(  # noqa: S603 - our own command
-            command,
-            cwd=self._workspace,
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.DEVNULL,
-            stderr=subprocess.PIPE,
-            start_new_session=True,
-            text=True,
-            encoding="utf-8",
-            errors="replace",
-        ) as process:
+    def _run_program(self, words: Sequence[str]) -> Phrase | None:
+        """Run the program of the checks, and return why it ended early, or None."""
+        with Path(os.devnull).open("r+b") as nothing, _last_bytes() as (errors, descriptor):
+            streams = nothing.fileno(), nothing.fileno(), descriptor
+            process = self._start(MODULE, words, cwd=self._workspace, env=os.environ, streams=streams)
             self._process = process
             if self._is_canceled:
                 _end_group(process)
             try:
-                _, errors = process.communicate(timeout=self._time_limit)
+                process.wait(self._time_limit)
             except subprocess.TimeoutExpired:
                 return phrase("the check took longer than {seconds:g} s and was ended", seconds=self._time_limit)
             finally:
                 self._process = None
                 _end_group(process)
-            if process.returncode:
-                last = (errors.strip().splitlines() or [""])[-1]
-                return phrase("the process of the check ended early: {error}", error=foreign(last))
+                process.wait()
+        if process.returncode:
+            last = (errors.decode(errors="replace").strip().splitlines() or [""])[-1]
+            return phrase("the process of the check ended early: {error}", error=foreign(last))
         return None
 
 
-def _end_group(process: subprocess.Popen[str]) -> None:
+@contextmanager
+def _last_bytes() -> Iterator[tuple[bytearray, int]]:
+    """Yield a buffer, and a descriptor for writing. At the end, the buffer has the last bytes that were written."""
+    reader, writer = os.pipe()
+    last = bytearray()
+
+    def read() -> None:
+        with os.fdopen(reader, "rb", buffering=0) as stream:
+            while part := stream.read(_ERROR_BYTES):
+                last.extend(part)
+                del last[:-_ERROR_BYTES]
+
+    thread = threading.Thread(target=read, daemon=True)
+    thread.start()
+    try:
+        yield last, writer
+    finally:
+        os.close(writer)
+        thread.join(_CLOSING_SECONDS)
+
+
+def _end_group(process: Program) -> None:
     """End the process and all processes of its session."""
     if sys.platform == "win32":
         process.kill()
@@ -188,8 +249,7 @@ def _read(output: Path) -> Any:
 def main(words: Sequence[str]) -> int:
     """Run the checks of a step, as `check_command` requests it."""
     os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
-    domains = [domain for domain in range(1, _DOMAINS + 1) if str(domain) != os.environ.get("ROS_DOMAIN_ID")]
-    os.environ["ROS_DOMAIN_ID"] = os.environ.get(DOMAIN_VARIABLE) or str(domains[os.getpid() % len(domains)])
+    os.environ["ROS_DOMAIN_ID"] = os.environ.get(DOMAIN_VARIABLE) or str(hold_domain())
     lesson_folder, step_id, workspace, output, *answers = words
     lesson = load_lesson(Path(lesson_folder))
     step = next(step for step in lesson.steps if step.id == step_id)
@@ -203,7 +263,3 @@ def main(words: Sequence[str]) -> int:
         result = StepResult(step.address, failed)
     Path(output).write_text(json.dumps(result.to_data(), ensure_ascii=False), encoding="utf-8")
     return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from linkwright.learning.checks.results import StepResult
-from linkwright.learning.checks.running import CheckProcess
+from linkwright.learning.checks.running import CheckProcess, new_check_server
 from linkwright.learning.course import Step
 
 
@@ -24,6 +24,8 @@ class CheckRunner:
     def __init__(self, workspace: Path, on_result: Callable[[Step, StepResult], object]) -> None:
         self._workspace = workspace
         self._on_result = on_result
+        self._server = new_check_server()
+        self._server.prepare()
         self._process: CheckProcess | None = None
         self._task: asyncio.Task[None] | None = None
         self._requested: tuple[Step, str | None] | None = None
@@ -48,12 +50,13 @@ class CheckRunner:
             self._process.cancel()
         if self._task is not None:
             self._task.cancel()
+        self._server.close()
 
     async def _work(self) -> None:
         while self._requested is not None:
             step, answer = self._requested
             self._requested = None
-            self._process = CheckProcess(step, self._workspace, answer=answer)
+            self._process = CheckProcess(step, self._workspace, answer=answer, server=self._server)
             result = await asyncio.to_thread(self._process.run)
             self._process = None
             if self._requested is None:

@@ -1,0 +1,48 @@
+"""A ROS domain that no other check uses."""
+
+from __future__ import annotations
+
+import os
+import socket
+import time
+
+_DOMAINS = range(1, 101)
+"""The domains among which checks select, without 0, the default. Other programs use the ports of higher ones."""
+
+_FIRST_PORT = 7400
+_PORTS_OF_DOMAIN = 250
+
+_WAIT_SECONDS = 0.2
+
+_locks: list[socket.socket] = []
+"""Sockets that are open until the process ends, however it ends."""
+
+
+def hold_domain() -> int:
+    """Return a ROS domain that no other process holds, and hold it until this process ends.
+
+    The domain of the environment, which the learner's own programs use, is left out.
+
+    A domain is held by listening on a TCP port, which only one process can do. The port is the first of those that DDS
+    uses in the domain, over UDP. Ports have the same scope as domains, also in containers. If all domains are held, the
+    function waits.
+    """
+    domains = [domain for domain in _DOMAINS if str(domain) != os.environ.get("ROS_DOMAIN_ID")]
+    start = os.getpid() % len(domains)
+    while True:
+        for domain in domains[start:] + domains[:start]:
+            if _hold(domain):
+                return domain
+        time.sleep(_WAIT_SECONDS)
+
+
+def _hold(domain: int) -> bool:
+    lock = socket.socket()
+    try:
+        lock.bind(("127.0.0.1", _FIRST_PORT + _PORTS_OF_DOMAIN * domain))
+        lock.listen()
+    except OSError:
+        lock.close()
+        return False
+    _locks.append(lock)
+    return True

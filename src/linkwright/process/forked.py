@@ -1,0 +1,225 @@
+"""Python programs in processes that start without imports: forked off a process that has imported what they need."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import selectors
+import signal
+import socket
+import subprocess
+import sys
+import threading
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from types import TracebackType
+from typing import TYPE_CHECKING, Union
+
+if TYPE_CHECKING:
+    from typing_extensions import Self
+
+_MODULE = "linkwright.process.fork_server"
+
+IS_POSSIBLE = sys.platform == "linux"
+"""Whether programs can be forked off. Windows cannot fork, and numpy does not survive a fork on macOS."""
+
+Streams = tuple[int, int, int]
+"""The descriptors of a program's standard input, output and error."""
+
+
+class ForkedProcess:
+    """A program that a `ForkServer` has forked off, with the part of `subprocess.Popen` that does not depend on pipes.
+
+    The program leads a session of its own.
+
+    Attributes:
+        args: the words of the program.
+        pid: its process ID.
+        returncode: its exit status, or minus the number of the signal that ended it; None while it runs.
+    """
+
+    returncode: int | None = None
+
+    def __init__(self, args: Sequence[str], report: int) -> None:
+        self.args = list(args)
+        self._report = report
+        self.pid = self._read_number()
+        if self.pid < 0:  # it was killed before it began
+            self._end(self.pid)
+
+    def __del__(self) -> None:
+        if self.returncode is None:
+            os.close(self._report)
+
+    def poll(self) -> int | None:
+        """Return the exit status, or None while the program runs."""
+        if self.returncode is None and self._has_report(0.0):
+            self._end(self._read_number())
+        return self.returncode
+
+    def wait(self, timeout: float | None = None) -> int:
+        """Wait for the program's end, and return the exit status.
+
+        Raises:
+            subprocess.TimeoutExpired: the program did not end within `timeout` seconds.
+        """
+        if self.returncode is None and not self._has_report(timeout):
+            raise subprocess.TimeoutExpired(self.args, timeout or 0.0)
+        status = self.poll()
+        assert status is not None, "there was a report"
+        return status
+
+    def send_signal(self, number: int) -> None:
+        """Send a signal unless the program has ended."""
+        if self.poll() is None:
+            os.kill(self.pid, number)
+
+    def terminate(self) -> None:
+        """Send SIGTERM."""
+        self.send_signal(signal.SIGTERM)
+
+    def kill(self) -> None:
+        """Send SIGKILL."""
+        self.send_signal(signal.SIGKILL)
+
+    def _has_report(self, timeout: float | None) -> bool:
+        with selectors.DefaultSelector() as selector:
+            selector.register(self._report, selectors.EVENT_READ)
+            return bool(selector.select(timeout))
+
+    def _read_number(self) -> int:
+        from linkwright.process.fork_server import NUMBER
+
+        data = os.read(self._report, NUMBER.size)
+        number: int = NUMBER.unpack(data)[0] if data else -signal.SIGKILL  # the server was killed
+        return number
+
+    def _end(self, status: int) -> None:
+        self.returncode = status
+        os.close(self._report)
+
+
+Program = Union[ForkedProcess, "subprocess.Popen[bytes]"]
+"""A program, forked off or started."""
+
+
+def start_fresh(
+    python: Sequence[str], module: str, words: Sequence[str], *, cwd: Path, env: Mapping[str, str], streams: Streams
+) -> subprocess.Popen[bytes]:
+    """Start ``python -m MODULE WORDS`` in a process and a session of its own."""
+    stdin, stdout, stderr = streams
+    return subprocess.Popen(  # noqa: S603 - our own command
+        [*python, "-m", module, *words],
+        cwd=cwd,
+        env=env,
+        stdin=stdin,
+        stdout=stdout,
+        stderr=stderr,
+        start_new_session=True,
+    )
+
+
+class ForkServer:
+    """A process from which programs are forked off. It starts with the first program.
+
+    A program has an environment, folder, standard streams, session, signals and exit status of its own. It has the
+    modules, the search path and the hash seed of the server.
+
+    Args:
+        modules: the names of the modules to import; ``PACKAGE.*`` for a package and all its modules.
+        python: the command that runs Python.
+        variables: environment variables of the server itself.
+    """
+
+    def __init__(
+        self,
+        modules: Sequence[str],
+        python: Sequence[str] = (sys.executable,),
+        variables: Mapping[str, str] | None = None,
+    ) -> None:
+        self._modules = modules
+        self._python = python
+        self._variables = variables or {}
+        self._lock = threading.Lock()
+        self._control: socket.socket | None = None
+        self._process: subprocess.Popen[bytes] | None = None
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def prepare(self) -> None:
+        """Start the server, so that it imports before the first program is needed."""
+        with self._lock:
+            if IS_POSSIBLE and self._control is None:
+                self._begin()
+
+    def start(
+        self, module: str, words: Sequence[str], *, cwd: Path, env: Mapping[str, str], streams: Streams
+    ) -> Program:
+        """Start ``python -m MODULE WORDS``, from any thread.
+
+        The program is forked off where the system can do that. Otherwise, or if the server fails, it starts afresh.
+        """
+        if IS_POSSIBLE:
+            with contextlib.suppress(OSError):
+                return self._fork(module, words, cwd, env, streams)
+        return start_fresh(self._python, module, words, cwd=cwd, env=env, streams=streams)
+
+    def _fork(
+        self, module: str, words: Sequence[str], cwd: Path, env: Mapping[str, str], streams: Streams
+    ) -> ForkedProcess:
+        request = {"module": module, "words": list(words), "folder": str(cwd), "environment": dict(env)}
+        report, writer = os.pipe()
+        try:
+            self._send(json.dumps(request).encode(), [*streams, writer])
+        except OSError:
+            os.close(report)
+            raise
+        finally:
+            os.close(writer)
+        process = ForkedProcess(words, report)
+        if process.pid < 0:
+            raise ChildProcessError("the fork server could not fork")
+        return process
+
+    def _send(self, data: bytes, descriptors: Sequence[int]) -> None:
+        """Send a request, to a new server if the last one was killed."""
+        with self._lock:
+            if self._process is not None and self._process.poll() is not None:
+                self._end()
+            control = self._control or self._begin()
+            socket.send_fds(control, [data], list(descriptors))
+
+    def _begin(self) -> socket.socket:
+        control, far = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        with far:
+            self._process = subprocess.Popen(  # noqa: S603 - our own command
+                [*self._python, "-m", _MODULE, str(far.fileno()), *self._modules],
+                cwd="/",  # whose files hide no modules
+                env={**os.environ, **self._variables},
+                pass_fds=[far.fileno()],
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.DEVNULL,
+                stderr=subprocess.DEVNULL,
+                start_new_session=True,
+            )
+        self._control = control
+        return control
+
+    def close(self) -> None:
+        """End the server. Programs that run continue, but their end is not reported."""
+        with self._lock:
+            self._end()
+
+    def _end(self) -> None:
+        if self._control is not None and self._process is not None:
+            self._control.close()
+            self._process.terminate()  # it may still import
+            self._process.wait()
+            self._control = self._process = None
