@@ -15,7 +15,7 @@ from linkwright.learning.grading.running import Job
 from linkwright.learning.grading.submissions import Submission, copy_workspace
 from linkwright.learning.grading.workers import RunJobs, scratch_for_runs
 from linkwright.learning.local_text import LocalText
-from linkwright.learning.sandbox import Limits
+from linkwright.learning.sandbox import Limits, permit_reading
 
 _DOMAINS = 100
 
@@ -77,6 +77,7 @@ def _copy_lessons(course: Course, scratch: Path) -> Path:
     """Copy the course without its solutions, which no student's program shall read."""
     copy = scratch / course.id
     shutil.copytree(course.folder, copy, ignore=shutil.ignore_patterns("solution", CASES_FILE, "__pycache__", ".git"))
+    permit_reading(copy)
     return copy
 
 
@@ -90,7 +91,8 @@ def _make_jobs(
         if not submission.is_readable:
             continue
         place = scratch / f"{index}"
-        place.mkdir(mode=0o711)
+        place.mkdir()
+        place.chmod(0o711)
         copy = place / "copy"
         if not copy_workspace(submission, copy):
             continue

@@ -14,6 +14,7 @@ from linkwright.diagnostics import LinkwrightError
 from linkwright.files.scratch_folders import ScratchFolder
 from linkwright.learning.grading.marks import Mark
 from linkwright.learning.grading.running import Job, run_job
+from linkwright.learning.sandbox import permit_reading
 from linkwright.sweep.ray_cluster import LostTask, RayCluster, connect_to_ray
 
 RunJobs = Callable[[Sequence[Job]], Iterator[tuple[int, "Mark | None"]]]
@@ -85,6 +86,7 @@ def _run_in_cluster(course: FolderContent, copy: FolderContent, job: Job) -> Mar
     with scratch_for_runs() as scratch:
         lessons, own_copy = scratch / "course", scratch / "copy"
         write_folder(lessons, course)
+        permit_reading(lessons)
         write_folder(own_copy, copy)
         own_copy.chmod(0o700)
         lesson = replace(job.step.lesson, folder=lessons / job.step.lesson.folder.relative_to(job.course))
