@@ -131,7 +131,7 @@ while True:
 TEMPORARY_FOLDERS = ("/tmp", "/dev/shm", "/var/tmp", "/run", "/run/lock")
 FILL_TEMPORARY = (
     f"TEMPORARY_FOLDERS = {TEMPORARY_FOLDERS}"
-    + """
+    """
 import os, sys
 for folder in TEMPORARY_FOLDERS:
     written = 0
