@@ -1,6 +1,7 @@
 """Grading a class: marks, limits, malicious students, odd folders, and the formats."""
 
 import csv
+import errno
 import json
 import os
 import pickle
@@ -161,6 +162,92 @@ def test_an_error_of_a_process_of_the_cluster_is_that_of_the_command(folder, mon
     monkeypatch.setattr(workers, "connect_to_ray", lambda address: nullcontext(FakeCluster()))
     assert main(["learn", "grade", "--course", "course", "--ray", "auto", "students/good"]) == 1
     assert "LEARN901" in capsys.readouterr().err
+
+
+def test_an_error_of_one_run_is_not_the_students_and_costs_nobody_else(folder, monkeypatch):
+    write_student(folder, "good", "print(42)")
+    write_student(folder, "unlucky", "print(42)  # unlucky")
+    run_in_sandbox = grading_running.run_in_sandbox
+
+    def fail_for_one(words, **more):
+        if "unlucky" in (more["folder"] / "workspace/program.py").read_text() and "run" in words:
+            raise OSError(errno.ENOSPC, "No space left on device")
+        return run_in_sandbox(words, **more)
+
+    monkeypatch.setattr(grading_running, "run_in_sandbox", fail_for_one)
+    monkeypatch.setattr(workers, "connect_to_ray", lambda address: nullcontext(FakeCluster()))
+    status, students, _ = grade(folder, "--ray", "auto", "--csv", "out.csv", "--nbgrader", "nb.csv")
+    assert status == 1
+    assert {name: (student["points"], student["graded"]) for name, student in students.items()} == {
+        "good": (4, True),
+        "unlucky": (1, False),
+    }
+    assert students["unlucky"]["steps"][0]["graded"] is False
+    assert students["unlucky"]["autograding"]["tests"][0]["status"] == "error"
+    lines = {line["username"]: line for line in csv.DictReader(Path("out.csv").read_text().splitlines())}
+    assert (lines["good"]["points"], lines["unlucky"]["points"], lines["unlucky"]["01-program/read"]) == ("4", "", "1")
+    assert lines["unlucky"]["feedback"].startswith("01-program/run: not graded")
+    assert "No space left on device" in lines["unlucky"]["feedback"]
+    scores = {line["student_id"]: line["score"] for line in csv.DictReader(Path("nb.csv").read_text().splitlines())}
+    assert scores == {"good": "4", "unlucky": ""}
+    assert Path("out.csv.unfinished").exists()
+    monkeypatch.setattr(grading_running, "run_in_sandbox", run_in_sandbox)
+    status, students, _ = grade(folder, "--ray", "auto", "--csv", "out.csv")
+    assert status == 0
+    assert students["unlucky"]["points"] == 4
+    assert not Path("out.csv.unfinished").exists()
+
+
+LACKS = {
+    "raise ImportError('a mistake of the teacher')": "the file cannot be run",
+    "import os; os._exit(3)": "the process of the checks ended with status 3",
+}
+
+
+@pytest.mark.parametrize("mistake", LACKS)
+def test_checks_that_cannot_be_loaded_are_no_students_fault(folder, mistake):
+    write_student(folder, "good", "print(42)")
+    (folder / "course/01-program/checks.py").write_text(mistake)
+    status, students, _ = grade(folder, "--html", "out.html")
+    assert (status, students["good"]["graded"]) == (1, False)
+    for step in students["good"]["steps"]:
+        assert (step["graded"], step["repeated"]) == (False, True)
+        message = step["reason"] or step["checks"][0]["message"]
+        assert LACKS[mistake] in message["en"]
+    assert "not complete" in Path("out.html").read_text(encoding="utf-8")
+
+
+def test_a_check_that_lacks_memory_or_a_library_is_no_students_fault(folder):
+    write_student(folder, "good", "print(42)")
+    checks = folder / "course/01-program/checks.py"
+    missing = "raise ModuleNotFoundError('No module named mujoco', name='mujoco')"
+    source = checks.read_text().replace("def run(work):\n", "def run(work):\n    raise MemoryError\n")
+    source = source.replace("def read(work):\n", f"def read(work):\n    {missing}\n")
+    checks.write_text(source)
+    status, students, _ = grade(folder)
+    assert status == 1
+    assert [step["graded"] for step in students["good"]["steps"]] == [False, False]
+
+
+def test_the_extras_of_the_lessons_are_needed(folder, monkeypatch, capsys):
+    write_student(folder, "good", "print(42)")
+    lesson = folder / "course/01-program/lesson.toml"
+    lesson.write_text('needs = ["sim"]\n' + lesson.read_text())
+    monkeypatch.setattr(grading, "find_spec", lambda name: None)
+    assert main(["learn", "grade", "--course", "course", "students/good"]) == 1
+    assert "LEARN116" in capsys.readouterr().err
+
+
+def test_marks_do_not_depend_on_the_umask(folder):
+    write_student(folder, "good", "print(42)")
+    (folder / "course/01-program/checks.py").chmod(0o600)
+    before = os.umask(0o077)
+    try:
+        status, students, _ = grade(folder)
+    finally:
+        os.umask(before)
+    assert (status, students["good"]["points"]) == (0, 4)
+    assert (folder / "out.json").stat().st_mode & 0o777 == 0o600
 
 
 @pytest.mark.slow

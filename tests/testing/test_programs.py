@@ -11,6 +11,7 @@ import pytest
 
 from linkwright.messages import String, get_service
 from linkwright.testing import BudgetExceededError, SteppedGraph, SteppedSimulation
+from linkwright.testing.programs import threads
 
 ROBOT = Path(__file__).parents[2] / "robots/my_robot_description/urdf/mbot_gazebo.xacro"
 DRIVE_SQUARE = Path(__file__).parents[2] / "robots/my_robot_control/my_robot_control/drive_square.py"
@@ -401,6 +402,25 @@ def test_an_endless_loop_is_ended_with_its_place(write):
         test.start_program(program, budget=0.5)
         with pytest.raises(BudgetExceededError, match=r"program.py:1[456], in work"):
             test.advance(1.0)
+
+
+def test_a_program_that_waits_for_a_processor_is_not_ended(write, monkeypatch):
+    class StandingClock:
+        def read(self):
+            return 0.0
+
+    monkeypatch.setattr(threads, "PatientClock", StandingClock)
+    program = write("""
+        rclpy.init()
+        used = time.thread_time()
+        while time.thread_time() < used + 1.0:
+            pass
+        print("has computed")
+    """)
+    with SteppedGraph() as test:
+        started = test.start_program(program, budget=0.3)
+        test.advance(1.0)
+        assert started.exit_code == 0
 
 
 def test_random_numbers_are_the_same_in_each_run(write):

@@ -139,8 +139,9 @@ class SteppedGraph:
                 or a function.
             args: the command line without the name of the program, with ROS arguments such as
                 ``["--ros-args", "-p", "use_sim_time:=true"]``.
-            budget: the longest time for which a program may compute without waiting, in seconds of the computer's
-                clock. After it, the step raises a `BudgetExceededError` with file and line.
+            budget: the longest time for which a program may compute without waiting, in seconds, without the
+                time in which it waits for a processor. After it, the step raises a `BudgetExceededError` with file and
+                line.
             seed: the seed of the modules ``random`` and ``numpy.random`` at the start.
 
         Raises:

@@ -128,9 +128,12 @@ while True:
     sys.stderr.write("y" * 65536)
 """
 
-FILL_TEMPORARY = """
+TEMPORARY_FOLDERS = ("/tmp", "/dev/shm", "/var/tmp", "/run", "/run/lock")
+FILL_TEMPORARY = (
+    f"TEMPORARY_FOLDERS = {TEMPORARY_FOLDERS}"
+    """
 import os, sys
-for folder in ("/tmp", "/dev/shm", "/var/tmp", "/run", "/run/lock", "/run/user/%d" % os.getuid()):
+for folder in TEMPORARY_FOLDERS:
     written = 0
     try:
         for number in range(64):
@@ -138,8 +141,9 @@ for folder in ("/tmp", "/dev/shm", "/var/tmp", "/run", "/run/lock", "/run/user/%
                 written += file.write(bytes(1 << 20))
     except OSError:
         pass
-    print(folder, written)
+    print(folder, written, flush=True)
 """
+)
 
 TRAPS = """
 import os

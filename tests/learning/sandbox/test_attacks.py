@@ -130,14 +130,13 @@ def test_temporary_folders_of_the_system_are_not_filled(situation: str, student:
     mark = uuid.uuid4().hex
     outcome = attack(situation, student, attacks.FILL_TEMPORARY, mark=mark)
     written = {folder: int(size) for folder, size in (line.split() for line in outcome.stdout.decode().splitlines())}
-    left = [
-        path
-        for folder in written
-        for path in Path(folder).glob(f"fill-{mark}-*")
-        if not (path.unlink() or path.exists())
-    ]
-    if Protection.WRITE in outcome.protections:
+    left = [path for folder in attacks.TEMPORARY_FOLDERS for path in Path(folder).glob(f"fill-{mark}-*")]
+    for path in left:
+        path.unlink()
+    is_root, _, _ = SITUATIONS[situation]
+    if is_root or Protection.WRITE in outcome.protections:  # a run of root has a user whose files are known
         assert left == []
+    if Protection.WRITE in outcome.protections:
         assert sum(written.values()) <= 2 * LIMITS.memory // 8
 
 

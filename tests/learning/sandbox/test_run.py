@@ -93,6 +93,22 @@ except OSError:
     assert (course / "world").read_text() == "flat"
 
 
+@pytest.mark.parametrize("umask", [0o022, 0o077])
+def test_a_grader_with_a_private_umask_and_private_programs_can_run_them(student: Path, umask: int) -> None:
+    before = os.umask(umask)
+    try:
+        private = student.parent / "private"
+        private.mkdir(mode=0o700)
+        (private / "program.py").write_text("open('written', 'w'); print('fine')")
+        (private / "program.py").chmod(0o600)
+        arguments = [sys.executable, str(private / "program.py")]
+        outcome = run_in_sandbox(arguments, folder=student, limits=LIMITS, readable=[private])
+    finally:
+        os.umask(before)
+    assert (outcome.stdout, outcome.stderr) == (b"fine\n", b"")
+    assert (student / "written").stat().st_mode & 0o777 == 0o644
+
+
 def test_a_readable_link_is_followed_to_files_elsewhere(student: Path) -> None:
     course, link = student.parent / "course", student.parent / "link"
     course.mkdir()

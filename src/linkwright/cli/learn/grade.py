@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from contextlib import AbstractContextManager
 
     from linkwright.learning.course import Course, Step
-    from linkwright.learning.grading.marks import StudentMarks
+    from linkwright.learning.grading.marks import Mark, StudentMarks
     from linkwright.learning.grading.workers import RunJobs
     from linkwright.learning.sandbox import Limits
 
@@ -80,9 +80,9 @@ def _add_limits(parser: argparse.ArgumentParser) -> None:
 
 
 def run_grade(arguments: argparse.Namespace) -> int:
-    """Grade a class, and return 1 if a folder could not be read."""
+    """Grade a class, and return 1 if a folder or a step of it could not be graded."""
     from linkwright.learning.course import DEFAULT_COURSE, find_course, load_course
-    from linkwright.learning.grading.grading import grade_class
+    from linkwright.learning.grading.grading import check_extras, grade_class
     from linkwright.learning.grading.journal import Journal
     from linkwright.learning.grading.marks import class_size
     from linkwright.learning.grading.submissions import find_submissions
@@ -96,6 +96,8 @@ def run_grade(arguments: argparse.Namespace) -> int:
     journal = Journal(_journal_path(outputs))
     line = ProgressLine()
     begin = time.monotonic()
+    if arguments.ray is None:
+        check_extras(steps)
     with _choose_workers(arguments) as run_jobs:
         students = grade_class(
             course,
@@ -108,12 +110,16 @@ def run_grade(arguments: argparse.Namespace) -> int:
         )
     line.end()
     _write_outputs(arguments, course, students, limits)
-    journal.remove()
+    is_complete = all(student.is_graded for student in students if student.submission.is_readable)
+    if is_complete:
+        journal.remove()
     _print_table(students)
     _print_protections(students)
     seconds = f"{time.monotonic() - begin:.0f}"
     print_message(localized(phrase("{size} in {seconds} s", size=class_size(students), seconds=seconds)))
-    return FINE if all(student.submission.is_readable for student in students) else FINDINGS
+    if not is_complete:
+        print_message(localized(phrase("some steps were not graded; repeat the command, which runs only these again")))
+    return FINE if all(student.is_graded for student in students) else FINDINGS
 
 
 def _choose_workers(arguments: argparse.Namespace) -> AbstractContextManager[RunJobs]:
@@ -189,14 +195,20 @@ def _print_table(students: Sequence[StudentMarks]) -> None:
     width = max(shown_width(student.submission.student) for student in students)
     for student in students:
         name = student.submission.student
-        signs = "".join("✓" if mark.passed else "✗" for mark in student.marks.values())
+        signs = "".join(_sign(mark) for mark in student.marks.values())
         padding = " " * (width - shown_width(name))
         print(f"{name}{padding}  {f'{student.total:g}/{student.possible:g}':>9}  {signs}")
         for note in student.submission.notes:
             print(f"    {note.get(lang)}")
         for step, mark in student.marks.items():
-            if mark.reason is not None:
-                print(f"    {step}: {mark.reason.get(lang)}")
+            if mark.reason is not None or not mark.is_graded:
+                print(f"    {step}: {'; '.join(message.get(lang) for message in mark.messages)}")
+
+
+def _sign(mark: Mark) -> str:
+    if not mark.is_graded:
+        return "?"
+    return "✓" if mark.passed else "✗"
 
 
 def _print_protections(students: Sequence[StudentMarks]) -> None:
@@ -205,7 +217,7 @@ def _print_protections(students: Sequence[StudentMarks]) -> None:
     from linkwright.learning.sandbox import PROTECTIONS
 
     in_force = protections_in_force(students)
-    if not any(student.marks for student in students):
+    if not any(mark.protections for student in students for mark in student.marks.values()):
         return
     for protection, meaning in PROTECTIONS.items():
         if protection.value not in in_force:

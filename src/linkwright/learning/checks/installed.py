@@ -13,8 +13,10 @@ from linkwright.diagnostics import Phrase, foreign, phrase
 from linkwright.diagnostics.lookalikes import lookalike_hint
 from linkwright.learning.checks.findings import add_hint
 from linkwright.learning.checks.not_yet import NotYet
+from linkwright.process.patience import PatientClock
 
 _TIMEOUT_SECONDS = 10.0
+_PERIOD_SECONDS = 0.2
 _LINE = re.compile(r'File ".*setup\.py", line (\d+)')
 _RUNNER = """
 import json, runpy, sys, types
@@ -75,20 +77,12 @@ def files_of_setup(folder: Path) -> dict[PurePosixPath, Path]:
     if not (folder / "setup.py").is_file():
         raise NotYet(phrase("'{folder}' has no file '{name}'", folder=folder.name, name="setup.py"))
     try:
-        process = subprocess.run(  # noqa: S603 - the learner's own file
-            [sys.executable, "-c", _RUNNER],
-            cwd=folder,
-            capture_output=True,
-            timeout=_TIMEOUT_SECONDS,
-            check=True,
-            text=True,
-            encoding="utf-8",
-        )
+        output = _run_setup(folder)
     except subprocess.TimeoutExpired:
         raise NotYet(phrase("setup.py took longer than {seconds:g} s", seconds=_TIMEOUT_SECONDS)) from None
     except subprocess.CalledProcessError as error:
         raise NotYet(_describe_failure(error.stderr.strip().splitlines() or [""])) from None
-    lines = process.stdout.splitlines()
+    lines = output.splitlines()
     if not lines:
         raise NotYet(phrase("setup.py ends without an error, but does not call setup(...)"))
     entries = json.loads(lines[-1])
@@ -101,6 +95,36 @@ def files_of_setup(folder: Path) -> dict[PurePosixPath, Path]:
             )
         )
     return {PurePosixPath(place) / Path(name).name: folder / name for place, names in entries for name in names}
+
+
+def _run_setup(folder: Path) -> str:
+    """Run a ``setup.py``, and return its output.
+
+    Raises:
+        subprocess.CalledProcessError: it fails.
+        subprocess.TimeoutExpired: it takes too long, which does not depend on the load of the machine.
+    """
+    clock = PatientClock()
+    command = [sys.executable, "-c", _RUNNER]
+    with subprocess.Popen(  # noqa: S603 - the learner's own file
+        command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, encoding="utf-8"
+    ) as process:
+        while (outputs := _read_outputs(process)) is None:
+            if clock.read() > _TIMEOUT_SECONDS:
+                process.kill()
+                raise subprocess.TimeoutExpired(command, _TIMEOUT_SECONDS)
+    output, errors = outputs
+    if process.returncode:
+        raise subprocess.CalledProcessError(process.returncode, command, output, errors)
+    return output
+
+
+def _read_outputs(process: subprocess.Popen[str]) -> tuple[str, str] | None:
+    """Return the outputs of a process if it ends soon, or None."""
+    try:
+        return process.communicate(timeout=_PERIOD_SECONDS)
+    except subprocess.TimeoutExpired:
+        return None
 
 
 def _describe_failure(lines: Sequence[str]) -> Phrase:

@@ -22,6 +22,7 @@ from linkwright.graph.faults import InvalidHandleError
 from linkwright.learning.checks.findings import describe_finding
 from linkwright.learning.checks.not_yet import NotYet
 from linkwright.learning.checks.rviz_arguments import object_to_rviz_arguments
+from linkwright.process.patience import PatientClock
 
 if TYPE_CHECKING:
     from typing_extensions import Self
@@ -312,13 +313,13 @@ class LaunchCheck:
         Raises:
             NotYet: the launch failed, or the condition did not become true in time.
         """
-        deadline = time.monotonic() + _WAIT_SECONDS
-        last_change, last_graph = time.monotonic(), self._graph()
+        clock = PatientClock()
+        last_change, last_graph = 0.0, self._graph()
         while not self._is_true(condition):
             graph = self._graph()
             if graph != last_graph:
-                last_change, last_graph = time.monotonic(), graph
-            if time.monotonic() > min(deadline, last_change + self._quiet_seconds):
+                last_change, last_graph = clock.read(), graph
+            if clock.read() > min(_WAIT_SECONDS, last_change + self._quiet_seconds):
                 raise NotYet(problem() if callable(problem) else problem)
             time.sleep(_PERIOD_SECONDS)
 

@@ -17,22 +17,25 @@ class CheckResult:
         title: what the check expects.
         passed: whether the check is satisfied.
         message: what is not yet so; None if the check is satisfied.
+        is_lack: whether the check could not be carried out, for a reason that is not in the learner's files.
     """
 
     title: LocalText
     passed: bool
     message: LocalText | None = None
+    is_lack: bool = False
 
     def to_data(self) -> dict[str, Any]:
         """Return the result as JSON values."""
         message = None if self.message is None else self.message.texts
-        return {"title": self.title.texts, "passed": self.passed, "message": message}
+        return {"title": self.title.texts, "passed": self.passed, "message": message, "lack": self.is_lack}
 
     @classmethod
     def from_data(cls, data: Mapping[str, Any]) -> CheckResult:
         """Return the result that `to_data` wrote."""
         message = data["message"]
-        return cls(LocalText(data["title"]), bool(data["passed"]), None if message is None else LocalText(message))
+        text = None if message is None else LocalText(message)
+        return cls(LocalText(data["title"]), bool(data["passed"]), text, bool(data.get("lack", False)))
 
 
 @dataclass(frozen=True)
@@ -53,6 +56,11 @@ class StepResult:
     def passed(self) -> bool:
         """Whether all checks are satisfied."""
         return all(result.passed for result in self.checks)
+
+    @property
+    def has_lack(self) -> bool:
+        """Whether a check could not be carried out."""
+        return any(result.is_lack for result in self.checks)
 
     def to_data(self) -> dict[str, Any]:
         """Return the results as JSON values."""

@@ -9,8 +9,9 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -20,6 +21,7 @@ from linkwright.files.scratch_folders import ScratchFolder
 from linkwright.learning.checks.declaring import Check, load_checks
 from linkwright.learning.checks.domains import hold_domain
 from linkwright.learning.checks.findings import describe_finding
+from linkwright.learning.checks.lacks import is_lack
 from linkwright.learning.checks.not_yet import NotYet
 from linkwright.learning.checks.programs import describe_failure
 from linkwright.learning.checks.results import CheckResult, StepResult
@@ -67,13 +69,16 @@ _CLOSING_SECONDS = 5.0
 """The seconds to wait for the end of the standard error. A program that has left the session can keep it open."""
 
 
-def check_step(step: Step, workspace: Path, *, answer: str | None = None) -> StepResult:
+def check_step(
+    step: Step, workspace: Path, *, answer: str | None = None, begin_checks: Callable[[], None]
+) -> StepResult:
     """Run the checks of a step in this process.
 
     Args:
         step: the step.
         workspace: the learner's workspace.
         answer: the number that the learner answered, as text.
+        begin_checks: called before the first check, when nothing of the learner's has run yet.
 
     Raises:
         LinkwrightError: LEARN102, LEARN107: the checks of the lesson cannot be loaded.
@@ -81,6 +86,7 @@ def check_step(step: Step, workspace: Path, *, answer: str | None = None) -> Ste
     begin = time.monotonic()
     checks = load_checks(step.lesson.folder / CHECKS_FILE).get(step.id, ())
     work = Work(workspace, lesson=step.lesson.folder, answer=answer)
+    begin_checks()
     results = [_run(check, work) for check in checks]
     return StepResult(step.address, _without_repetition(results), time.monotonic() - begin)
 
@@ -92,7 +98,8 @@ def _run(check: Check, work: Work) -> CheckResult:
         return CheckResult(check.title, passed=False, message=reason.text)
     except Exception as error:  # noqa: BLE001 - the learner's files can be anything
         message = describe_failure(error, work.folder.resolve())
-        return CheckResult(check.title, passed=False, message=LocalText.from_phrase(message))
+        text = LocalText.from_phrase(message)
+        return CheckResult(check.title, passed=False, message=text, is_lack=is_lack(error, work.folder.resolve()))
     return CheckResult(check.title, passed=True)
 
 
@@ -102,7 +109,7 @@ def _without_repetition(results: Sequence[CheckResult]) -> list[CheckResult]:
     unique: list[CheckResult] = []
     for result in results:
         if result.message is not None and result.message in seen:
-            result = CheckResult(result.title, passed=False)
+            result = replace(result, message=None)
         elif result.message is not None:
             seen.add(result.message)
         unique.append(result)
@@ -247,19 +254,21 @@ def _read(output: Path) -> Any:
 
 
 def main(words: Sequence[str]) -> int:
-    """Run the checks of a step, as `check_command` requests it."""
+    """Run the checks of a step, as `check_command` requests it.
+
+    The output exists, and is empty, from the beginning of the first check on.
+    """
     os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
     os.environ["ROS_DOMAIN_ID"] = os.environ.get(DOMAIN_VARIABLE) or str(hold_domain())
     lesson_folder, step_id, workspace, output, *answers = words
     lesson = load_lesson(Path(lesson_folder))
     step = next(step for step in lesson.steps if step.id == step_id)
     try:
-        result = check_step(step, Path(workspace), answer=answers[0] if answers else None)
+        answer = answers[0] if answers else None
+        result = check_step(step, Path(workspace), answer=answer, begin_checks=Path(output).touch)
     except LinkwrightError as error:
-        failed = [
-            CheckResult(step.title, passed=False, message=LocalText.from_phrase(describe_finding(finding)))
-            for finding in error.diagnostics
-        ]
+        texts = [LocalText.from_phrase(describe_finding(finding)) for finding in error.diagnostics]
+        failed = [CheckResult(step.title, passed=False, message=text, is_lack=True) for text in texts]
         result = StepResult(step.address, failed)
     Path(output).write_text(json.dumps(result.to_data(), ensure_ascii=False), encoding="utf-8")
     return 0

@@ -22,13 +22,15 @@ def gradebook_csv(students: Sequence[StudentMarks], language: str) -> str:
     """Return a line for each student, which Moodle and other gradebooks import by the columns that one selects there.
 
     The columns are the student, the points, the possible points, a column of points for each step, and the feedback.
+    Points that are not known because a step was not graded are empty, which is not a grade of zero.
     """
     steps = list(students[0].points) if students else []
     lines = [["username", "points", "max_points", *steps, "feedback"]]
     for student in students:
-        points = [_number(_points_of(student, step)) for step in steps]
+        points = [_cell(student, [step]) for step in steps]
         feedback = "\n".join(_feedback(student, language))
-        lines.append([student.submission.student, _number(student.total), _number(student.possible), *points, feedback])
+        total = _cell(student, steps)
+        lines.append([student.submission.student, total, _number(student.possible), *points, feedback])
     return _to_csv(lines)
 
 
@@ -39,7 +41,7 @@ def nbgrader_csv(students: Sequence[StudentMarks]) -> str:
     for lesson in dict.fromkeys(step.split("/")[0] for student in students for step in student.points):
         for student in students:
             steps = [step for step in student.points if step.split("/")[0] == lesson]
-            score = _number(sum(_points_of(student, step) for step in steps))
+            score = _cell(student, steps)
             possible = _number(sum(student.points[step] for step in steps))
             identity = [lesson, "", "", student.submission.student, "", "", ""]
             lines.append([*identity, score, "0", score, possible])
@@ -74,7 +76,7 @@ def _student_data(student: StudentMarks) -> dict[str, Any]:
     submission = student.submission
     return {
         "student": submission.student,
-        "graded": submission.is_readable,
+        "graded": student.is_graded,
         "points": student.total,
         "max_points": student.possible,
         "notes": [note.texts for note in submission.notes],
@@ -121,7 +123,14 @@ def _autograding(student: StudentMarks) -> dict[str, Any]:
 def _status(mark: Mark) -> str:
     if mark.passed:
         return "pass"
-    return "fail" if mark.reason is None else "error"
+    return "fail" if mark.reason is None and mark.is_graded else "error"
+
+
+def _cell(student: StudentMarks, steps: Sequence[str]) -> str:
+    """Return the points of some steps together, or nothing if one of them is not graded."""
+    if any(step not in student.marks or not student.marks[step].is_graded for step in steps):
+        return ""
+    return _number(sum(_points_of(student, step) for step in steps))
 
 
 def _points_of(student: StudentMarks, step: str) -> float:

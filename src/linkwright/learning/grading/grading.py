@@ -5,9 +5,12 @@ from __future__ import annotations
 import shutil
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
+from importlib.util import find_spec
 from pathlib import Path
 
-from linkwright.diagnostics import phrase
+from linkwright.diagnostics import LinkwrightError, missing_extra, phrase
+from linkwright.diagnostics.extras import EXTRAS
+from linkwright.learning.checks.findings import describe_error
 from linkwright.learning.course import CASES_FILE, Course, Step
 from linkwright.learning.grading.journal import Journal, hash_folder, key_of
 from linkwright.learning.grading.marks import Mark, StudentMarks
@@ -15,7 +18,7 @@ from linkwright.learning.grading.running import Job
 from linkwright.learning.grading.submissions import Submission, copy_workspace
 from linkwright.learning.grading.workers import RunJobs, scratch_for_runs
 from linkwright.learning.local_text import LocalText
-from linkwright.learning.sandbox import Limits
+from linkwright.learning.sandbox import Limits, permit_reading
 
 _DOMAINS = 100
 
@@ -35,7 +38,7 @@ def grade_class(
 ) -> list[StudentMarks]:
     """Check steps of a course in the folders of students, each on a copy in the sandbox.
 
-    A run that may have failed because of other runs is repeated alone at the end.
+    A run that may have failed because of other runs, or in which the grader failed, is repeated alone at the end.
 
     Args:
         course: the course.
@@ -47,7 +50,7 @@ def grade_class(
         progress: called after each step.
 
     Raises:
-        LinkwrightError: LEARN121, the journal cannot be written; LEARN901, LEARN902, the sandbox cannot be used.
+        LinkwrightError: LEARN121, the journal cannot be written; LEARN901, LEARN902, no run can use the sandbox.
     """
     marks: list[dict[str, Mark]] = [{} for _ in submissions]
     with scratch_for_runs() as scratch:
@@ -62,7 +65,8 @@ def grade_class(
                 marks[job.student][known.step] = known
         done = len(keyed_jobs) - len(waiting)
         for key, job, mark in _run_all(waiting, run_jobs):
-            journal.add(key, mark)
+            if mark.is_graded:
+                journal.add(key, mark)
             marks[job.student][mark.step] = mark
             done += 1
             progress(done, len(keyed_jobs))
@@ -73,10 +77,18 @@ def grade_class(
     ]
 
 
+def check_extras(steps: Sequence[Step]) -> None:
+    """Raise LEARN116 if a lesson needs an extra that is not installed, which would fail each student."""
+    for extra in dict.fromkeys(extra for step in steps for extra in step.lesson.needs):
+        if find_spec(EXTRAS[extra]) is None:
+            raise missing_extra("LEARN116", ModuleNotFoundError(name=EXTRAS[extra]))
+
+
 def _copy_lessons(course: Course, scratch: Path) -> Path:
     """Copy the course without its solutions, which no student's program shall read."""
     copy = scratch / course.id
     shutil.copytree(course.folder, copy, ignore=shutil.ignore_patterns("solution", CASES_FILE, "__pycache__", ".git"))
+    permit_reading(copy)
     return copy
 
 
@@ -90,7 +102,8 @@ def _make_jobs(
         if not submission.is_readable:
             continue
         place = scratch / f"{index}"
-        place.mkdir(mode=0o711)
+        place.mkdir()
+        place.chmod(0o711)
         copy = place / "copy"
         if not copy_workspace(submission, copy):
             continue
@@ -108,19 +121,30 @@ def _make_jobs(
 def _run_all(jobs: Sequence[tuple[str, Job]], run_jobs: RunJobs) -> Iterator[tuple[str, Job, Mark]]:
     """Run jobs in parallel, then those again alone that may have failed because of others."""
     again: list[tuple[str, Job]] = []
+    errors: list[LinkwrightError] = []
+    has_mark = False
     for index, mark in run_jobs([job for _, job in jobs]):
         key, job = jobs[index]
-        if mark is None or mark.may_differ:
+        has_mark = has_mark or isinstance(mark, Mark)
+        if isinstance(mark, LinkwrightError):
+            errors.append(mark)
+        if not isinstance(mark, Mark) or mark.may_differ:
             again.append((key, job))
         else:
             yield key, job, mark
+    if errors and not has_mark:
+        raise errors[0]
     for key, job in sorted(again, key=lambda pair: (pair[1].student, pair[1].domain)):
         yield key, job, _run_alone(replace(job, is_repeated=True), run_jobs)
 
 
 def _run_alone(job: Job, run_jobs: RunJobs) -> Mark:
     ((_, mark),) = run_jobs([job])
-    if mark is not None:
+    if isinstance(mark, Mark):
         return mark
-    reason = LocalText.from_phrase(phrase("the student's program has ended the process of the grader, twice"))
-    return Mark(job.step.address, passed=False, reason=reason, is_repeated=True)
+    if mark is None:
+        reason = phrase("the process of the grader ended twice; perhaps the student's program has ended it")
+    else:
+        reason = describe_error(mark)
+    text = LocalText.from_phrase(reason)
+    return Mark(job.step.address, passed=False, reason=text, is_repeated=True, is_graded=False)

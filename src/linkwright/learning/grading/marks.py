@@ -11,6 +11,8 @@ from linkwright.learning.checks.results import CheckResult
 from linkwright.learning.grading.submissions import Submission
 from linkwright.learning.local_text import LocalText
 
+NOT_GRADED = phrase("not graded, because the check could not be carried out")
+
 
 @dataclass(frozen=True)
 class Mark:
@@ -24,6 +26,7 @@ class Mark:
         seconds: the time that the run took, which does not affect the mark.
         protections: the protections that were in force.
         is_repeated: whether the step was checked again alone.
+        is_graded: whether the run tells something about the student's work; not if the grader failed.
         may_differ: whether the run should be repeated alone, because the load of the machine may have failed it.
     """
 
@@ -34,19 +37,22 @@ class Mark:
     seconds: float = 0.0
     protections: Sequence[str] = ()
     is_repeated: bool = False
+    is_graded: bool = True
     may_differ: bool = False
 
     @property
     def messages(self) -> list[LocalText]:
         """The messages about everything that is not yet right."""
         messages = [check.message or check.title for check in self.checks if not check.passed]
-        return messages if self.reason is None else [self.reason, *messages]
+        messages = messages if self.reason is None else [self.reason, *messages]
+        return messages if self.is_graded else [LocalText.from_phrase(NOT_GRADED), *messages]
 
     def to_data(self) -> dict[str, Any]:
         """Return the mark as JSON values."""
         return {
             "step": self.step,
             "passed": self.passed,
+            "graded": self.is_graded,
             "checks": [check.to_data() for check in self.checks],
             "reason": None if self.reason is None else self.reason.texts,
             "seconds": round(self.seconds, 2),
@@ -60,6 +66,7 @@ class Mark:
         return cls(
             step=data["step"],
             passed=data["passed"],
+            is_graded=data["graded"],
             checks=[CheckResult.from_data(check) for check in data["checks"]],
             reason=None if data["reason"] is None else LocalText(data["reason"]),
             seconds=data["seconds"],
@@ -81,6 +88,11 @@ class StudentMarks:
     submission: Submission
     marks: Mapping[str, Mark]
     points: Mapping[str, float]
+
+    @property
+    def is_graded(self) -> bool:
+        """Whether all steps are graded."""
+        return self.submission.is_readable and all(mark.is_graded for mark in self.marks.values())
 
     @property
     def total(self) -> float:

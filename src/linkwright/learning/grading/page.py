@@ -98,8 +98,8 @@ def _steps(students: Sequence[StudentMarks], titles: Mapping[str, LocalText]) ->
     graded = [student for student in students if student.marks]
     rows = []
     for step in graded[0].points if graded else ():
-        passed = sum(student.marks[step].passed for student in graded)
-        rows.append([_step_name(step, titles), f"{passed} / {len(graded)}"])
+        marks = [student.marks[step] for student in graded if student.marks[step].is_graded]
+        rows.append([_step_name(step, titles), f"{sum(mark.passed for mark in marks)} / {len(marks)}"])
     heading = f"<h2>{_say(phrase('Steps'))}</h2>"
     return heading + _table([phrase("Step"), phrase("Passed by")], rows, numbers=(1,)) if rows else ""
 
@@ -132,6 +132,8 @@ def _step(student: StudentMarks, step: str, mark: Mark, titles: Mapping[str, Loc
     messages = "".join(f"<div class='message'>{_texts(message)}</div>" for message in mark.messages)
     sign = "<span class='good'>✓</span>" if mark.passed else "<span class='bad'>✗</span>"
     points = f"{student.points[step] if mark.passed else 0:g} / {student.points[step]:g}"
+    if not mark.is_graded:
+        sign, points = "?", f"– / {student.points[step]:g}"
     return [_step_name(step, titles), sign, points, messages, ", ".join(taken), _seconds([mark])]
 
 
@@ -147,7 +149,8 @@ def _protections(students: Sequence[StudentMarks]) -> str:
 def _points(student: StudentMarks) -> str:
     if not student.submission.is_readable:
         return f"<span class='bad'>{_say(phrase('not graded'))}</span>"
-    return f"{student.total:g} / {student.possible:g}"
+    points = f"{student.total:g} / {student.possible:g}"
+    return points if student.is_graded else f"{points} <span class='bad'>({_say(phrase('not complete'))})</span>"
 
 
 def _seconds(marks: Iterable[Mark]) -> str:

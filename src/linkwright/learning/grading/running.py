@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from linkwright.diagnostics import Phrase, phrase
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, foreign, phrase
 from linkwright.learning.checks.results import StepResult
 from linkwright.learning.checks.running import DOMAIN_VARIABLE, check_command
 from linkwright.learning.course import Step
@@ -54,9 +54,20 @@ class Job:
 def run_job(job: Job) -> Mark:
     """Check a step in the sandbox, and return the mark.
 
+    A step is not graded if a check could not be carried out, or if the run ended before the first check began, when
+    nothing of the student's had run.
+
     Raises:
         LinkwrightError: LEARN901, LEARN902: the sandbox cannot be used.
     """
+    try:
+        return _run(job)
+    except OSError as error:  # such as a full disk
+        message = phrase("the program cannot run in the sandbox: {reason}", reason=foreign(error.strerror or error))
+        raise LinkwrightError(Diagnostic("LEARN901", message)) from None
+
+
+def _run(job: Job) -> Mark:
     with tempfile.TemporaryDirectory(prefix="run-", dir=job.copy.parent, ignore_cleanup_errors=True) as name:
         folder = Path(name)
         workspace = folder / "workspace"
@@ -70,9 +81,10 @@ def run_job(job: Job) -> Mark:
             environment={DOMAIN_VARIABLE: str(job.domain)},
         )
         result = _read_result(output, job.step)
+        has_begun = os.path.lexists(output)
     protections = sorted(protection.value for protection in outcome.protections)
     if result is None or outcome.exceeded is not None or outcome.status != 0:
-        may_differ = outcome.exceeded in {None, Exceeded.SECONDS}
+        may_differ = not has_begun or outcome.exceeded in {None, Exceeded.SECONDS}
         reason = LocalText.from_phrase(_describe_end(outcome, job.limits))
         return Mark(
             job.step.address,
@@ -81,6 +93,7 @@ def run_job(job: Job) -> Mark:
             seconds=outcome.seconds,
             protections=protections,
             is_repeated=job.is_repeated,
+            is_graded=has_begun,
             may_differ=may_differ,
         )
     return Mark(
@@ -90,7 +103,8 @@ def run_job(job: Job) -> Mark:
         seconds=outcome.seconds,
         protections=protections,
         is_repeated=job.is_repeated,
-        may_differ=not result.passed and outcome.seconds > _SLOW_SECONDS,
+        is_graded=not result.has_lack,
+        may_differ=result.has_lack or (not result.passed and outcome.seconds > _SLOW_SECONDS),
     )
 
 

@@ -14,10 +14,14 @@ from linkwright.diagnostics import LinkwrightError
 from linkwright.files.scratch_folders import ScratchFolder
 from linkwright.learning.grading.marks import Mark
 from linkwright.learning.grading.running import Job, run_job
+from linkwright.learning.sandbox import permit_reading
 from linkwright.sweep.ray_cluster import LostTask, RayCluster, connect_to_ray
 
-RunJobs = Callable[[Sequence[Job]], Iterator[tuple[int, "Mark | None"]]]
-"""Runs jobs, and yields each mark with the index of its job, or None if the process of the job was lost."""
+Ended = Mark | LinkwrightError | None
+"""The mark of a job, or why it has none: an error of the sandbox, or None if the process of the job was lost."""
+
+RunJobs = Callable[[Sequence[Job]], Iterator[tuple[int, Ended]]]
+"""Runs jobs, and yields the end of each with its index."""
 
 FolderContent = dict[str, "tuple[int, bytes] | None"]
 """The mode and content of each file by its path in a folder, and None for each folder."""
@@ -48,21 +52,24 @@ def ray_workers(address: str) -> Iterator[RunJobs]:
         yield partial(_run_on_ray, cluster)
 
 
-def _run_locally(count: int, jobs: Sequence[Job]) -> Iterator[tuple[int, Mark | None]]:
+def _run_locally(count: int, jobs: Sequence[Job]) -> Iterator[tuple[int, Ended]]:
     pool = ProcessPoolExecutor(count, mp_context=multiprocessing.get_context("spawn"))
     try:
         futures = {pool.submit(run_job, job): index for index, job in enumerate(jobs)}
         for future in as_completed(futures):
-            is_lost = isinstance(future.exception(), BrokenExecutor)  # a student's program has ended a process
-            yield futures[future], None if is_lost else future.result()
+            error = future.exception()
+            if isinstance(error, LinkwrightError):
+                yield futures[future], error
+            elif isinstance(error, BrokenExecutor):  # a student's program, or the system, has ended a process
+                yield futures[future], None
+            else:
+                yield futures[future], future.result()
     finally:
         pool.shutdown(cancel_futures=True)
 
 
-def _run_on_ray(cluster: RayCluster, jobs: Sequence[Job]) -> Iterator[tuple[int, Mark | None]]:
+def _run_on_ray(cluster: RayCluster, jobs: Sequence[Job]) -> Iterator[tuple[int, Ended]]:
     for index, mark in cluster.run_tasks(_run_in_cluster, _tasks(cluster, jobs)):
-        if isinstance(mark, LinkwrightError):
-            raise mark
         yield index, None if isinstance(mark, LostTask) else mark
 
 
@@ -85,6 +92,7 @@ def _run_in_cluster(course: FolderContent, copy: FolderContent, job: Job) -> Mar
     with scratch_for_runs() as scratch:
         lessons, own_copy = scratch / "course", scratch / "copy"
         write_folder(lessons, course)
+        permit_reading(lessons)
         write_folder(own_copy, copy)
         own_copy.chmod(0o700)
         lesson = replace(job.step.lesson, folder=lessons / job.step.lesson.folder.relative_to(job.course))

@@ -56,7 +56,8 @@ def judge_program(
         exercise: the exercise.
         program: the file of the program.
         seeds: the seeds.
-        budget: the longest time for which the program may compute without waiting, in seconds of the computer's clock.
+        budget: the longest time for which the program may compute without waiting, in seconds, without the time in
+            which it waits for a processor.
 
     Raises:
         LinkwrightError: the simulation is not installed, or a file of the exercise has errors.

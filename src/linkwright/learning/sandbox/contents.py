@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import contextlib
 import itertools
 import os
+import shutil
 import stat
 import tempfile
 from collections import Counter
 
+_SHARED_FOLDERS = ("/tmp", "/var/tmp", "/dev/shm", "/dev/mqueue", "/run/lock")
+"""Where all users may write."""
 _LONGEST_PATH = 2048
 """Folders with longer paths are deleted: most programs cannot read much longer ones."""
 
@@ -48,6 +52,16 @@ def remove_harmful(folder: str) -> tuple[str, ...]:
     return tuple(sorted(os.path.relpath(path, folder) for path in removed + too_deep))
 
 
+def remove_files_of(user: int) -> None:
+    """Delete what a user has left in the folders in which all users may write. No process of the user runs."""
+    for folder in _SHARED_FOLDERS:
+        with contextlib.suppress(OSError), os.scandir(folder) as entries:
+            for entry in entries:
+                with contextlib.suppress(OSError):
+                    if entry.stat(follow_symlinks=False).st_uid == user:
+                        _delete(entry.path)
+
+
 def give_to(user: int, group: int, folder: str) -> None:
     """Make a user the owner of a folder and of its contents, without following links, if this process is root's."""
     if os.geteuid() != 0:
@@ -56,6 +70,13 @@ def give_to(user: int, group: int, folder: str) -> None:
     for path in _paths_of(folder):
         if stat.S_ISDIR((status := os.lstat(path)).st_mode) or status.st_nlink == 1:
             os.chown(path, user, group, follow_symlinks=False)
+
+
+def _delete(path: str) -> None:
+    if stat.S_ISDIR(os.lstat(path).st_mode):
+        shutil.rmtree(path)
+    else:
+        os.unlink(path)
 
 
 def _delete_folder(path: str, folder: str) -> None:

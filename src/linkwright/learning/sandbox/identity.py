@@ -48,6 +48,12 @@ def can_be_reached(paths: list[str]) -> bool:
     return True
 
 
+def is_readable_for_others(path: str) -> bool:
+    """Return whether a user who owns nothing may read a file or list a folder, if he can reach it."""
+    needed = 0o005 if os.path.isdir(path) else 0o004
+    return os.stat(path).st_mode & needed == needed
+
+
 def _count_mapped(path: str) -> int:
     """Return how many users or groups from 0 on exist in this user namespace."""
     for line in Path(path).read_text(encoding="ascii").splitlines():

@@ -13,7 +13,7 @@ class Limits:
     """The resources that the processes of a run may use together. Times are in seconds, sizes in bytes."""
 
     seconds: float = 120.0
-    """Wall time. Generous, because it depends on the load of the machine; `cpu_seconds` does not."""
+    """Wall time, without the time in which a process of the run waited for a processor (see `PatientClock`)."""
     cpu_seconds: float = 60.0
     memory: int = 2048 * MEBIBYTE
     file_bytes: int = 64 * MEBIBYTE

@@ -21,10 +21,16 @@ _SETTINGS = (
 _STATES = ("/sys/devices/system", "/proc/cpuinfo", "/proc/meminfo", "/proc/stat", "/proc/version", "/proc/filesystems")
 
 
+def permit_reading(folder: Path) -> None:
+    """Let all users read a folder, which contains only folders and regular files."""
+    for path in (folder, *folder.rglob("*")):
+        path.chmod(0o755 if path.is_dir() else 0o644 | path.stat().st_mode & 0o111)
+
+
 def readable_everywhere() -> list[str]:
     """Return the paths that every run may read, those of them that exist."""
     installation = [sys.prefix, sys.exec_prefix, sys.base_prefix, sys.base_exec_prefix]
-    packages = [str(Path(folder).parent) for folder in linkwright.__path__]
+    packages = [str(path) for folder in linkwright.__path__ for path in (Path(folder).parent, Path(folder))]
     shipped = [str(folder) for folder in [shipped_folder()] if folder is not None]
     interpreter = [sys.executable, os.path.realpath(sys.executable)]
     settings = [f"/etc/{name}" for name in _SETTINGS]

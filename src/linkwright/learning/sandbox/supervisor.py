@@ -13,7 +13,7 @@ import signal
 import sys
 from types import FrameType
 
-from linkwright.learning.sandbox.contents import give_to, remove_harmful
+from linkwright.learning.sandbox.contents import give_to, remove_files_of, remove_harmful
 from linkwright.learning.sandbox.outcome import Exceeded, Outcome, Protection
 from linkwright.learning.sandbox.plan import Plan, outcome_to_json
 from linkwright.learning.sandbox.processes import end_descendants
@@ -24,6 +24,9 @@ _INTERVAL_SECONDS = 0.05
 _NAMESPACES = frozenset({"processes", "mounts", "ipc", "network"})
 _TRUNCATE_VERSION = 3
 """The version of Landlock since which the size of files outside cannot be changed."""
+_NOT_PROGRAMS = ("/etc/", "/proc/", "/sys/")
+_UMASK = 0o022
+"""That of the run, whatever that of the grader: the user of the run passes through the new root folder."""
 
 
 class RunFailedError(Exception):
@@ -32,6 +35,7 @@ class RunFailedError(Exception):
 
 def main() -> None:
     """Supervise the run whose plan is on standard input, and print its outcome as JSON."""
+    os.umask(_UMASK)
     plan = Plan.from_json(sys.stdin.read())
     supervisor = _Supervisor(plan)
     signal.signal(signal.SIGTERM, supervisor.on_end_requested)
@@ -72,6 +76,7 @@ class _Supervisor:
                 exceeded = self._watch(watchdog)
             finally:
                 end_descendants(self._confinement.user)
+                self._remove_temporary_files()
         finally:
             if not os.path.samestat(os.lstat(folder), self._owner):
                 raise RunFailedError("the program has replaced its folder")
@@ -89,6 +94,11 @@ class _Supervisor:
             cpu_seconds=watchdog.cpu_seconds,
         )
 
+    def _remove_temporary_files(self) -> None:
+        """Delete what the run has left in folders that it shared with the system, if its user shows what that is."""
+        if self._confinement.user is not None and "root" not in self._confinement.namespaces:
+            remove_files_of(self._confinement.user)
+
     def _start(self) -> None:
         """Start the program with all namespaces, or with those that work here."""
         user = self._find_user()
@@ -105,9 +115,10 @@ class _Supervisor:
     def _find_user(self) -> int | None:
         if sys.platform != "linux":
             return None
-        from linkwright.learning.sandbox.identity import find_unused_user
+        from linkwright.learning.sandbox.identity import find_unused_user, is_readable_for_others
 
-        return find_unused_user()
+        programs = [path for path in self._plan.readable if not path.startswith(_NOT_PROGRAMS)]
+        return find_unused_user() if all(map(is_readable_for_others, programs)) else None
 
     def _can_reach(self) -> bool:
         from linkwright.learning.sandbox.identity import can_be_reached

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 from linkwright.learning.sandbox.outcome import Exceeded, Limits
 from linkwright.learning.sandbox.processes import ProcessUsage, descendants, nameless_files, own_memory, written_bytes
+from linkwright.process.patience import PatientClock
 
 _INTERVAL_SECONDS = 0.04
 _SHARE_OF_TIME = 0.1
@@ -83,6 +84,7 @@ class Watchdog:
         self._folder = folder
         self._before = measure_folder(folder)
         self._start = time.monotonic()
+        self._clock = PatientClock()
         self._next_walk = self._next_check = self._start
         self._nameless_on_disk = 0
         self._device = os.stat(folder).st_dev
@@ -105,7 +107,7 @@ class Watchdog:
         return exceeded
 
     def _find_exceeded(self) -> Exceeded | None:
-        if self.seconds > self._limits.seconds:
+        if self._clock.read() > self._limits.seconds:
             return Exceeded.SECONDS
         return self._check_processes() or self._check_folder()
 

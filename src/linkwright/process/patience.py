@@ -1,0 +1,59 @@
+"""A clock for limits of waiting that does not punish a program for the load of the machine."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import time
+from collections.abc import Iterator
+
+_NANOSECOND = 1e-9
+_MOST_DELAY = 10.0
+"""The clock is at least this part as fast as one on the wall."""
+
+
+class PatientClock:
+    """Measures time without that in which a process and its descendants waited for a processor.
+
+    On a busy machine it is slower than a clock on the wall. Where the system does not tell how long processes wait
+    (Linux does, in schedstat), it is the same. Call `read` every few milliseconds to seconds.
+    """
+
+    def __init__(self) -> None:
+        self._start = self._last = time.monotonic()
+        self._hindered = 0.0
+        self._usages = dict(_usages_below(os.getpid()))
+
+    def read(self) -> float:
+        """Return the seconds since the start."""
+        now = time.monotonic()
+        usages = dict(_usages_below(os.getpid()))
+        running = waiting = 0.0
+        for thread, (run, wait) in usages.items():
+            run_before, wait_before = self._usages.get(thread, (0.0, 0.0))
+            running += run - run_before
+            waiting += wait - wait_before
+        if waiting > 0.0:  # of threads that run after each other, the sum; of those at the same time, the share
+            self._hindered += min(now - self._last, running + waiting) * waiting / (running + waiting)
+        self._usages, self._last = usages, now
+        elapsed = now - self._start
+        return max(elapsed - self._hindered, elapsed / _MOST_DELAY)
+
+
+def _usages_below(root: int) -> Iterator[tuple[str, tuple[float, float]]]:
+    """Yield each thread of a process and of its descendants, with the seconds that it has run, and waited to run."""
+    waiting = [root]
+    while waiting:
+        folder = f"/proc/{waiting.pop()}/task"
+        with contextlib.suppress(OSError):
+            for thread in os.listdir(folder):  # noqa: PTH208 - read often
+                with contextlib.suppress(OSError, ValueError):
+                    run, wait, _ = map(int, _read(f"{folder}/{thread}/schedstat").split())
+                    yield thread, (run * _NANOSECOND, wait * _NANOSECOND)
+                with contextlib.suppress(OSError):  # not all kernels have this
+                    waiting += map(int, _read(f"{folder}/{thread}/children").split())
+
+
+def _read(path: str) -> str:
+    with open(path, encoding="ascii") as file:  # noqa: PTH123 - read often
+        return file.read()

@@ -1,0 +1,39 @@
+"""A clock that does not count the time in which processes wait for a processor."""
+
+import os
+import subprocess
+import sys
+import time
+
+import pytest
+
+from linkwright.process.patience import PatientClock
+
+BUSY = "import os, sys; os.sched_setaffinity(0, [int(sys.argv[1])])\nwhile True: pass"
+
+
+def test_a_clock_counts_time_without_work():
+    clock = PatientClock()
+    begin = time.monotonic()
+    for _ in range(10):
+        time.sleep(0.02)
+        seconds = clock.read()
+    assert 0.0 < seconds <= time.monotonic() - begin
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="the waiting of processes is that of Linux")
+def test_a_clock_does_not_count_waiting_for_a_processor():
+    processor = str(min(os.sched_getaffinity(0)))
+    processes = [subprocess.Popen([sys.executable, "-c", BUSY, processor]) for _ in range(4)]
+    try:
+        clock = PatientClock()
+        begin = time.monotonic()
+        while time.monotonic() < begin + 2.0:
+            time.sleep(0.05)
+            seconds = clock.read()
+        elapsed = time.monotonic() - begin
+    finally:
+        for process in processes:
+            process.kill()
+            process.wait()
+    assert 0.0 < seconds < 0.7 * elapsed
