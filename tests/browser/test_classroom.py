@@ -51,6 +51,25 @@ def is_passed(step: str) -> str:
     )
 
 
+def test_ctrl_s_saves_the_source_wherever_the_focus_is(start, open_page, workspace):
+    page = open_classroom(start, open_page, workspace)
+    page.get_by_role("button", name="robot.urdf").click()
+    until(page, "lw.panels.source.editor?.file?.endsWith('robot.urdf')")
+    for place in (".lesson-body", ".canvas-box", ".file-tree-list"):
+        page.locator(".cm-content").click()
+        page.keyboard.insert_text("<!-- -->")
+        until(page, "lw.panels.source.editor.unsaved.length === 1")
+        page.locator(place).click()
+        page.keyboard.press("Control+s")
+        until(page, "lw.panels.source.editor.unsaved.length === 0")
+        page.keyboard.press("Control+s")  # once more does no harm
+        assert page.locator("dialog").count() == 0
+    page.locator(".dv-tab", has_text="Displays").click()
+    page.locator(".displays-panel [role=treeitem]").first.click()
+    page.keyboard.press("Control+s")
+    page.get_by_role("dialog", name="Save the configuration as").wait_for()
+
+
 @pytest.mark.parametrize("language", ["en", "zh"])
 def test_a_learner_walks_through_two_steps(start, open_page, workspace, language):
     words = WORDS[language]

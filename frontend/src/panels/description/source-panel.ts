@@ -117,6 +117,20 @@ export class SourcePanel implements Panel {
     void this.editor.edit(path);
   }
 
+  /** Whether the editor shows files. */
+  get isEditing(): boolean {
+    return this.editor.isShown;
+  }
+
+  get hasUnsaved(): boolean {
+    return this.editor.hasUnsaved;
+  }
+
+  /** Writes all files that have changed. */
+  saveAll(): void {
+    this.editor.saveAll();
+  }
+
   /** Returns what is shown and marked, for tests. */
   inspect(): object {
     const marks = (view: SourceView): object => view.highlighted.map(({ from, to, look }) => ({ from, to, look }));

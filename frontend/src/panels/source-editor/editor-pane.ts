@@ -73,6 +73,15 @@ export class EditorPane {
     await this.editor?.showOrCreate(path);
   }
 
+  get hasUnsaved(): boolean {
+    return this.editor?.hasUnsaved ?? false;
+  }
+
+  /** Writes all files that have changed. */
+  saveAll(): void {
+    this.editor?.saveAll();
+  }
+
   /** The files that are open in the editor. */
   get files(): readonly string[] {
     return this.isShown ? (this.editor?.open.map(({ path }) => path) ?? []) : [];

@@ -73,7 +73,7 @@ export class SourceEditor implements Documents {
     this.actions = new CodeActions(this.service.client, this, (uri) => this.found.get(uri) ?? [], tell);
     this.navigation = new Navigation(this.service.client, this, this.places, tell);
     this.live = new LiveTexts(connection, this, () => this.changed.emit());
-    this.save = button(words.saveHint, () => this.files.saveAll(), "tool framed editor-save", icon("save"), words.save);
+    this.save = button(words.saveHint, () => this.saveAll(), "tool framed editor-save", icon("save"), words.save);
     this.list = button(words.findingsHint, () => openLintPanel(this.view), "tool framed", words.findings(0));
     this.tree = new FileTree(connection, (path) => void this.show(path), (path) => void this.createAndShow(path));
     const files = button(words.filesHint, () => this.tree.toggle(), "tool framed", icon("tree"), words.files);
@@ -120,6 +120,15 @@ export class SourceEditor implements Documents {
 
   get open(): readonly SourceDocument[] {
     return this.files.open;
+  }
+
+  get hasUnsaved(): boolean {
+    return this.files.unsaved.length > 0;
+  }
+
+  /** Writes all files that have changed. */
+  saveAll(): void {
+    this.files.saveAll();
   }
 
   /** Shows a file, and returns whether it can be shown. */
@@ -241,7 +250,6 @@ export class SourceEditor implements Documents {
   private stateOf(path: string, uri: string, doc: string, isReadOnly: boolean): EditorState {
     const { navigation, actions } = this;
     const keys = keymap.of([
-      { key: "Mod-s", run: () => (this.files.saveAll(), true), preventDefault: true },
       { key: "F2", run: (view) => renameAtCursor(view, this.service, this, (message) => this.tell(message)), preventDefault: true },
       { key: "F12", run: (view) => navigation.goToDefinition(view), preventDefault: true },
       { key: "Shift-F12", run: (view) => navigation.listReferences(view), preventDefault: true },
