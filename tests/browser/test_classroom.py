@@ -81,10 +81,12 @@ def test_a_learner_walks_through_two_steps(start, open_page, workspace, language
     until(page, f"{CHECKS}?.checks.some(check => !check.is_passed)")
     page.get_by_role("button", name=words["hint"]).click()
     page.wait_for_selector(".lesson-hint")
-    page.get_by_role("button", name="robot.urdf").click()  # creates the file
+    page.get_by_role("button", name="robot.urdf").click()
     until(page, "lw.panels.source.editor?.file?.endsWith('robot.urdf')")
     page.locator(".cm-content").click()
+    page.keyboard.press("Control+s")
     page.keyboard.insert_text(ROBOT.read_text())
+    assert not (workspace / "robot.urdf").exists()
     page.keyboard.press("Control+s")
     until(page, is_passed("one-link"))
     until(page, "lw.ready && lw.robots?.length !== 0")
@@ -118,6 +120,15 @@ def test_work_in_the_terminal_is_checked(start, open_page, workspace):
     until(page, is_passed("one-link"))
     page.keyboard.press("Alt+PageDown")
     until(page, "lw.panels.lesson.step === '01-one-link/mass'")
+
+
+def test_a_file_that_another_program_creates_meanwhile_is_shown(start, open_page, workspace):
+    page = open_classroom(start, open_page, workspace)
+    page.get_by_role("button", name="robot.urdf").click()
+    page.wait_for_selector(".editor-notice:has-text('does not exist yet')")
+    shutil.copy(ROBOT, workspace)
+    until(page, "lw.panels.source.editor.text.includes('<robot') && lw.panels.source.editor.unsaved.length === 0")
+    page.locator(".editor-notice").wait_for(state="hidden")
 
 
 def test_the_classroom_fits_a_small_screen_and_is_accessible(start, open_page, workspace):

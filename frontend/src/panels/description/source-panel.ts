@@ -111,7 +111,7 @@ export class SourcePanel implements Panel {
     this.update();
   }
 
-  /** Edits a file, which is created if it does not exist. */
+  /** Edits a file, which is created when it is saved if it does not exist. */
   edit(path: string): void {
     this.requested = null;
     void this.editor.edit(path);

@@ -132,9 +132,9 @@ export class SourceEditor implements Documents {
   }
 
   /** Shows a file, and returns whether it can be shown. */
-  async show(path: string): Promise<boolean> {
+  async show(path: string, load = (file: string) => this.load(file)): Promise<boolean> {
     this.requestedFile = path;
-    const document = await this.load(path);
+    const document = await load(path);
     if (document === null || this.requestedFile !== path) return document !== null;
     if (document !== this.shown) this.display(document);
     return true;
@@ -148,9 +148,9 @@ export class SourceEditor implements Documents {
     });
   }
 
-  /** Shows a file, and creates it if it does not exist. */
-  async showOrCreate(path: string): Promise<void> {
-    if (!(await this.show(path))) await this.createAndShow(path);
+  /** Shows a file, or an empty text that creates it when it is saved. */
+  async showOrBegin(path: string): Promise<void> {
+    await this.show(path, (file) => this.files.loadOrBegin(file));
   }
 
   load(path: string): Promise<SourceDocument | null> {
@@ -345,10 +345,10 @@ export class SourceEditor implements Documents {
 
   private showNotice(shown: SourceDocument | null): void {
     const words = strings.sourceEditor;
-    this.notice.hidden = !shown || (shown.conflict === null && shown.whyNot === "");
+    this.notice.hidden = !shown || (shown.conflict === null && shown.whyNot === "" && !shown.isNew);
     if (!shown || this.notice.hidden) return;
     if (shown.conflict === null) {
-      this.notice.replaceChildren(shown.whyNot);
+      this.notice.replaceChildren(shown.whyNot || words.isNew);
       return;
     }
     const settle = (spec: TransactionSpec | null): void => {
