@@ -65,6 +65,7 @@ import { Toolbox } from "./scene/tools/toolbox";
 import { WorldHandling } from "./scene/world-handling";
 import { TokenScreen } from "./shell/token-screen";
 import { FileCommands } from "./shell/file-commands";
+import { bindFileKeys } from "./shell/file-keys";
 import { fullScreenOnF11 } from "./shell/full-screen";
 import { KeySheet } from "./shell/key-sheet";
 import { noWebgl } from "./shell/no-webgl";
@@ -81,6 +82,8 @@ import { language, languageChosen, languageTag } from "./strings";
 import { matches, SHORTCUTS } from "./widgets/shortcuts";
 
 const CLOSING_MS = 2000;
+/** The panels that show what the configuration file contains. */
+const CONFIGURATION_PANELS: readonly PanelId[] = ["displays", "views", "tool-properties"];
 
 function start(app: HTMLElement): void {
   document.documentElement.lang = languageTag;
@@ -176,7 +179,7 @@ function start(app: HTMLElement): void {
   }
   const files = new FileCommands(session.configuration);
   app.prepend(new TitleBar(session, dock, files, new RecordingDrop(session, tokens), theme, new ShareMenu(session, stage, tokens)).element);
-  bindFileKeys(session, files);
+  bindFileKeys(session.configuration, files, source, panels.filter(({ id }) => CONFIGURATION_PANELS.includes(id)).map(({ element }) => element));
   bindCourseKeys(session.course);
   const fold = new TimeFold(session.time, dock.strip);
   app.append(h("div", { class: "foot" }, new TimelineBar(session).element, fold.element, new StatusBar(session, stage).element));
@@ -283,33 +286,6 @@ function loadPartHandles(stage: Stage, session: Session, made: (handles: PartHan
     stop();
     void import("./scene/editing/part-handles").then(({ PartHandles }) => made(new PartHandles(stage, session)));
   });
-}
-
-/**
- * Binds the keys of the File menu, and undo. They work everywhere except in dialogs; in a text field, undo belongs to
- * the field.
- */
-function bindFileKeys(session: Session, files: FileCommands): void {
-  const { configuration } = session;
-  const keys = [
-    { shortcut: SHORTCUTS.save, run: () => files.save() },
-    { shortcut: SHORTCUTS.saveAs, run: () => files.saveAs() },
-    { shortcut: SHORTCUTS.open, run: () => files.chooseFile() },
-    { shortcut: SHORTCUTS.undo, run: () => configuration.undo(), text: true },
-    { shortcut: SHORTCUTS.redo, run: () => configuration.redo(), text: true },
-    { shortcut: SHORTCUTS.redoToo, run: () => configuration.redo(), text: true },
-  ];
-  const onKeyDown = (event: KeyboardEvent): void => {
-    const target = event.target instanceof Element ? event.target : null;
-    const found = keys.find(({ shortcut }) => matches(event, shortcut));
-    if (!found || target?.closest("dialog, .source-editor, .terminal-screen")) return;
-    if (found.text === true && target?.matches("input[type=text], textarea")) return;
-    event.preventDefault();
-    event.stopPropagation();
-    found.run();
-  };
-  // Capture the event: a field that is edited stops keys from bubbling, and the browser would save the page.
-  document.addEventListener("keydown", onKeyDown, true);
 }
 
 /** Binds the keys of the course, which work everywhere except in dialogs. */

@@ -1,6 +1,6 @@
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 import { Connection } from "../src/connection/connection";
-import type { PageMessage, ServerMessage } from "../src/protocol";
+import type { PageMessage, ServerMessage, TerminalItem } from "../src/protocol";
 import { Session } from "../src/state/session";
 import { display, property, robot, tree } from "./messages";
 
@@ -217,5 +217,27 @@ describe("a text editor", () => {
     expect(sent).toEqual([]);
     session.focus.select({ ...base, name: "arm" });
     expect(sent).toEqual([{ type: "element_selected", ...base, name: "arm" }]);
+  });
+});
+
+describe("terminals", () => {
+  const opened = (run: string, ...items: TerminalItem[]): void =>
+    receive({ type: "hello", protocol: 0, version: "", title: "", run }, { type: "terminals", folder: "/ws", terminals: items, why_not: "" });
+  const terminal = (id: number, shown: TerminalItem["shown"]): TerminalItem => ({ id, shown, status: null });
+
+  it("that the page showed on a lost connection are not those of another page", () => {
+    opened("first");
+    receive({ type: "terminals", folder: "/ws", terminals: [terminal(1, "here"), terminal(2, "elsewhere")], why_not: "" });
+    opened("first", terminal(1, "elsewhere"), terminal(2, "elsewhere"));
+    expect(session.terminals.items.map(({ shown }) => shown)).toEqual(["nowhere", "elsewhere"]);
+    receive({ type: "terminals", folder: "/ws", terminals: [terminal(1, "elsewhere")], why_not: "" });
+    expect(session.terminals.items.map(({ shown }) => shown)).toEqual(["elsewhere"]);
+  });
+
+  it("of a program that was started again are others", () => {
+    opened("first");
+    receive({ type: "terminals", folder: "/ws", terminals: [terminal(1, "here")], why_not: "" });
+    opened("second", terminal(1, "elsewhere"));
+    expect(session.terminals.items.map(({ shown }) => shown)).toEqual(["elsewhere"]);
   });
 });

@@ -1,6 +1,7 @@
 import { describe, expect, it } from "vitest";
 import { socketUrl } from "../src/connection/connection";
 import { addressFor, hasOwnDisplays, ownKey } from "../src/shell/own-displays";
+import { savedByKey } from "../src/shell/file-keys";
 import { ThemeState } from "../src/state/theme";
 import { keyText, matches, SHORTCUTS } from "../src/widgets/shortcuts";
 
@@ -77,5 +78,26 @@ describe("the theme", () => {
     change(true);
     expect(root.dataset["theme"]).toBe("dark");
     expect(made(true, texts).root.dataset["theme"]).toBe("dark");
+  });
+});
+
+describe("the key of Save", () => {
+  const none = { focus: "elsewhere", isEditing: false, hasUnsavedSources: false, isConfigurationUnsaved: false } as const;
+
+  it("saves the configuration, as in RViz, where no source files are edited", () => {
+    expect(savedByKey(none)).toBe("configuration");
+  });
+
+  it("saves changed source files, wherever the focus is but in panels of the configuration", () => {
+    const changed = { ...none, isEditing: true, hasUnsavedSources: true, isConfigurationUnsaved: true };
+    expect(savedByKey(changed)).toBe("sources");
+    expect(savedByKey({ ...changed, focus: "configuration" })).toBe("configuration");
+    expect(savedByKey({ ...changed, hasUnsavedSources: false })).toBe("configuration");
+    expect(savedByKey({ ...changed, hasUnsavedSources: false, focus: "editor" })).toBe("sources");
+  });
+
+  it("asks for no name of an unchanged configuration while source files are edited", () => {
+    expect(savedByKey({ ...none, isEditing: true })).toBe("sources");
+    expect(savedByKey({ ...none, isEditing: true, focus: "configuration" })).toBe("configuration");
   });
 });

@@ -51,6 +51,25 @@ def is_passed(step: str) -> str:
     )
 
 
+def test_ctrl_s_saves_the_source_wherever_the_focus_is(start, open_page, workspace):
+    page = open_classroom(start, open_page, workspace)
+    page.get_by_role("button", name="robot.urdf").click()
+    until(page, "lw.panels.source.editor?.file?.endsWith('robot.urdf')")
+    for place in (".lesson-body", ".canvas-box", ".file-tree-list"):
+        page.locator(".cm-content").click()
+        page.keyboard.insert_text("<!-- -->")
+        until(page, "lw.panels.source.editor.unsaved.length === 1")
+        page.locator(place).click()
+        page.keyboard.press("Control+s")
+        until(page, "lw.panels.source.editor.unsaved.length === 0")
+        page.keyboard.press("Control+s")  # once more does no harm
+        assert page.locator("dialog").count() == 0
+    page.locator(".dv-tab", has_text="Displays").click()
+    page.locator(".displays-panel [role=treeitem]").first.click()
+    page.keyboard.press("Control+s")
+    page.get_by_role("dialog", name="Save the configuration as").wait_for()
+
+
 @pytest.mark.parametrize("language", ["en", "zh"])
 def test_a_learner_walks_through_two_steps(start, open_page, workspace, language):
     words = WORDS[language]
@@ -62,10 +81,12 @@ def test_a_learner_walks_through_two_steps(start, open_page, workspace, language
     until(page, f"{CHECKS}?.checks.some(check => !check.is_passed)")
     page.get_by_role("button", name=words["hint"]).click()
     page.wait_for_selector(".lesson-hint")
-    page.get_by_role("button", name="robot.urdf").click()  # creates the file
+    page.get_by_role("button", name="robot.urdf").click()
     until(page, "lw.panels.source.editor?.file?.endsWith('robot.urdf')")
     page.locator(".cm-content").click()
+    page.keyboard.press("Control+s")
     page.keyboard.insert_text(ROBOT.read_text())
+    assert not (workspace / "robot.urdf").exists()
     page.keyboard.press("Control+s")
     until(page, is_passed("one-link"))
     until(page, "lw.ready && lw.robots?.length !== 0")
@@ -99,6 +120,15 @@ def test_work_in_the_terminal_is_checked(start, open_page, workspace):
     until(page, is_passed("one-link"))
     page.keyboard.press("Alt+PageDown")
     until(page, "lw.panels.lesson.step === '01-one-link/mass'")
+
+
+def test_a_file_that_another_program_creates_meanwhile_is_shown(start, open_page, workspace):
+    page = open_classroom(start, open_page, workspace)
+    page.get_by_role("button", name="robot.urdf").click()
+    page.wait_for_selector(".editor-notice:has-text('does not exist yet')")
+    shutil.copy(ROBOT, workspace)
+    until(page, "lw.panels.source.editor.text.includes('<robot') && lw.panels.source.editor.unsaved.length === 0")
+    page.locator(".editor-notice").wait_for(state="hidden")
 
 
 def test_the_classroom_fits_a_small_screen_and_is_accessible(start, open_page, workspace):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import shutil
 import socket
+import sys
 
 import pytest
 
@@ -14,6 +15,8 @@ from tests.places import PACKAGE
 pytestmark = pytest.mark.browser
 
 MBOT = PACKAGE / "urdf" / "mbot_base.xacro"
+TERMINAL = "lw.panels.terminal"
+posix = pytest.mark.skipif(sys.platform == "win32", reason="pseudoterminals of POSIX")
 
 
 @pytest.fixture
@@ -99,6 +102,71 @@ def test_another_file_is_seen_from_where_all_of_it_is_seen_and_panels_stay(start
     assert state(page, "joints.left_wheel_joint") == 0
     assert page.title().startswith("other.xacro")
     becomes(lambda: tabs(page), panels)
+
+
+@pytest.fixture
+def shell(monkeypatch, tmp_path) -> None:
+    monkeypatch.setenv("SHELL", "/bin/bash")
+    monkeypatch.setenv("HOME", str(tmp_path))
+
+
+def shows(page, text: str) -> None:
+    page.wait_for_function("text => window.linkwright?.panels.terminal.text?.includes(text)", arg=text, polling=50)
+
+
+def runs(page, command: str) -> None:
+    until(page, f"/[$#] *$/.test({TERMINAL}.text ?? '') && {TERMINAL}.notice === ''")
+    page.locator(".terminal-screen:visible .xterm-helper-textarea").focus()
+    page.keyboard.type(f"{command}\n")
+
+
+@posix
+@pytest.mark.parametrize("words", [("view", str(MBOT), "--terminal"), ("learn", "ws")], ids=["view", "learn"])
+def test_tabs_have_or_find_the_terminal_of_the_program_started_again(start, context, port, shell, words):
+    program = start(*words, "--port", port)
+    first = context.new_page()
+    first.goto(program.url)
+    runs(first, "echo mine=$((6*7))")
+    shows(first, "mine=42")
+    second = context.new_page()
+    second.goto(program.url)
+    until(second, f"{TERMINAL}.notice?.includes('another page')")
+    assert program.interrupt() == 130
+    start(*words, "--port", port)
+    for page in (first, second):
+        is_back(page)
+        page.reload()
+        until(page, f"{TERMINAL}.notice?.includes('another page') || /[$#] *$/.test({TERMINAL}.text ?? '')")
+        current = state(page, "panels.terminal.current")
+        assert page.locator(".terminal-tabs [aria-selected=true]").inner_text() == f"Terminal {current}"
+        assert "mine" not in state(page, "panels.terminal.text")
+    if state(second, "panels.terminal.notice") != "":
+        second.get_by_role("button", name="Show it here").click()
+    runs(second, "echo again=$((6*7))")
+    shows(second, "again=42")
+
+
+@posix
+def test_a_page_whose_connection_was_lost_without_a_word_has_its_terminal_back(start, context, shell):
+    """The program does not notice the loss for seconds, and another page could have the terminal."""
+    sockets = []
+
+    def through(page_end) -> None:
+        page_end.connect_to_server()
+        page_end.on_close(lambda *_: None)  # the program's end stays open
+        sockets.append(page_end)
+
+    page = context.new_page()
+    page.route_web_socket(re.compile("/ws"), through)
+    page.goto(start("view", str(MBOT), "--terminal").url)
+    runs(page, "echo mine=$((6*7))")
+    shows(page, "mine=42")
+    sockets[0].close()
+    page.locator(".notice[data-state=reconnecting]").wait_for()
+    is_back(page)
+    assert len(sockets) == 2
+    runs(page, "echo again=$((6*7))")
+    shows(page, "again=42")
 
 
 def test_a_program_that_does_not_know_the_token_is_not_told_it(start, context, port, monkeypatch, tmp_path):

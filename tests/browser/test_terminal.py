@@ -111,14 +111,15 @@ def test_several_terminals_survive_a_reload(start, open_page, file):
     until(page, f"{TERMINAL}.terminals.length === 1 && {TERMINAL}.text.includes('again=first')")
 
 
-def test_a_second_page_has_a_terminal_of_its_own_and_can_take_the_first(start, open_page, file):
+def test_a_second_page_tells_where_the_terminal_is_and_can_take_it(start, open_page, file):
     program = start("view", str(file), "--terminal")
     first = open_page(program)
     open_terminal(first)
     run(first, "echo mine=$((6*7))")
     shows(first, "\nmine=42")
     second = open_page(program)
-    second.get_by_role("tab", name="Terminal 1").click()
+    until(second, f"{TERMINAL}.current === 1 && {TERMINAL}.notice?.includes('another page')")
+    assert second.get_by_role("tab", name="Terminal 1").get_attribute("aria-selected") == "true"
     second.get_by_role("button", name="Show it here").click()
     shows(second, "\nmine=42")
     until(first, f"{TERMINAL}.notice.includes('another page')")

@@ -107,6 +107,24 @@ async def test_the_folder_is_listed_and_a_file_is_created(file: Path) -> None:
         assert "already exists" in again["refusal"]["message"]
 
 
+async def test_a_file_that_does_not_exist_is_created_with_its_first_text(file: Path) -> None:
+    new, other = (file.parents[1] / "launch" / name for name in ("new.launch.py", "other.launch.py"))
+    async with world() as scene, page(scene.viewer) as client:
+        await opened(scene, client, file)
+        begun = await ask(client, "ask_source_file", "source_file", path=str(new))
+        assert (begun["text"], begun["is_new"]) == (None, True)
+        assert not new.parent.exists()
+        written = await save(client, new, begun["version"], "x = 1\n")
+        assert (written["refusal"], new.read_text()) == (None, "x = 1\n")
+        written = await save(client, new, written["version"], "x = 2\n")
+        assert (written["refusal"], new.read_text()) == (None, "x = 2\n")
+        begun = await ask(client, "ask_source_file", "source_file", path=str(other))
+        write(other, "of another program\n")
+        written = await save(client, other, begun["version"], "mine\n")
+        assert written["refusal"] is not None
+        assert other.read_text() == "of another program\n"
+
+
 @pytest.mark.parametrize("path", ["/etc/passwd", "{ws}/.git/config", "{ws}/../outside.txt"])
 async def test_other_files_are_neither_read_nor_created(file: Path, path: str) -> None:
     workspace = file.parents[3]

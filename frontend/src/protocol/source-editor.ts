@@ -35,6 +35,7 @@ export interface SourceFile {
   version: number;
   text: string | null;
   why_not: string;
+  is_new: boolean;
   type: "source_file";
 }
 

@@ -17,6 +17,8 @@ export class TerminalsState {
   readonly changed = new Signal();
   /** The program has terminals now, or has none any more. */
   readonly availabilityChanged = new Signal();
+  /** The connection is new, so that earlier requests get no answers; emitted with whether the program is the same run. */
+  readonly connected = new Signal<boolean>();
   readonly output = new Signal<TerminalOutput>();
   /** Emitted with the number of a terminal whose program does not read its input. */
   readonly inputLost = new Signal<number>();
@@ -28,12 +30,16 @@ export class TerminalsState {
   private isAvailableNow = false;
   /** Whether the connection is new, and the server has not reported terminals yet. */
   private isUnknown = true;
+  /** The run of the program. */
+  private run = "";
+  /** The terminals that this page showed in the same run when the connection was lost. */
+  private shownBefore: ReadonlySet<number> = new Set();
 
   constructor(private readonly connection: Connection) {
-    connection.on("hello", () => (this.isUnknown = true));
+    connection.on("hello", ({ run }) => this.onHello(run));
     connection.on("terminals", ({ folder, terminals, why_not: whyNot }) => {
+      [this.folder, this.items, this.whyNot] = [folder, this.isUnknown ? this.withoutLost(terminals) : terminals, whyNot];
       this.isUnknown = false;
-      [this.folder, this.items, this.whyNot] = [folder, terminals, whyNot];
       this.setAvailable(folder !== "");
       this.changed.emit();
     });
@@ -90,6 +96,19 @@ export class TerminalsState {
 
   close(terminal: number): void {
     this.connection.send({ type: "close_terminal", terminal });
+  }
+
+  private onHello(run: string): void {
+    this.isUnknown = true;
+    const isSameRun = run === this.run;
+    this.shownBefore = new Set(isSameRun ? this.items.filter(({ shown }) => shown === "here").map(({ id }) => id) : []);
+    this.run = run;
+    this.connected.emit(isSameRun);
+  }
+
+  /** Returns terminals where the lost connection does not count as another page; the program may not know of the loss. */
+  private withoutLost(items: readonly TerminalItem[]): TerminalItem[] {
+    return items.map((item) => (item.shown === "elsewhere" && this.shownBefore.has(item.id) ? { ...item, shown: "nowhere" } : item));
   }
 
   private setAvailable(isAvailable: boolean): void {

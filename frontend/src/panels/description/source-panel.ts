@@ -111,10 +111,24 @@ export class SourcePanel implements Panel {
     this.update();
   }
 
-  /** Edits a file, which is created if it does not exist. */
+  /** Edits a file, which is created when it is saved if it does not exist. */
   edit(path: string): void {
     this.requested = null;
     void this.editor.edit(path);
+  }
+
+  /** Whether the editor shows files. */
+  get isEditing(): boolean {
+    return this.editor.isShown;
+  }
+
+  get hasUnsaved(): boolean {
+    return this.editor.hasUnsaved;
+  }
+
+  /** Writes all files that have changed. */
+  saveAll(): void {
+    this.editor.saveAll();
   }
 
   /** Returns what is shown and marked, for tests. */

@@ -66,11 +66,20 @@ export class EditorPane {
     else this.editor.openWorkspace(folder);
   }
 
-  /** Edits a file, which is created if it does not exist. */
+  /** Edits a file, which is created when it is saved if it does not exist. */
   async edit(path: string): Promise<void> {
     this.file = path;
     if (this.editor === null) await this.load();
-    await this.editor?.showOrCreate(path);
+    await this.editor?.showOrBegin(path);
+  }
+
+  get hasUnsaved(): boolean {
+    return this.editor?.hasUnsaved ?? false;
+  }
+
+  /** Writes all files that have changed. */
+  saveAll(): void {
+    this.editor?.saveAll();
   }
 
   /** The files that are open in the editor. */

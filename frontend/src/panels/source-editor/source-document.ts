@@ -35,6 +35,8 @@ export class SourceDocument {
   conflict: Conflict | null = null;
   /** Why the file cannot be read or written; empty if it can be edited. */
   whyNot = "";
+  /** Whether the file does not exist yet; saving creates it. */
+  isNew = false;
   /** The position of the first visible line when the document was last shown. */
   scrolledTo = 0;
   /** The text that the shown description was read from; null for the text on the disk. */
@@ -130,6 +132,7 @@ export class SourceDocument {
   diskChanged(content: string, version: number): TransactionSpec | null {
     const text = textOf(content);
     this.version = version;
+    this.isNew = false;
     if (text.eq(this.state.doc)) {
       this.rebase(text);
       return null;
@@ -173,6 +176,7 @@ export class SourceDocument {
       this.saved = this.writing.text;
       this.unsaved = this.writing.since;
       this.version = version;
+      this.isNew = false;
     }
     this.writing = null;
   }

@@ -73,7 +73,7 @@ export class SourceEditor implements Documents {
     this.actions = new CodeActions(this.service.client, this, (uri) => this.found.get(uri) ?? [], tell);
     this.navigation = new Navigation(this.service.client, this, this.places, tell);
     this.live = new LiveTexts(connection, this, () => this.changed.emit());
-    this.save = button(words.saveHint, () => this.files.saveAll(), "tool framed editor-save", icon("save"), words.save);
+    this.save = button(words.saveHint, () => this.saveAll(), "tool framed editor-save", icon("save"), words.save);
     this.list = button(words.findingsHint, () => openLintPanel(this.view), "tool framed", words.findings(0));
     this.tree = new FileTree(connection, (path) => void this.show(path), (path) => void this.createAndShow(path));
     const files = button(words.filesHint, () => this.tree.toggle(), "tool framed", icon("tree"), words.files);
@@ -122,10 +122,19 @@ export class SourceEditor implements Documents {
     return this.files.open;
   }
 
+  get hasUnsaved(): boolean {
+    return this.files.unsaved.length > 0;
+  }
+
+  /** Writes all files that have changed. */
+  saveAll(): void {
+    this.files.saveAll();
+  }
+
   /** Shows a file, and returns whether it can be shown. */
-  async show(path: string): Promise<boolean> {
+  async show(path: string, load = (file: string) => this.load(file)): Promise<boolean> {
     this.requestedFile = path;
-    const document = await this.load(path);
+    const document = await load(path);
     if (document === null || this.requestedFile !== path) return document !== null;
     if (document !== this.shown) this.display(document);
     return true;
@@ -139,9 +148,9 @@ export class SourceEditor implements Documents {
     });
   }
 
-  /** Shows a file, and creates it if it does not exist. */
-  async showOrCreate(path: string): Promise<void> {
-    if (!(await this.show(path))) await this.createAndShow(path);
+  /** Shows a file, or an empty text that creates it when it is saved. */
+  async showOrBegin(path: string): Promise<void> {
+    await this.show(path, (file) => this.files.loadOrBegin(file));
   }
 
   load(path: string): Promise<SourceDocument | null> {
@@ -241,7 +250,6 @@ export class SourceEditor implements Documents {
   private stateOf(path: string, uri: string, doc: string, isReadOnly: boolean): EditorState {
     const { navigation, actions } = this;
     const keys = keymap.of([
-      { key: "Mod-s", run: () => (this.files.saveAll(), true), preventDefault: true },
       { key: "F2", run: (view) => renameAtCursor(view, this.service, this, (message) => this.tell(message)), preventDefault: true },
       { key: "F12", run: (view) => navigation.goToDefinition(view), preventDefault: true },
       { key: "Shift-F12", run: (view) => navigation.listReferences(view), preventDefault: true },
@@ -337,10 +345,10 @@ export class SourceEditor implements Documents {
 
   private showNotice(shown: SourceDocument | null): void {
     const words = strings.sourceEditor;
-    this.notice.hidden = !shown || (shown.conflict === null && shown.whyNot === "");
+    this.notice.hidden = !shown || (shown.conflict === null && shown.whyNot === "" && !shown.isNew);
     if (!shown || this.notice.hidden) return;
     if (shown.conflict === null) {
-      this.notice.replaceChildren(shown.whyNot);
+      this.notice.replaceChildren(shown.whyNot || words.isNew);
       return;
     }
     const settle = (spec: TransactionSpec | null): void => {

@@ -33,6 +33,8 @@ export class SourceFiles {
   private readonly documents = new Map<string, SourceDocument>();
   private readonly awaited = new Map<string, ((document: SourceDocument | null) => void)[]>();
   private readonly writing = new Map<number, SourceDocument>();
+  /** The files that are opened even if they do not exist. */
+  private readonly mayBeNew = new Set<string>();
   private readonly creating = new Map<number, { resolve: () => void; reject: (reason: Error) => void }>();
   /** The file whose workspace is edited. */
   private main = "";
@@ -75,6 +77,12 @@ export class SourceFiles {
         else this.requestWorkspace();
       }
     });
+  }
+
+  /** Opens a file, or an empty text that creates it when it is saved; null if there can be no such file. */
+  loadOrBegin(path: string): Promise<SourceDocument | null> {
+    this.mayBeNew.add(path);
+    return this.load(path);
   }
 
   /** Creates an empty file, and rejects with the reason if it cannot be created. */
@@ -154,16 +162,18 @@ export class SourceFiles {
     this.changed.emit();
   }
 
-  private onFile({ path, uri, version, text, why_not }: SourceFile): void {
+  private onFile({ path, uri, version, text, why_not, is_new: isNew }: SourceFile): void {
     let document = this.documents.get(path);
-    if (document) {
+    if (document?.isNew === true && isNew) document.version = version;
+    else if (document) {
       document.whyNot = why_not;
       const spec = text === null ? null : document.diskChanged(text, version);
       if (spec) this.host.change(document, spec);
       this.host.written(document, false);
-    } else if (text !== null) {
-      document = new SourceDocument(path, uri, version, this.host.stateOf(path, uri, text, why_not !== ""));
-      document.whyNot = why_not;
+    } else if (text !== null || (isNew && this.mayBeNew.has(path))) {
+      const whyNot = isNew ? "" : why_not;
+      document = new SourceDocument(path, uri, version, this.host.stateOf(path, uri, text ?? "", whyNot !== ""));
+      [document.whyNot, document.isNew] = [whyNot, isNew];
       this.documents.set(path, document);
       this.host.added(document);
     } else this.host.tell(why_not);
@@ -175,12 +185,14 @@ export class SourceFiles {
     const [document, created] = [this.writing.get(number), this.creating.get(number)];
     this.writing.delete(number);
     this.creating.delete(number);
+    const wasNew = document?.isNew === true;
     document?.endWriting(refusal === null ? version : null);
     const why = refusal ? [refusal.message, ...refusal.hints].join(" ") : "";
     if (refusal && created) created.reject(new Error(why));
     else if (refusal) this.host.tell(why);
     else if (document) {
       this.host.written(document, true);
+      if (wasNew) this.host.created();
       this.host.tell(strings.sourceEditor.saved(nameOf(path)));
     } else {
       this.host.created();

@@ -62,6 +62,10 @@ export class TerminalDeck {
     this.tabs.addEventListener("keydown", (event) => this.onTabKey(event));
     new ResizeObserver(() => this.screen?.fit()).observe(this.place);
     state.changed.on(() => this.update());
+    state.connected.on((isSameRun) => {
+      this.requested = null;
+      if (!isSameRun) this.discard(() => true);
+    });
     state.output.on((output) => this.screenOf(output.terminal).receive(output));
     state.inputLost.on((id) => {
       this.lostInput = id;
@@ -118,24 +122,27 @@ export class TerminalDeck {
   /** Follows the server: removes closed terminals, chooses one, and requests it if no page shows it. */
   private update(): void {
     const { items } = this.state;
-    for (const [id, screen] of this.screens) {
-      if (this.state.find(id)) continue;
-      screen.dispose();
-      this.screens.delete(id);
-    }
+    this.discard((id) => this.state.find(id) === undefined);
     if (this.requested !== null && this.state.whyNot !== "") this.requested = null;
     if (this.requested === 0) {
       const opened = items.findLast(({ id, shown }) => shown === "here" && id !== this.current);
       if (opened) this.choose(opened.id);
     } else if (this.requested !== null && this.state.find(this.requested)?.shown === "here") this.requested = null;
-    if (this.item === undefined) this.current = items.find(({ shown }) => shown !== "elsewhere")?.id ?? null;
+    if (this.item === undefined) this.current = (items.find(({ shown }) => shown !== "elsewhere") ?? items[0])?.id ?? null;
     this.showTabs();
     this.showNotice();
     if (!this.isVisible || document.hidden) return;
-    if (this.current === null && items.length === 0 && this.state.whyNot === "") this.openNew();
-    else if (this.current === null) this.current = items[0]?.id ?? null;
+    if (this.current === null && this.state.whyNot === "") this.openNew();
     this.showScreen();
     if (this.item?.shown === "nowhere" && this.requested !== this.current) this.request();
+  }
+
+  private discard(isGone: (id: number) => boolean): void {
+    for (const [id, screen] of this.screens) {
+      if (!isGone(id)) continue;
+      screen.dispose();
+      this.screens.delete(id);
+    }
   }
 
   private choose(id: number): void {

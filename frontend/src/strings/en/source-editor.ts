@@ -40,6 +40,7 @@ export const sourceEditor = {
   newFile: "New file",
   newFileHint: "Create a file in the workspace",
   newFilePath: "Path of the new file",
+  isNew: "This file does not exist yet. Saving a text creates it.",
   unsaved: "Not saved",
   saved: (file: string): string => `Saved: ${file}`,
   findings: (count: number): string => (count === 0 ? "No findings" : plural(count, "finding")),

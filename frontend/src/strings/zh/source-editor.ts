@@ -38,6 +38,7 @@ export const sourceEditor = {
   newFile: "新建文件",
   newFileHint: "在工作区中新建文件",
   newFilePath: "新文件的路径",
+  isNew: "这个文件还不存在；保存内容时会创建它。",
   unsaved: "未保存",
   saved: (file: string): string => `已保存：${file}`,
   findings: (count: number): string => (count === 0 ? "没有诊断" : `${count} 条诊断`),

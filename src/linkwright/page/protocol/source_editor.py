@@ -47,7 +47,8 @@ class SourceFile(ServerMessage):
     It is sent as the response to `AskSourceFile`, and again when another program changes the file.
 
     `version` counts the contents that were sent to the page. `text` is None if the file cannot be read. `why_not` is
-    the reason why the file cannot be read or must not be written, or empty.
+    the reason why the file cannot be read or must not be written, or empty. `is_new` is whether the file does not
+    exist, and `WriteSourceFile` creates it.
     """
 
     NEWEST_OF: ClassVar[tuple[str, ...]] = ("path",)
@@ -57,6 +58,7 @@ class SourceFile(ServerMessage):
     version: int
     text: str | None
     why_not: str
+    is_new: bool
 
 
 class WriteSourceFile(PageMessage):

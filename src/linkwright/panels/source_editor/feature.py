@@ -191,7 +191,9 @@ class SourceEditorFeature(PageFeature):
             open_file.version += 1
             open_file.content = content
         uri = Path(path).as_uri() if Path(path).is_absolute() else ""
-        page.send(messages.SourceFile(path, uri, open_file.version, content.page_text, content.why_not))
+        page.send(
+            messages.SourceFile(path, uri, open_file.version, content.page_text, content.why_not, is_new=content.is_new)
+        )
 
     async def _show_unsaved(self, page: Page, message: messages.ShowUnsavedText, on_disk: str) -> None:
         """Show descriptions with an unsaved text, and send the page the outcome."""
@@ -215,10 +217,15 @@ class SourceEditorFeature(PageFeature):
             await asyncio.to_thread(editor.files.create, path)
             return
         open_file = editor.open_files.get(message.path)
-        if open_file is None or open_file.version != message.version or open_file.content.text is None:
+        if open_file is None or open_file.version != message.version:
             raise EditRefusedError(changed_file(message.path))
-        plan = editor.files.plan(path, open_file.content.text, message.text)
-        await self.viewer.add_feature(EditingFeature).write(plan)
+        if open_file.content.is_new:
+            await asyncio.to_thread(editor.files.create, path, message.text)
+        elif open_file.content.text is None:
+            raise EditRefusedError(changed_file(message.path))
+        else:
+            plan = editor.files.plan(path, open_file.content.text, message.text)
+            await self.viewer.add_feature(EditingFeature).write(plan)
         open_file.version += 1
         open_file.stamp, open_file.content = await asyncio.to_thread(_read, editor.files, message.path)
 

@@ -11,6 +11,7 @@ from pathlib import Path
 from linkwright.descriptions.editing import EditPlan, EditRefusedError, Workspace
 from linkwright.descriptions.unsaved import with_lf
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, display_path, foreign, phrase
+from linkwright.files.whole_files import write_whole_file
 from linkwright.xmltree.decoding import decode
 from linkwright.xmltree.reader import read_bytes
 
@@ -39,10 +40,12 @@ class FileContent:
     Attributes:
         text: the text with the file's line ends; None if the file cannot be read.
         why_not: the reason why the file cannot be read or must not be written; empty if it may be edited.
+        is_new: whether the file does not exist and can be created.
     """
 
     text: str | None
     why_not: str = ""
+    is_new: bool = False
 
     @property
     def page_text(self) -> str | None:
@@ -82,7 +85,8 @@ class SourceFiles:
             data = read_bytes(path)
             text = decode(data, str(path))
         except LinkwrightError as error:
-            return FileContent(None, error.diagnostics[0].message)
+            is_new = not os.path.lexists(path) and self._creating_refusal(Path(os.path.realpath(path))) is None
+            return FileContent(None, error.diagnostics[0].message, is_new)
         if len(data) > MAX_BYTES:
             return FileContent(text, _too_long(path))
         refusal = self._workspace.refusal(os.path.realpath(path))
@@ -106,23 +110,21 @@ class SourceFiles:
             raise EditRefusedError(refusal)
         return EditPlan({real: with_line_ends(text, before)}, {real: before})
 
-    def create(self, path: Path) -> None:
-        """Create an empty file in the workspace, with the folders above it.
+    def create(self, path: Path, text: str = "") -> None:
+        """Create a file in the workspace, with the folders above it.
 
         Raises:
             EditRefusedError: the file exists or is outside of the workspace, or it cannot be created.
         """
         real = Path(os.path.realpath(path))
-        if not real.is_relative_to(self.folder) or _is_hidden(real, self.folder):
-            why_not = phrase("new files can only be created in '{folder}'", folder=str(self.folder))
-            raise EditRefusedError(Diagnostic("EDIT106", why_not))
-        existing = next(folder for folder in real.parents if folder.is_dir())
-        refusal = self._workspace.refusal(str(existing))
+        refusal = self._creating_refusal(real)
         if refusal is not None:
             raise EditRefusedError(refusal)
         try:
             real.parent.mkdir(parents=True, exist_ok=True)
             real.open("x").close()
+            if text:
+                write_whole_file(real, text)
         except FileExistsError:
             message = phrase("'{path}' already exists", path=display_path(real))
             raise EditRefusedError(Diagnostic("EDIT108", message)) from None
@@ -148,6 +150,14 @@ class SourceFiles:
             entry.name for entry in entries if entry.is_file() and not _BINARY.fullmatch(entry.name.rpartition(".")[2])
         ]
         return sorted(folders, key=str.lower)[:_MAX_NAMES], sorted(files, key=str.lower)[:_MAX_NAMES]
+
+    def _creating_refusal(self, real: Path) -> Diagnostic | None:
+        """Return the reason why a file must not be created, or None."""
+        if not real.is_relative_to(self.folder) or _is_hidden(real, self.folder):
+            why_not = phrase("new files can only be created in '{folder}'", folder=str(self.folder))
+            return Diagnostic("EDIT106", why_not)
+        existing = next(folder for folder in real.parents if folder.is_dir())
+        return self._workspace.refusal(str(existing))
 
     def _reading_refusal(self, path: Path) -> Phrase | None:
         """Return the reason why a file must not be read, or None."""

@@ -1,0 +1,69 @@
+import type { ConfigurationState } from "../state/configuration";
+import { matches, SHORTCUTS } from "../widgets/shortcuts";
+import type { FileCommands } from "./file-commands";
+
+/** The editor of source files, as far as keys need it. */
+interface Sources {
+  /** Whether the editor shows files. */
+  readonly isEditing: boolean;
+  readonly hasUnsaved: boolean;
+  saveAll(): void;
+}
+
+/** Where the focus is, and what there is to save. */
+interface Situation {
+  readonly focus: "editor" | "configuration" | "elsewhere";
+  readonly isEditing: boolean;
+  readonly hasUnsavedSources: boolean;
+  readonly isConfigurationUnsaved: boolean;
+}
+
+/**
+ * Returns what the key of *Save* saves: the files of the editor or of the panel with the focus; elsewhere changed source
+ * files, or else the configuration. While source files are edited, an unchanged configuration needs no name.
+ */
+export function savedByKey({ focus, isEditing, hasUnsavedSources, isConfigurationUnsaved }: Situation): "sources" | "configuration" {
+  if (focus === "configuration") return "configuration";
+  return focus === "editor" || hasUnsavedSources || (isEditing && !isConfigurationUnsaved) ? "sources" : "configuration";
+}
+
+/**
+ * Binds the keys of the File menu, and undo. They work everywhere except in dialogs and the terminal; in a text field,
+ * undo belongs to the field, and in the editor all keys but *Save* to the editor.
+ *
+ * @param panels - the panels of the configuration.
+ */
+export function bindFileKeys(configuration: ConfigurationState, files: FileCommands, sources: Sources, panels: readonly HTMLElement[]): void {
+  const save = (target: Element | null): void => {
+    const isInEditor = target?.matches(".source-editor *") === true;
+    const isInPanel = panels.some((panel) => panel.contains(target));
+    const saved = savedByKey({
+      focus: isInEditor ? "editor" : isInPanel ? "configuration" : "elsewhere",
+      isEditing: sources.isEditing,
+      hasUnsavedSources: sources.hasUnsaved,
+      isConfigurationUnsaved: configuration.current.unsaved,
+    });
+    if (saved === "sources") sources.saveAll();
+    else files.save();
+  };
+  const keys = [
+    { shortcut: SHORTCUTS.save, run: save, editor: true },
+    { shortcut: SHORTCUTS.saveAs, run: () => files.saveAs() },
+    { shortcut: SHORTCUTS.open, run: () => files.chooseFile() },
+    { shortcut: SHORTCUTS.undo, run: () => configuration.undo(), text: true },
+    { shortcut: SHORTCUTS.redo, run: () => configuration.redo(), text: true },
+    { shortcut: SHORTCUTS.redoToo, run: () => configuration.redo(), text: true },
+  ];
+  const onKeyDown = (event: KeyboardEvent): void => {
+    const target = event.target instanceof Element ? event.target : null;
+    const found = keys.find(({ shortcut }) => matches(event, shortcut));
+    if (!found || target?.closest("dialog, .terminal-screen")) return;
+    if (found.editor !== true && target?.closest(".source-editor")) return;
+    if (found.text === true && target?.matches("input[type=text], textarea")) return;
+    event.preventDefault();
+    event.stopPropagation();
+    found.run(target);
+  };
+  // Capture the event: a field that is edited stops keys from bubbling, and the browser would save the page.
+  document.addEventListener("keydown", onKeyDown, true);
+}
