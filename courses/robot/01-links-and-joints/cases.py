@@ -7,7 +7,7 @@ RIGHT_ORIGIN = '<origin xyz="0 -0.19 -0.05" rpy="0 0 0"/>'
 XACRO_PREFIX = '<robot name="mbot" xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:property name="r" value="0.2"/>'
 
 LEFT_JOINT = '<joint name="left_wheel_joint" type="continuous">'
-BODY_END = """      <material name="yellow"/>
+BODY_END = """      <material name="orange"/>
     </visual>
   </link>
 """
