@@ -138,8 +138,8 @@ def knows_speed(work):
             zh="0 是松开按键之后的速度；请在按住上箭头时看消息。",
         ),
         1.0: NotYet(
-            en="1 is angular.z, how fast the robot turns; hold the up arrow alone and read x below linear.",
-            zh="1 是 angular.z，即转动的速度；请只按住上箭头，看 linear 下面的 x。",
+            en="1 is angular.z, how fast the robot turns; hold the up arrow alone, and look at linear.x.",
+            zh="1 是 angular.z，即转动的速度；请只按住上箭头，看 linear.x。",
         ),
     }
     work.expect_number(0.5, tolerance=0.02, slips=slips)
