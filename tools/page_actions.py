@@ -176,7 +176,8 @@ def _row(page: Page, panel: str, path: str) -> Locator:
         above = tree.get_by_role("treeitem").filter(has=page.get_by_text(parent, exact=True)).first
         if above.get_attribute("aria-expanded") == "false":
             above.locator(".twist").click()
-    return tree.get_by_role("treeitem").filter(has=page.get_by_text(name, exact=True)).last
+    rows = tree.get_by_role("treeitem").filter(has=page.get_by_text(name, exact=True))
+    return rows.filter(has=page.locator("input, select")).last  # a status has a row with the same name
 
 
 def _write(row: Locator, value: str) -> None:

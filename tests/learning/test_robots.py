@@ -95,6 +95,28 @@ def test_what_is_missing_is_said(robot, expectation, message):
     assert set(raised.value.text.texts) == {"en", "zh"}
 
 
+@pytest.mark.extra("sim")
+def test_a_robot_of_visuals_only_is_simulated_with_what_it_lacks(tmp_path):
+    wheel = URDF[URDF.index('  <link name="left') : URDF.index("</robot>")]
+    right = wheel.replace("left", "right").replace("0.19", "-0.19")
+    ball = """<link name="ball"><visual><geometry><sphere radius="0.02"/></geometry></visual></link>
+      <joint name="ball_joint" type="fixed"><origin xyz="-0.15 0 -0.09"/><parent link="base_link"/><child link="ball"/>
+      </joint>"""
+    (tmp_path / "r.urdf").write_text(URDF.replace("</robot>", right + ball + "</robot>"))
+    work = Work(tmp_path, lesson=tmp_path)
+    with work.simulate("r.urdf") as test:
+        assert test.robot_pose()[2] == pytest.approx(0.11)
+        test.drive(0.5)
+        test.advance(2.0)
+        assert test.robot_pose()[0] > 0.8
+
+
+@pytest.mark.extra("sim")
+def test_why_a_robot_cannot_be_driven_is_said(robot, tmp_path):
+    with pytest.raises(NotYet, match="DRIVE20"), Work(tmp_path, lesson=tmp_path).simulate("r.urdf"):
+        pass
+
+
 def test_an_invalid_description_is_said_with_its_line(tmp_path):
     (tmp_path / "r.urdf").write_text(URDF.replace(' length="0.16"', ""))
     with pytest.raises(NotYet, match=r"r\.urdf, line 3, column \d+: .*'length'"):

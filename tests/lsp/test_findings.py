@@ -42,6 +42,15 @@ async def test_a_text_that_is_no_xml_is_reported_where_it_ends(editor):
     assert found.range.start.line == 0
 
 
+async def test_a_program_outside_of_packages_is_not_read_as_xml(editor, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("alone")
+    program, robot = str(folder / "drive.py"), str(folder / "robot.txt")
+    editor.open(program, "import time\n")
+    editor.open(robot, "<robot>")
+    await editor.until(robot, "XML202")
+    await editor.until(program)
+
+
 async def test_positions_count_utf_16(editor):
     before = "  <!-- 🤖机器人 --> "
     editor.open(MAIN_FILE, MAIN.replace('  <link name="base"/>', before + '<xacro:nothing/><link name="base"/>'))

@@ -7,7 +7,7 @@ RIGHT_ORIGIN = '<origin xyz="0 -0.19 -0.05" rpy="0 0 0"/>'
 XACRO_PREFIX = '<robot name="mbot" xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:property name="r" value="0.2"/>'
 
 LEFT_JOINT = '<joint name="left_wheel_joint" type="continuous">'
-BODY_END = """      <material name="yellow"/>
+BODY_END = """      <material name="orange"/>
     </visual>
   </link>
 """
@@ -17,7 +17,120 @@ TURNED = (
     Edit(URDF, '<origin xyz="0 0 0" rpy="1.5707 0 0"/>', ""),
 )
 
+PROGRAM = "first_drive.py"
+
+TIMER = """import rclpy
+from geometry_msgs.msg import Twist
+from rclpy.node import Node
+
+
+class Drive(Node):
+    def __init__(self):
+        super().__init__('drive')
+        self.publisher = self.create_publisher(Twist, 'cmd_vel', 10)
+        self.count = 0
+        self.create_timer(0.05, self.move)
+
+    def move(self):
+        self.count += 1
+        twist = Twist()
+        if self.count < 60:
+            twist.linear.x, twist.angular.z = -0.3, 0.4
+        self.publisher.publish(twist)
+
+
+if __name__ == '__main__':
+    rclpy.init()
+    rclpy.spin(Drive())
+"""
+
+FUNCTION = """import rclpy
+from geometry_msgs.msg import Twist
+
+
+def drive(node, publisher, speed, seconds):
+    command = Twist()
+    command.linear.x = speed
+    begin = node.get_clock().now()
+    while (node.get_clock().now() - begin).nanoseconds < seconds * 1e9:
+        publisher.publish(command)
+        rclpy.spin_once(node, timeout_sec=0.05)
+
+
+def main():
+    rclpy.init()
+    node = rclpy.create_node('there_and_back')
+    publisher = node.create_publisher(Twist, '/cmd_vel', 1)
+    drive(node, publisher, 0.4, 2.0)
+    drive(node, publisher, -0.4, 2.0)
+    drive(node, publisher, 0.0, 0.2)
+    node.destroy_node()
+    rclpy.shutdown()
+
+
+main()
+"""
+
+CLOCK = """import time
+import rclpy
+from geometry_msgs.msg import Twist
+rclpy.init()
+pub = rclpy.create_node('n').create_publisher(Twist, '/cmd_vel', 10)
+t = Twist()
+t.linear.x = 0.5
+end = time.time() + 5
+while time.time() < end:
+    pub.publish(t)
+    time.sleep(0.02)
+t.linear.x = 0.0
+pub.publish(t)
+"""
+
+STOP = "publisher.publish(Twist())\n"
+SLEEP = "    time.sleep(0.1)\n"
+
 CASES = [
+    wrong("teleop", "a released key", says="after a key is released", answer="0"),
+    wrong("teleop", "the turn rate", says="is angular.z", answer="1.0"),
+    wrong("teleop", "with the unit", says="without a unit", answer="0.5 m/s"),
+    wrong("teleop", "centimeters", says="not the unit", answer="50"),
+    wrong("teleop", "backward", says="has the wrong sign", answer="-0.5"),
+    right("teleop", "with a comma", answer="0,5"),
+    right("program", "a node with a timer, that is never ended", {PROGRAM: TIMER}),
+    right("program", "functions, there and back", {PROGRAM: FUNCTION}),
+    right("program", "by the clock of the computer", {PROGRAM: CLOCK}),
+    wrong("program", "no stop", Edit(PROGRAM, STOP, ""), says="the robot drives on"),
+    wrong("program", "another topic", Edit(PROGRAM, "'/cmd_vel'", "'/cmd_val'"), says="publishes /cmd_val"),
+    wrong("program", "no init", Edit(PROGRAM, "rclpy.init()\n", ""), says="first_drive.py, line 6"),
+    wrong("program", "an integer", Edit(PROGRAM, "= 0.2", "= 1"), says="write the number with a point"),
+    wrong("program", "upward", Edit(PROGRAM, "linear.x", "linear.z"), says="is always 0"),
+    wrong("program", "only once", Edit(PROGRAM, "range(40)", "range(1)"), says="again and again"),
+    wrong("program", "no sleep", Edit(PROGRAM, SLEEP, ""), says="again and again"),
+    wrong(
+        "program",
+        "no sleep, without an end",
+        Edit(PROGRAM, "for _ in range(40):", "while True:"),
+        Edit(PROGRAM, SLEEP, ""),
+        says="computes without an end",
+    ),
+    wrong("program", "without an end", Edit(PROGRAM, "for _ in range(40):", "while True:"), says="still drives"),
+    wrong("program", "millimeters", Edit(PROGRAM, "= 0.2", "= 200.0"), says="meters in a second"),
+    wrong(
+        "program",
+        "a class in place of a message",
+        Edit(PROGRAM, STOP, "publisher.publish(Twist)\n"),
+        says="write Twist()",
+    ),
+    wrong(
+        "program",
+        "a function that is not called",
+        {PROGRAM: FUNCTION.replace("\n\nmain()\n", "\n")},
+        says="runs only if",
+    ),
+    wrong(
+        "program", "an indentation", Edit(PROGRAM, SLEEP, SLEEP.replace("    ", "   ")), says="first_drive.py, line 14"
+    ),
+    wrong("program", "a misspelt import", Edit(PROGRAM, "import Twist", "import twist"), says="first_drive.py, line 4"),
     wrong(
         "package",
         "an ampersand in the description",
@@ -49,7 +162,6 @@ CASES = [
         Edit(URDF, 'xyz="0.17 0 0.10" rpy="0 0 0"', 'xyz="0.17 0 0.10" rpy="0 0 0.5"'),
         says="is turned",
     ),
-    wrong("ground", "millimeters", says="not the unit", answer="110"),
     right("body", "with another color", Edit(URDF, "1 0.4 0 1", "0 0 1 1")),
     right("body", "with numbers written differently", Edit(URDF, 'radius="0.20"', 'radius="2e-1"')),
     right(
@@ -84,7 +196,4 @@ CASES = [
         Edit(URDF, '<box size="0.03 0.04 0.04"/>', '<sphere radius="0.02"/>'),
         says="should be a box",
     ),
-    wrong("ground", "only the axle", says="down to the axle", answer="0.05"),
-    wrong("ground", "the diameter", says="counts the diameter", answer="0.17"),
-    right("ground", "with a comma", answer="0,11"),
 ]

@@ -1,11 +1,16 @@
-from linkwright.geometry.shapes import Box, Cylinder, Sphere
-from linkwright.learning import NotYet, ShapeSpec, check
+import math
+import runpy
+from functools import cache
 
+from linkwright.geometry.shapes import Box, Cylinder, Sphere
+from linkwright.learning import NotYet, ShapeSpec, check, expect_published
+
+URDF, TWIST = "urdf/mbot_base.urdf", "geometry_msgs/msg/Twist"
 WHEEL = ShapeSpec(Cylinder(0.06, 0.025), along=(0, 1, 0), at=(0, 0, 0))
 
 
 def robot(work):
-    return work.package("my_robot_description").robot("urdf/mbot_base.urdf")
+    return work.package("my_robot_description").robot(URDF)
 
 
 @check(
@@ -108,24 +113,106 @@ def camera_is_box(work):
     robot(work).link("camera_link").expect_shape(ShapeSpec(Box((0.03, 0.04, 0.04))))
 
 
-@check("ground", en="The height of base_link above the ground is right.", zh="base_link 离地面的高度正确。")
-def knows_height(work):
+@check("teleop", en="mbot drives ahead and turns to the left.", zh="mbot 能前进，也能左转。")
+def robot_drives(work):
+    with work.package("my_robot_description").simulate(URDF) as test:
+        test.drive(0.3)
+        test.advance(2.0)
+        x = test.robot_pose()[0]
+        test.drive(0.0, 1.0)
+        test.advance(1.0)
+        turn = 2 * math.atan2(*test.robot_pose()[5:])
+    if x < 0.3 or turn < 0.3:
+        raise NotYet(
+            en=f"Commanded to drive ahead for 2 s and then to turn left, the robot drove {x:.2f} m and turned by "
+            f"{turn:.1f} rad; compare the wheels with the steps before.",
+            zh=f"命令机器人前进 2 s 再左转，它走了 {x:.2f} m，转了 {turn:.1f} rad；请与前面几步对照检查轮子。",
+        )
+
+
+@check("teleop", en="The speed that the pad sends is right.", zh="操纵板发送的速度正确。")
+def knows_speed(work):
     slips = {
-        0.05: NotYet(
-            en="0.05 m is the distance down to the axle; the ground is one wheel radius lower.",
-            zh="0.05 m 是到轮轴的距离；地面还要低一个轮子半径。",
+        0.0: NotYet(
+            en="0 is the velocity after a key is released; look at the messages while you hold the up arrow.",
+            zh="0 是松开按键之后的速度；请在按住上箭头时看消息。",
         ),
-        0.06: NotYet(
-            en="0.06 m is the radius of a wheel; the axle is below base_link, too.",
-            zh="0.06 m 是轮子的半径；轮轴本身也比 base_link 低。",
-        ),
-        0.17: NotYet(
-            en="0.17 m counts the diameter of the wheel; the axle is in its middle.",
-            zh="0.17 m 用的是轮子的直径；轮轴在轮子的中心。",
-        ),
-        0.08: NotYet(
-            en="0.08 m is half of the body's height; the robot stands on its wheels.",
-            zh="0.08 m 是机身高度的一半；机器人是站在轮子上的。",
+        1.0: NotYet(
+            en="1 is angular.z, how fast the robot turns; hold the up arrow alone, and look at linear.x.",
+            zh="1 是 angular.z，即转动的速度；请只按住上箭头，看 linear.x。",
         ),
     }
-    work.expect_number(0.11, tolerance=0.002, slips=slips)
+    work.expect_number(0.5, tolerance=0.02, slips=slips)
+
+
+@cache
+def run_first_drive(work):
+    """Run first_drive.py for at most half a minute; return its commands, the way in m, the last speed, and the end."""
+    program = work.file("first_drive.py")
+    silence = NotYet(
+        en="first_drive.py ends without a node: it must call rclpy.create_node. A function runs only if it is called.",
+        zh="first_drive.py 没有创建节点就结束了：应当调用 rclpy.create_node。函数只有被调用才会运行。",
+    )
+    with work.package("my_robot_description").simulate(URDF) as test:
+        commands = test.record("/cmd_vel", TWIST)
+        running = test.start_program(lambda: runpy.run_path(str(program), run_name="__main__"), budget=5.0)
+        way, last = 0.0, test.robot_pose()[:2]
+        while running.is_running and test.now < 30.0:
+            test.advance(0.1)
+            way += math.dist(last, test.robot_pose()[:2])
+            last = test.robot_pose()[:2]
+            if test.program_nodes and not len(commands):
+                silence = why_silent(test, commands)
+        if not len(commands):
+            raise silence
+        has_ended = not running.is_running
+        test.advance(1.0)
+        last = test.robot_pose()[:2]
+        test.advance(0.1)
+        speed = math.dist(last, test.robot_pose()[:2]) / 0.1
+    return commands, way, speed, has_ended
+
+
+def why_silent(test, commands):
+    try:
+        expect_published(test, "/cmd_vel", TWIST, commands)
+    except NotYet as reason:
+        return reason
+
+
+@check("program", en="first_drive.py drives mbot.", zh="first_drive.py 让 mbot 行驶。")
+def program_drives(work):
+    commands, way, _, _ = run_first_drive(work)
+    fastest = max(abs(command.linear.x) for command in commands)
+    if fastest > 3.0:
+        raise NotYet(
+            en=f"linear.x is {fastest:g}: that many meters in a second. Try 0.2.",
+            zh=f"linear.x 是 {fastest:g}，也就是每秒这么多米。请用 0.2。",
+        )
+    if not fastest:
+        raise NotYet(
+            en="first_drive.py publishes on /cmd_vel, but linear.x, the speed ahead, is always 0.",
+            zh="first_drive.py 在 /cmd_vel 上发布消息，但前进速度 linear.x 始终是 0。",
+        )
+    if way < 0.1:
+        raise NotYet(
+            en=f"The robot moved only {way:.2f} m: publish the velocity again and again for some seconds, with "
+            "time.sleep(0.1) between the messages.",
+            zh=f"机器人只移动了 {way:.2f} m：请在几秒钟内反复发布速度，两条消息之间用 time.sleep(0.1)。",
+        )
+
+
+@check("program", en="At the end it stops mbot.", zh="最后它让 mbot 停下。")
+def program_stops(work):
+    commands, _, speed, has_ended = run_first_drive(work)
+    if not commands.last.linear.x and not commands.last.angular.z and speed < 0.01:
+        return
+    if has_ended:
+        raise NotYet(
+            en="The program has ended, but the robot drives on: at the end, publish a Twist() whose numbers are all 0.",
+            zh="程序已经结束，机器人还在行驶：请在最后发布一个数值全为 0 的 Twist()。",
+        )
+    raise NotYet(
+        en="After half a minute the program still drives the robot; let it stop after some seconds.",
+        zh="半分钟后程序仍在让机器人行驶；请让它在几秒后停下。",
+    )

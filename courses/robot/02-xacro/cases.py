@@ -131,7 +131,4 @@ CASES = [
     ),
     wrong("include", "a misspelt file", Edit(XACRO, "parts.xacro", "parst.xacro"), says="parst.xacro"),
     right("include", "a relative path", Edit(XACRO, "$(find my_robot_description)/urdf/parts.xacro", "parts.xacro")),
-    wrong("turn", "half of it", says="π times the radius", answer="0.1885"),
-    wrong("turn", "both wheels", says="both wheels turn", answer="0.754"),
-    right("turn", "rounded", answer="0.38"),
 ]

@@ -183,19 +183,3 @@ def macros_are_in_parts(work):
 @check("include", en="The robot is the same as before.", zh="机器人与之前相同。")
 def robot_is_same(work):
     expect_mbot(package(work).robot(XACRO))
-
-
-@check("turn", en="The distance is right.", zh="距离正确。")
-def knows_distance(work):
-    slips = {
-        0.1885: NotYet(
-            en="0.188 m is π times the radius; the circumference is π times the diameter.",
-            zh="0.188 m 是 π 乘以半径；周长是 π 乘以直径。",
-        ),
-        0.754: NotYet(
-            en="0.754 m is twice the circumference: both wheels turn at the same time.",
-            zh="0.754 m 是周长的两倍：两个轮子同时转动。",
-        ),
-        0.0113: NotYet(en="0.011 is the area of the wheel.", zh="0.011 是轮子的面积。"),
-    }
-    work.expect_number(0.377, tolerance=0.004, slips=slips)

@@ -187,6 +187,4 @@ CASES = [
         says="does not install 'launch/",
     ),
     wrong("install", "a mistake in setup.py", Edit(SETUP, "Path(top)", "Pth(top)"), says="Pth"),
-    wrong("frame", "in base_link", says="frame base_link", answer="-0.05"),
-    wrong("frame", "the other direction", says="exchange the two frames", answer="-0.06"),
 ]

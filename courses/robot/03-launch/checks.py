@@ -144,20 +144,3 @@ def installs_folders(work):
 @check("install", en="The package has no findings.", zh="功能包没有任何问题。")
 def has_no_findings(work):
     package(work).expect_no_findings()
-
-
-@check("frame", en="The height of the wheel's frame is right.", zh="轮子坐标系的高度正确。")
-def knows_height(work):
-    slips = {
-        -0.05: NotYet(
-            en="-0.05 m is the height in the frame base_link; ask for base_footprint.",
-            zh="-0.05 m 是在 base_link 坐标系中的高度；请查询 base_footprint。",
-        ),
-        -0.06: NotYet(
-            en="-0.06 m is the height of base_footprint in the frame of the wheel: exchange the two frames.",
-            zh="-0.06 m 是 base_footprint 在轮子坐标系中的高度：请交换两个坐标系。",
-        ),
-        0.11: NotYet(en="0.11 m is the height of base_link.", zh="0.11 m 是 base_link 的高度。"),
-        0.19: NotYet(en="0.19 m is y, to the left; z is the last number.", zh="0.19 m 是 y，向左；z 是最后一个数。"),
-    }
-    work.expect_number(0.06, tolerance=0.003, slips=slips)

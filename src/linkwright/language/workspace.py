@@ -14,7 +14,7 @@ from linkwright.lint.checking import Checker, UniqueFindings
 from linkwright.lint.contexts import Contexts
 from linkwright.lint.finding import Finding, without_element
 from linkwright.lint.folders import Examined, relevant_findings, relevant_package_findings
-from linkwright.lint.targets import DESCRIPTIONS, Targets, walk
+from linkwright.lint.targets import DESCRIPTIONS, XML_FILES, Targets, walk
 from linkwright.packages import PackageFinder, enclosing_package
 from linkwright.packages.manifest import MANIFEST
 from linkwright.urdf import Robot, read
@@ -308,11 +308,17 @@ class Workspace:
         if subject.is_dir():
             diagnostics, trouble = self._checker.check_package(subject, overlay, Contexts())
             return (*trouble, *relevant_package_findings(diagnostics, [subject]))
+        if not self._is_xml(subject, texts):
+            return ()
         named = frozenset({subject}) if subject in texts else frozenset()
         targets = Targets((subject,), self.index.packages, named)
         checked, trouble = self._checker.check_file(subject, targets, overlay, Contexts())
         examined = Examined.of(checked, subject)
         return (*trouble, *relevant_findings(examined, [examined], targets, [subject]))
+
+    def _is_xml(self, file: Path, texts: Mapping[Path, str]) -> bool:
+        """Return whether a file is XML by its name, or else by its text."""
+        return file.name.endswith((*XML_FILES, ".xml")) or (self.text(file, texts) or "").lstrip().startswith("<")
 
     def _of_files(self, files: set[Path]) -> dict[Path, list[Diagnostic]]:
         """Return the findings about some files, of all subjects, without duplicates."""

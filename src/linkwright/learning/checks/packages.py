@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from contextlib import AbstractContextManager
 from functools import partial
 from pathlib import Path, PurePosixPath
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import yaml
 
@@ -23,6 +24,9 @@ from linkwright.packages import PackageFinder
 from linkwright.xacro import expand
 from linkwright.xmltree import Element, Overlay, parse_file
 from linkwright.xmltree.positions import attribute_value_range
+
+if TYPE_CHECKING:
+    from linkwright.testing import SteppedSimulation
 
 
 class FileFolder:
@@ -136,6 +140,20 @@ class FileFolder:
             explain_missing=partial(explain_missing, path, self.finder),
             explain_unread=partial(describe_unread, path),
         )
+
+    def simulate(self, name: str) -> AbstractContextManager[SteppedSimulation]:
+        """Return a simulation of the robot of a file in an empty world, as ``linkwright drive`` completes the robot.
+
+        Args:
+            name: the path in the folder.
+
+        Raises:
+            NotYet: the file is missing or not valid; or, at the start of the simulation, the robot cannot be driven.
+        """
+        from linkwright.learning.checks.driven import simulate_completed
+
+        self.robot(name)
+        return simulate_completed(self.file(name), self.finder)
 
     def yaml(self, name: str) -> Any:
         """Return the data of a YAML file.

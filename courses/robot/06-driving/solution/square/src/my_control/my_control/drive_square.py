@@ -10,6 +10,10 @@ from rclpy.signals import SignalHandlerOptions
 CORNERS = [(1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (0.0, 0.0)]
 
 
+def yaw_of(orientation):
+    return 2 * math.atan2(orientation.z, orientation.w)
+
+
 class DriveSquare(Node):
     def __init__(self):
         super().__init__('drive_square')
@@ -22,8 +26,7 @@ class DriveSquare(Node):
             self.drive(0.0)
             return
         position = message.pose.pose.position
-        q = message.pose.pose.orientation
-        yaw = math.atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z))
+        yaw = yaw_of(message.pose.pose.orientation)
         x, y = CORNERS[self.next_corner]
         distance = math.hypot(x - position.x, y - position.y)
         error = math.remainder(math.atan2(y - position.y, x - position.x) - yaw, math.tau)
