@@ -112,6 +112,23 @@ def test_the_solution_is_taken_after_a_question(start, open_page, workspace):
     assert (workspace / "robot.urdf").read_text() == ROBOT.read_text()
 
 
+def test_a_learner_who_jumps_to_a_later_step_catches_up(start, open_page, workspace):
+    workspace.mkdir()
+    (workspace / "robot.urdf").write_text("mine")
+    page = open_classroom(start, open_page, workspace)
+    assert page.locator(".checks-offer").is_hidden()
+    page.keyboard.press("Alt+PageDown")
+    page.get_by_role("button", name="Catch up").click()
+    assert page.locator("dialog li").all_inner_texts() == ["robot.urdf"]
+    page.get_by_role("button", name="Take over").click()
+    page.locator(".checks-offer").wait_for(state="hidden")
+    becomes((workspace / "robot.urdf").read_text, ROBOT.read_text())
+    (kept,) = (workspace / "replaced").rglob("robot.urdf")
+    assert kept.read_text() == "mine"
+    page.get_by_role("button", name="Steps").click()
+    page.locator(".outline-step[title*='taken over']").wait_for()
+
+
 def test_work_in_the_terminal_is_checked(start, open_page, workspace):
     page = open_classroom(start, open_page, workspace)
     until(page, "/[$#] *$/.test(lw.panels.terminal.text ?? '')")

@@ -79,6 +79,59 @@ def test_the_solution_of_a_step_that_asks_for_a_number_is_the_number(workspace, 
     assert (status, "LEARN113" in err) == (1, True)
 
 
+@pytest.fixture
+def grown_course(tmp_path, long_course):
+    """The same course, whose steps write a file each, and the lesson b another one to begin with."""
+    for step in ("a/one", "a/two", "b/one"):
+        lesson, name = step.split("/")
+        folder = tmp_path / "long" / lesson / "solution" / name
+        folder.mkdir(parents=True)
+        (folder / f"{lesson}-{name}.txt").write_text(step)
+        (folder / "all.txt").write_text(step)
+    return long_course
+
+
+def test_a_learner_takes_over_the_steps_before_a_step(workspace, capsys, grown_course):
+    (workspace / "all.txt").write_text("mine")
+    learn(capsys, "check", "a/one", "--course", grown_course)
+    before = (workspace / "learn.yaml").read_text()
+    status, out, err = learn(capsys, "catch-up", "b/two")
+    assert (status, out) == (1, "new: a-one.txt\nnew: a-two.txt\nnew: b-one.txt\nreplaced: all.txt\n")
+    assert "nothing was written" in err
+    assert [path.name for path in sorted(workspace.iterdir())] == ["all.txt", "learn.yaml"]
+    assert (workspace / "learn.yaml").read_text() == before
+
+    assert learn(capsys, "catch-up", "b/two", "--yes")[0] == 0
+    assert (workspace / "all.txt").read_text() == "b/one"
+    (kept,) = (workspace / "replaced").rglob("all.txt")
+    assert kept.read_text() == "mine"
+    _, out, _ = learn(capsys, "list")
+    assert "  ✓ one: One\n  → two: Two\n\nb: L\n  → one: One\n    two: Two\n" in out
+    assert "taken over from the course" in out
+    status, out, err = learn(capsys, "catch-up", "b/two")
+    assert (status, out, "nothing to write" in err) == (1, "", True)
+
+
+def test_what_was_replaced_twice_in_a_second_is_kept_twice(workspace, capsys, grown_course):
+    for text in ("first", "second"):
+        (workspace / "all.txt").write_text(text)
+        assert learn(capsys, "catch-up", "b/two", "--course", grown_course, "--yes")[0] == 0
+    kept = {path.read_text() for path in (workspace / "replaced").rglob("all.txt")}
+    assert kept == {"first", "second"}
+
+
+def test_a_failed_check_says_that_earlier_steps_are_not_done(workspace, capsys, grown_course, tmp_path):
+    checks = tmp_path / "long" / "b" / "checks.py"
+    checks.write_text(checks.read_text().replace("pass", "work.package('x')"))
+    status, out, _ = learn(capsys, "check", "b/one", "--course", grown_course)
+    assert (status, out.splitlines()[-1]) == (
+        1,
+        "steps before this one that are not done: 2; `linkwright learn catch-up b/one` takes them over from the course",
+    )
+    learn(capsys, "catch-up", "b/one", "--yes")
+    assert "catch-up" not in learn(capsys, "check", "b/one")[1]
+
+
 def test_the_result_is_data_in_all_languages(workspace, capsys):
     _, out, _ = learn(capsys, "check", "one-link", "--course", "example", "--json")
     result = json.loads(out)

@@ -237,3 +237,23 @@ def test_a_course_that_other_machines_could_reach_is_refused_with_advice_that_fi
     assert "VIEW104" in error
     assert "SSH tunnel" in error
     assert "--terminal" not in error
+
+
+async def test_the_steps_before_a_step_are_taken_over_after_a_question(tmp_path: Path) -> None:
+    workspace = tmp_path / "ws"
+    async with classroom(workspace) as client:
+        await client.until("course_step")
+        await client.send("open_step", address="01-one-link/mass")
+        step = await client.until("course_step", address="01-one-link/mass")
+        assert step["missing_count"] == 1
+        await client.send("ask_catch_up")
+        files = await client.until("catch_up_files")
+        assert (files["new"], files["replaced"]) == ([str(workspace / "robot.urdf")], [])
+        assert not (workspace / "robot.urdf").exists()
+        await client.send("catch_up")
+        course = await client.until("course")
+        first = course["lessons"][0]["steps"][0]
+        assert (first["is_passed"], first["is_taken_over"]) == (False, True)
+        step = await client.until("course_step")
+        assert step["missing_count"] == 0
+        assert (workspace / "robot.urdf").read_text() == ROBOT.read_text()

@@ -70,6 +70,9 @@ import type {
 import type { ImageFrame, ImageSize, OccupancyMap } from "./images";
 import type {
   AnswerStep,
+  AskCatchUp,
+  CatchUp,
+  CatchUpFiles,
   CheckStep,
   Course,
   CourseProblem,
@@ -253,6 +256,7 @@ export * from "./worlds";
 
 export type ServerMessage =
   | ArgumentForm
+  | CatchUpFiles
   | Clock
   | ComparedDescriptions
   | Configuration
@@ -348,6 +352,7 @@ export type PageMessage =
   | AimTeleop
   | AnswerStep
   | ApplyEdit
+  | AskCatchUp
   | AskConfigurationText
   | AskDescription
   | AskDescriptionText
@@ -365,6 +370,7 @@ export type PageMessage =
   | AskSourceFolder
   | AskWordsFile
   | BeginTake
+  | CatchUp
   | CenterJoints
   | ChangeEntities
   | ChangeSavedView

@@ -1,5 +1,5 @@
 import type { Connection } from "../connection/connection";
-import type { Course, CourseProblem, CourseStep, CourseStepItem, StepChecks } from "../protocol";
+import type { CatchUpFiles, Course, CourseProblem, CourseStep, CourseStepItem, StepChecks } from "../protocol";
 import { Signal } from "../signal";
 
 /** The course of the learner: its outline, the shown step, the results of its checks, and the page's requests. */
@@ -13,10 +13,14 @@ export class CourseState {
   course: Course | null = null;
   step: CourseStep | null = null;
   checks: StepChecks | null = null;
+  /** Emitted with the files of the course's state before the shown step, after `askCatchUp`. */
+  readonly catchUpAnswered = new Signal<CatchUpFiles>();
   /** Why the last request was not carried out. */
   problem: CourseProblem | null = null;
   /** Whether the connection is new, and the server has not sent a course yet. */
   private isUnknown = true;
+  /** Whether this page has asked for the files to catch up; all pages receive the answer. */
+  private hasAskedCatchUp = false;
 
   constructor(private readonly connection: Connection) {
     connection.on("hello", () => (this.isUnknown = true));
@@ -44,6 +48,11 @@ export class CourseState {
       this.checks = checks;
       this.changed.emit();
     });
+    connection.on("catch_up_files", (files) => {
+      const isAnswer = this.hasAskedCatchUp && files.address === this.step?.address;
+      this.hasAskedCatchUp = false;
+      if (isAnswer) this.catchUpAnswered.emit(files);
+    });
     connection.on("course_problem", (problem) => {
       this.problem = problem.message === "" ? null : problem;
       this.changed.emit();
@@ -68,6 +77,12 @@ export class CourseState {
   get isPassed(): boolean {
     const { checks, checked_at: checkedAt } = this.results ?? { checks: [], checked_at: null };
     return checkedAt !== null && checks.every(({ is_passed: isPassed }) => isPassed);
+  }
+
+  /** The number of earlier steps whose files the failing checks of the shown step may need. */
+  get missingCount(): number {
+    const isFailing = !this.isPassed && (this.results?.checked_at ?? null) !== null;
+    return isFailing ? (this.step?.missing_count ?? 0) : 0;
   }
 
   /** Returns the step that is `count` steps after the shown one, or undefined. */
@@ -96,6 +111,17 @@ export class CourseState {
 
   takeHint(): void {
     this.connection.send({ type: "take_hint" });
+  }
+
+  /** Requests the files of the course's state before the shown step. */
+  askCatchUp(): void {
+    this.hasAskedCatchUp = true;
+    this.connection.send({ type: "ask_catch_up" });
+  }
+
+  /** Takes over all steps before the shown one from the course. */
+  catchUp(): void {
+    this.connection.send({ type: "catch_up" });
   }
 
   takeSolution(): void {

@@ -4,19 +4,46 @@ from __future__ import annotations
 
 import math
 import shutil
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
+from dataclasses import dataclass
 from datetime import datetime, timezone
 from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, phrase
 from linkwright.learning.checks.results import StepResult
 from linkwright.learning.checks.running import check_in_process
-from linkwright.learning.course import DEFAULT_COURSE, Course, Step, courses_folder, find_course, load_course
+from linkwright.learning.course import (
+    DEFAULT_COURSE,
+    Course,
+    Step,
+    courses_folder,
+    files_below,
+    find_course,
+    load_course,
+)
 from linkwright.learning.progress import PROGRESS_FILE, Progress, read_progress, write_progress
 
 REPLACED_FOLDER = "replaced"
 """The folder of the workspace for files that a solution replaced."""
+
+
+@dataclass(frozen=True)
+class FilePlan:
+    """The files of a course that are to be written into the workspace.
+
+    Attributes:
+        new: the files that do not exist, with those of the course.
+        replaced: the files with another content, with those of the course.
+    """
+
+    new: Mapping[Path, Path]
+    replaced: Mapping[Path, Path]
+
+    @property
+    def files(self) -> Mapping[Path, Path]:
+        """All files to write, with those of the course."""
+        return {**self.new, **self.replaced}
 
 
 class Classroom:
@@ -72,9 +99,9 @@ class Classroom:
         """
         with _writing(self.workspace):
             copied = [
-                target
-                for source, target in _pairs(step.lesson.start, self.workspace)
-                if not target.exists() and _copy(source, target)
+                self.workspace / name
+                for name, source in files_below(step.lesson.start)
+                if not (self.workspace / name).exists() and _copy(source, self.workspace / name)
             ]
         if self.progress.step(step.address).started is None:
             self._note(step, started=_now())
@@ -122,7 +149,7 @@ class Classroom:
 
     def solution_files(self, step: Step) -> list[Path]:
         """Return the files of the workspace that the solution of a step writes."""
-        return [target for _, target in _pairs(step.solution, self.workspace)]
+        return [self.workspace / name for name, _ in files_below(step.solution)]
 
     def answer(self, step: Step, text: str) -> None:
         """Note the learner's answer to a step.
@@ -156,28 +183,75 @@ class Classroom:
         Raises:
             LinkwrightError: LEARN111, a file cannot be written; LEARN113, the step has no solution.
         """
-        pairs = list(_pairs(step.solution, self.workspace))
-        if not pairs and step.right_answer is None:
+        files = dict(files_below(step.solution))
+        if not files and step.right_answer is None:
             raise LinkwrightError(
                 Diagnostic("LEARN113", phrase("the step '{step}' has no solution", step=step.address))
             )
-        replaced = self.workspace / REPLACED_FOLDER / datetime.now().astimezone().strftime("%Y-%m-%d-%H%M%S")
-        written = []
-        with _writing(self.workspace):
-            for source, target in pairs:
-                if target.exists() and target.read_bytes() == source.read_bytes():
-                    continue
-                if target.exists():
-                    _copy(target, replaced / target.relative_to(self.workspace))
-                    (replaced.parent / "COLCON_IGNORE").touch()
-                _copy(source, target)
-                written.append(target)
+        written = self._write(self._plan(files))
         self._note(step, solution=True)
         return written
 
-    def _note(self, step: Step, **changes: object) -> None:
+    def steps_to_catch_up(self, step: Step) -> list[Step]:
+        """Return the steps before a step that write files and are neither passed nor taken over."""
+        before = self.course.steps[: self.course.steps.index(step)]
+        noted = [(each, self.progress.step(each.address)) for each in before]
+        return [each for each, done in noted if done.passed is None and not done.taken_over and each.solution.is_dir()]
+
+    def plan_catch_up(self, step: Step) -> FilePlan:
+        """Return which files must be written for the course's state before a step.
+
+        Raises:
+            LinkwrightError: LEARN111, a file cannot be read.
+        """
+        return self._plan(self.course.files_before(step))
+
+    def catch_up(self, step: Step) -> list[Path]:
+        """Bring the workspace into the course's state before a step, and note the steps before it as taken over.
+
+        Steps that are passed stay passed. Files with another content are kept as in `take_solution`.
+
+        Returns:
+            The files that were written.
+
+        Raises:
+            LinkwrightError: LEARN111, a file cannot be written.
+        """
+        written = self._write(self.plan_catch_up(step))
+        before = self.course.steps[: self.course.steps.index(step)]
+        missing = [each for each in before if self.progress.step(each.address).passed is None]
+        self._note(*missing, taken_over=True)
+        return written
+
+    def _plan(self, files: Mapping[Path, Path]) -> FilePlan:
+        """Return which of the files, by their paths in the workspace, differ from those of the workspace."""
+        with _writing(self.workspace):
+            targets = {self.workspace / name: source for name, source in files.items()}
+            new = {target: source for target, source in targets.items() if not target.exists()}
+            replaced = {
+                target: source
+                for target, source in targets.items()
+                if target not in new and target.read_bytes() != source.read_bytes()
+            }
+        return FilePlan(new, replaced)
+
+    def _write(self, plan: FilePlan) -> list[Path]:
+        """Write the files of a plan, and keep those that they replace."""
+        name = datetime.now().astimezone().strftime("%Y-%m-%d-%H%M%S")
+        folders = (self.workspace / REPLACED_FOLDER / f"{name}{suffix}" for suffix in ("", *range(-2, -100, -1)))
+        kept = next(folder for folder in folders if not folder.exists())
+        with _writing(self.workspace):
+            for target in plan.replaced:
+                _copy(target, kept / target.relative_to(self.workspace))
+                (kept.parent / "COLCON_IGNORE").touch()
+            for target, source in plan.files.items():
+                _copy(source, target)
+        return sorted(plan.files)
+
+    def _note(self, *steps: Step, **changes: object) -> None:
         self.reload()
-        self.progress = self.progress.with_step(step.address, **changes)
+        for step in steps:
+            self.progress = self.progress.with_step(step.address, **changes)
         with _writing(self.workspace):
             self.workspace.mkdir(parents=True, exist_ok=True)
             write_progress(self.workspace, self.progress)
@@ -231,13 +305,6 @@ def open_classroom(workspace: Path, course: str | None = None) -> Classroom:
         hint = phrase("name another folder, or rename its {file}", file=PROGRESS_FILE)
         raise LinkwrightError(Diagnostic("LEARN114", message, hint=hint))
     return Classroom(workspace, loaded, progress or Progress(known_name, {}))
-
-
-def _pairs(source: Path, target: Path) -> Iterator[tuple[Path, Path]]:
-    """Yield each file below a folder with its path below another one."""
-    for path in sorted(source.rglob("*")) if source.is_dir() else ():
-        if path.is_file() and "__pycache__" not in path.parts:
-            yield path, target / path.relative_to(source)
 
 
 def _copy(source: Path, target: Path) -> bool:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -150,6 +150,16 @@ class Course:
         """The steps of all lessons in order."""
         return tuple(step for lesson in self.lessons for step in lesson.steps)
 
+    def files_before(self, step: Step) -> dict[Path, Path]:
+        """Return the files of the course before a step, by their paths in the workspace.
+
+        They are the solutions of all steps before it, and the files with which their lessons begin.
+        """
+        files: dict[Path, Path] = {}
+        for earlier in self.steps[: self.steps.index(step)]:
+            files = {**dict(files_below(earlier.lesson.start)), **files, **dict(files_below(earlier.solution))}
+        return files
+
     def find_lessons(self, names: Sequence[str]) -> tuple[Lesson, ...]:
         """Return the lessons with the given names, or all lessons if there are none.
 
@@ -189,6 +199,13 @@ class Course:
                 hint=did_you_mean(name, names) or phrase("list the steps with `linkwright learn list`"),
             )
         )
+
+
+def files_below(folder: Path) -> Iterator[tuple[Path, Path]]:
+    """Yield the path in a folder of each file below it, and the file; none if the folder does not exist."""
+    for path in sorted(folder.rglob("*")) if folder.is_dir() else ():
+        if path.is_file() and "__pycache__" not in path.parts:
+            yield path.relative_to(folder), path
 
 
 def courses_folder() -> Path | None:

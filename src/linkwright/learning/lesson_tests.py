@@ -104,9 +104,9 @@ def test_lesson(course: Course, lesson: Lesson) -> Iterator[TestResult]:
     with ScratchFolder("lesson") as scratch, new_check_server() as server:
         workspace = Path(scratch) / "before"
         workspace.mkdir()
-        for step in _steps_before(course, lesson):
-            _overlay(step.lesson.start, workspace)
-            _overlay(step.solution, workspace)
+        for name, source in course.files_before(lesson.steps[0]).items():
+            (workspace / name).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy(source, workspace / name)
         _overlay(lesson.start, workspace)
         for step in lesson.steps:
             if step.id not in checks:
@@ -116,13 +116,6 @@ def test_lesson(course: Course, lesson: Lesson) -> Iterator[TestResult]:
 
 
 test_lesson.__test__ = False  # type: ignore[attr-defined]  # pytest would collect it
-
-
-def _steps_before(course: Course, lesson: Lesson) -> Iterator[Step]:
-    for earlier in course.lessons:
-        if earlier == lesson:
-            return
-        yield from earlier.steps
 
 
 def _test_step(

@@ -30,6 +30,7 @@ class StepProgress:
         passed: when all checks were satisfied first; None if they never were.
         hints: the number of hints taken.
         solution: whether the solution was taken.
+        taken_over: whether the learner took the step over from the course, to begin at a later step.
         answer: the number that the learner answered, as text; None if there is none.
     """
 
@@ -37,6 +38,7 @@ class StepProgress:
     passed: datetime | None = None
     hints: int = 0
     solution: bool = False
+    taken_over: bool = False
     answer: str | None = None
 
     def to_data(self) -> dict[str, Any]:
@@ -97,8 +99,8 @@ def _read_step(values: Mapping[str, Any]) -> StepProgress:
     step = StepProgress(**values)
     if step.answer is not None:
         step = replace(step, answer=_read_answer(step.answer))
-    if type(step.hints) is not int or type(step.solution) is not bool:
-        raise ValueError("a number of hints, and whether the solution was taken, are expected")
+    if type(step.hints) is not int or type(step.solution) is not bool or type(step.taken_over) is not bool:
+        raise ValueError("a number of hints, and whether the solution or the step was taken over, are expected")
     if not all(value is None or isinstance(value, datetime) for value in (step.started, step.passed)):
         raise ValueError("a date and time is expected")
     return step

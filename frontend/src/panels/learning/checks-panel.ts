@@ -5,6 +5,7 @@ import type { CourseState } from "../../state/course";
 import { languageTag, strings } from "../../strings";
 import { keyText, SHORTCUTS } from "../../widgets/shortcuts";
 import type { Panel } from "../panel";
+import { askToCatchUp } from "./catch-up";
 import { localText } from "./local-text";
 
 /** The results of the checks of the shown step. */
@@ -15,6 +16,8 @@ export class ChecksPanel implements Panel {
   private readonly empty = h("p", { class: "empty" }, strings.learning.off);
   private readonly status = h("span", { class: "checks-status", role: "status" });
   private readonly list = h("ul", { class: "checks-list" });
+  private readonly offerText = h("span");
+  private readonly offer: HTMLElement;
   private readonly next: HTMLButtonElement;
   private readonly content: HTMLElement;
 
@@ -22,13 +25,16 @@ export class ChecksPanel implements Panel {
     const words = strings.learning;
     const check = button(`${words.checkHint} (${keyText(SHORTCUTS.checkStep)})`, () => state.check(), "tool framed", words.check);
     this.next = button(`${words.nextHint} (${keyText(SHORTCUTS.nextStep)})`, () => state.move(1), "tool framed primary", words.nextStep);
+    this.offer = h("div", { class: "checks-offer" }, this.offerText, button(words.catchUpHint, () => state.askCatchUp(), "tool framed", words.catchUp));
     this.content = h(
       "div",
       { class: "checks" },
       h("header", { class: "checks-head" }, this.status, h("span", { class: "spacer" }), check, this.next),
+      this.offer,
       h("div", { class: "scroll", role: "group", tabIndex: 0, aria: { label: words.checks } }, this.list),
     );
     this.element = h("div", { class: "panel checks-panel" }, this.empty, this.content);
+    state.catchUpAnswered.on((files) => askToCatchUp(state, files));
     state.changed.on(coalesced(() => this.update()));
     this.update();
   }
@@ -41,6 +47,8 @@ export class ChecksPanel implements Panel {
     this.status.textContent = this.statusText();
     this.element.classList.toggle("running", results?.is_running === true);
     this.element.classList.toggle("passed", state.isPassed);
+    this.offer.hidden = state.missingCount === 0;
+    this.offerText.textContent = strings.learning.missingSteps(state.missingCount);
     this.next.hidden = !state.isPassed || state.neighbor(1) === undefined;
     this.list.replaceChildren(...(results?.checks ?? []).map((check) => row(check)));
   }

@@ -1,5 +1,6 @@
 import { button, h } from "../../dom";
 import { icon } from "../../icons";
+import type { CourseStepItem } from "../../protocol";
 import type { CourseState } from "../../state/course";
 import { strings } from "../../strings";
 import { localText } from "./local-text";
@@ -24,19 +25,21 @@ export class Outline {
           "section",
           {},
           h("h3", {}, `${index + 1}. ${localText(title)}`),
-          ...steps.map(({ address, title: name, is_passed: isPassed }) => this.row(address, localText(name), isPassed)),
+          ...steps.map((step) => this.row(step, localText(step.title))),
         ),
       ),
     );
   }
 
-  private row(address: string, name: string, isPassed: boolean): HTMLElement {
+  private row({ address, is_passed: isPassed, is_taken_over: isTakenOver }: CourseStepItem, name: string): HTMLElement {
     const open = (): void => {
       this.state.open(address);
       this.onChosen();
     };
-    const mark = isPassed ? icon("check", "level-ok") : h("span", { class: "outline-mark" });
-    const row = button(isPassed ? strings.learning.passedStep(name) : name, open, "outline-step", mark, name);
+    const words = strings.learning;
+    const mark = isPassed ? icon("check", "level-ok") : isTakenOver ? icon("download") : h("span", { class: "outline-mark" });
+    const title = isPassed ? words.passedStep(name) : isTakenOver ? words.takenOverStep(name) : name;
+    const row = button(title, open, "outline-step", mark, name);
     if (address === this.state.step?.address) row.setAttribute("aria-current", "step");
     return row;
   }

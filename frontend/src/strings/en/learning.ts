@@ -1,3 +1,5 @@
+import { plural } from "./plural";
+
 /** Texts of the panels Lesson and Checks. */
 export const learning = {
   lesson: "Lesson",
@@ -7,6 +9,15 @@ export const learning = {
   outlineHint: "Show all lessons and steps",
   place: (lesson: string, passed: number, count: number): string => `${lesson} · ${passed} of ${count} steps passed`,
   passedStep: (name: string): string => `${name} (passed)`,
+  takenOverStep: (name: string): string => `${name} (taken over from the course)`,
+  missingSteps: (count: number): string => `${plural(count, "earlier step")} ${count === 1 ? "is" : "are"} not done. These checks may need ${count === 1 ? "its" : "their"} files.`,
+  catchUp: "Catch up…",
+  catchUpHint: "Take over from the course all steps before this one",
+  catchUpTitle: "Take over the steps before this one?",
+  catchUpText: "The files of all steps before this one are copied from the course. The steps are marked as taken over, not as passed.",
+  catchUpReplaced: (count: number): string => `${plural(count, "file")} of yours ${count === 1 ? "is" : "are"} replaced. Your versions are moved to the folder “replaced” of the workspace:`,
+  catchUpNew: (count: number): string => `${plural(count, "file")} ${count === 1 ? "is" : "are"} new:`,
+  catchUpTake: "Take over",
   back: "Back",
   backHint: "Show the previous step",
   next: "Next",
@@ -18,7 +29,7 @@ export const learning = {
   solution: "Solution",
   solutionHint: "Copy the solution of this step into your workspace, or show the number",
   solutionTitle: "Take the solution?",
-  solutionText: "These files are written. Your own versions are moved to the folder `replaced` of the workspace.",
+  solutionText: "These files are written. Your own versions are moved to the folder “replaced” of the workspace.",
   solutionNumber: "The right number is shown below the text.",
   solutionTake: "Take the solution",
   files: "Files",

@@ -1,4 +1,4 @@
-"""``linkwright learn list``, ``show``, ``check``, ``answer``, ``hint`` and ``solution``: a course in the terminal."""
+"""``linkwright learn list``, ``show``, ``check`` and others: a course in the terminal."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from linkwright.learning.classroom import Classroom
     from linkwright.learning.course import Step
 
-_PASSED, _MISSING = "✓", "✗"
+_PASSED, _MISSING, _TAKEN_OVER = "✓", "✗", "→"
 
 
 def _add_workspace(parser: argparse.ArgumentParser) -> None:
@@ -62,8 +62,11 @@ def run_list(arguments: argparse.Namespace) -> int:
     for lesson in classroom.course.lessons:
         print(f"\n{lesson.id}: {lesson.title.get(lang)}")
         for step in lesson.steps:
-            passed = classroom.progress.step(step.address).passed is not None
-            print(f"  {_PASSED if passed else ' '} {step.id}: {step.title.get(lang)}")
+            noted = classroom.progress.step(step.address)
+            mark = _PASSED if noted.passed is not None else _TAKEN_OVER if noted.taken_over else " "
+            print(f"  {mark} {step.id}: {step.title.get(lang)}")
+    if any(noted.taken_over for noted in classroom.progress.steps.values()):
+        print(f"\n{_TAKEN_OVER} {localized(phrase('taken over from the course'))}")
     return 0
 
 
@@ -114,6 +117,14 @@ def run_check(arguments: argparse.Namespace) -> int:
         if following.address != step.address:
             print(localized(phrase("passed; the next step is {step}", step=following.address)))
         return 0
+    if count := len(classroom.steps_to_catch_up(step)):
+        command = f"linkwright learn catch-up {step.address}"
+        message = phrase(
+            "steps before this one that are not done: {count}; `{command}` takes them over from the course",
+            count=count,
+            command=command,
+        )
+        print(localized(message))
     return 1
 
 
@@ -165,6 +176,40 @@ def run_solution(arguments: argparse.Namespace) -> int:
     if step.right_answer is not None:
         print(localized(phrase("the answer is {answer}", answer=_with_unit(step.right_answer, step.unit))))
     return 0
+
+
+def configure_catch_up(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments of ``learn catch-up``."""
+    _add_step(parser)
+    _add_workspace(parser)
+    parser.add_argument("--yes", action="store_true", help="write the files; without it, they are only listed")
+
+
+def run_catch_up(arguments: argparse.Namespace) -> int:
+    """List or write the files of the course's state before a step; return 1 if files are only listed."""
+    from linkwright.learning.classroom import REPLACED_FOLDER
+
+    classroom = _open(arguments)
+    step = _step(classroom, arguments)
+    plan = classroom.plan_catch_up(step)
+    for path in sorted(plan.new):
+        print(localized(phrase("new: {path}", path=display_path(path))))
+    for path in sorted(plan.replaced):
+        print(localized(phrase("replaced: {path}", path=display_path(path))))
+    if arguments.yes:
+        classroom.catch_up(step)
+        message = phrase("the workspace has the course's files of all steps before {step}", step=step.address)
+    elif plan.files:
+        message = phrase(
+            "nothing was written; add --yes to write these files; replaced ones are moved to the folder '{folder}'",
+            folder=REPLACED_FOLDER,
+        )
+    else:
+        message = phrase(
+            "there is nothing to write; add --yes to mark the steps before {step} as taken over", step=step.address
+        )
+    print(localized(message), file=sys.stderr)
+    return 0 if arguments.yes else 1
 
 
 def _with_unit(number: str, unit: str | None) -> str:

@@ -56,6 +56,8 @@ class CourseGuide(Guide):
             messages.AnswerStep: self._answer,
             messages.TakeHint: self._take_hint,
             messages.TakeSolution: self._take_solution,
+            messages.AskCatchUp: lambda _: self._publish(self._catch_up_files()),
+            messages.CatchUp: self._catch_up,
         }
         self._open(self._step)
 
@@ -99,6 +101,18 @@ class CourseGuide(Guide):
         self._on_changed(self._room.shown_file(self._step))
         self._check()
 
+    def _catch_up_files(self) -> messages.CatchUpFiles:
+        plan = self._room.plan_catch_up(self._step)
+        new, replaced = (sorted(map(str, files)) for files in (plan.new, plan.replaced))
+        return messages.CatchUpFiles(self._step.address, new, replaced)
+
+    def _catch_up(self, _: messages.CatchUp) -> None:
+        self._room.catch_up(self._step)
+        self._publish(self._course())
+        self._publish(self._shown_step())
+        self._on_changed(self._room.shown_file(self._step))
+        self._check()
+
     def _show_result(self, step: Step, result: StepResult) -> None:
         items = [_check_item(check) for check in result.checks]
         self._results[step.address] = messages.StepChecks(
@@ -117,16 +131,17 @@ class CourseGuide(Guide):
             messages.CourseLesson(
                 lesson.id,
                 lesson.title.texts,
-                [
-                    messages.CourseStepItem(
-                        step.address, step.title.texts, is_passed=room.progress.step(step.address).passed is not None
-                    )
-                    for step in lesson.steps
-                ],
+                [self._step_item(step) for step in lesson.steps],
             )
             for lesson in room.course.lessons
         ]
         return messages.Course(room.course.title.texts, str(room.workspace), lessons)
+
+    def _step_item(self, step: Step) -> messages.CourseStepItem:
+        noted = self._room.progress.step(step.address)
+        return messages.CourseStepItem(
+            step.address, step.title.texts, is_passed=noted.passed is not None, is_taken_over=noted.taken_over
+        )
 
     def _shown_step(self) -> messages.CourseStep:
         room = self._room
@@ -155,6 +170,7 @@ class CourseGuide(Guide):
             unit=step.unit,
             answer=noted.answer,
             right_answer=step.right_answer if noted.solution else None,
+            missing_count=len(room.steps_to_catch_up(step)),
         )
 
     def _checks(self) -> messages.StepChecks:

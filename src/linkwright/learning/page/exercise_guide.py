@@ -103,7 +103,9 @@ class ExerciseGuide(Guide):
             client.call_async(client.srv_type.Request())
 
     def _course(self) -> messages.Course:
-        item = messages.CourseStepItem(self._exercise.id, self._exercise.title.texts, is_passed=False)
+        item = messages.CourseStepItem(
+            self._exercise.id, self._exercise.title.texts, is_passed=False, is_taken_over=False
+        )
         lesson = messages.CourseLesson(self._exercise.id, self._exercise.title.texts, [item])
         return messages.Course(self._exercise.title.texts, str(self._program.parent), [lesson])
 
@@ -123,6 +125,7 @@ class ExerciseGuide(Guide):
             unit=None,
             answer=None,
             right_answer=None,
+            missing_count=0,
         )
 
     def _checks(self) -> messages.StepChecks:

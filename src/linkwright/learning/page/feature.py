@@ -15,7 +15,15 @@ from linkwright.panels.page_feature import FeatureHost, PageFeature
 class CourseFeature(PageFeature):
     """The feature of a course or an exercise, which ignores all requests before `show`."""
 
-    RECEIVES = (messages.AnswerStep, messages.CheckStep, messages.OpenStep, messages.TakeHint, messages.TakeSolution)
+    RECEIVES = (
+        messages.AnswerStep,
+        messages.AskCatchUp,
+        messages.CatchUp,
+        messages.CheckStep,
+        messages.OpenStep,
+        messages.TakeHint,
+        messages.TakeSolution,
+    )
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)

@@ -12,11 +12,15 @@ from linkwright.page.protocol.message import PageMessage, Record, ServerMessage
 
 
 class CourseStepItem(Record):
-    """A step in the outline of a course. `address` is ``LESSON/STEP``."""
+    """A step in the outline of a course.
+
+    `address` is ``LESSON/STEP``. `is_taken_over` is whether the learner took it over from the course.
+    """
 
     address: str
     title: dict[str, str]
     is_passed: bool
+    is_taken_over: bool
 
 
 class CourseLesson(Record):
@@ -46,6 +50,8 @@ class CourseStep(ServerMessage):
     `files` those of them that the page shows or the text mentions, both as absolute paths. `unit` is the unit of the
     number that the step asks for, or None if it asks for none. `answer` is the learner's answer as text. `right_answer`
     is the right one, or None before the learner has taken the solution. `has_solution` is whether there is a solution.
+    `missing_count` is the number of steps before it whose files the step may need, and which are neither passed nor
+    taken over.
     """
 
     address: str
@@ -61,6 +67,7 @@ class CourseStep(ServerMessage):
     unit: str | None
     answer: str | None
     right_answer: str | None
+    missing_count: int
 
 
 class StepCheck(Record):
@@ -93,6 +100,14 @@ class CourseProblem(ServerMessage):
     hint: str
 
 
+class CatchUpFiles(ServerMessage):
+    """The files that `CatchUp` would write, as absolute paths. Response to `AskCatchUp`."""
+
+    address: str
+    new: list[str]
+    replaced: list[str]
+
+
 class OpenStep(PageMessage):
     """A request to show a step."""
 
@@ -115,3 +130,11 @@ class TakeHint(PageMessage):
 
 class TakeSolution(PageMessage):
     """A request to copy the solution of the shown step into the workspace."""
+
+
+class AskCatchUp(PageMessage):
+    """A request for the files that `CatchUp` would write."""
+
+
+class CatchUp(PageMessage):
+    """A request to bring the workspace into the course's state before the shown step."""
