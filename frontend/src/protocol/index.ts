@@ -165,12 +165,14 @@ import type {
   CloseTerminal,
   LeaveTerminal,
   OpenTerminal,
+  ProgramPages,
   ResizeTerminal,
   RestartTerminal,
   ShowTerminal,
   TerminalInputLost,
   TerminalOutput,
   Terminals,
+  WatchProgramPages,
   WriteTerminal,
 } from "./terminal";
 import type { EditorAttached, ElementSelected, ShowElement } from "./text-editor";
@@ -304,6 +306,7 @@ export type ServerMessage =
   | Playhead
   | PointFields
   | ProgramIsLate
+  | ProgramPages
   | PropertyChanged
   | RecordingState
   | RobotScene
@@ -454,6 +457,7 @@ export type PageMessage =
   | WatchNavigation
   | WatchNodeGraph
   | WatchParameters
+  | WatchProgramPages
   | WatchSeries
   | WatchTopics
   | WatchVoice
