@@ -41,6 +41,7 @@ import { livePanels } from "./panels/monitor/live-panels";
 import { showTopic } from "./panels/monitor/show-topic";
 import { ScenePanel } from "./panels/over-scene/scene-panel";
 import type { PanelId } from "./panels/panel";
+import { ProgramPanel } from "./panels/terminal/program-panel";
 import { TerminalPanel } from "./panels/terminal/terminal-panel";
 import { TimeFold } from "./panels/timeline/time-fold";
 import { TimePanel } from "./panels/timeline/time-panel";
@@ -134,6 +135,7 @@ function start(app: HTMLElement): void {
     new EditingPanel(session),
     voice,
     terminal,
+    new ProgramPanel(session.terminals),
     lesson,
     new ChecksPanel(session.course),
     ...livePanels(session.monitor, (id) => dock.open(id), (topic) => showTopic(session, topic)),
@@ -214,6 +216,7 @@ function followAvailability(dock: Dock, session: Session): void {
   const followComparison = openWhile(dock, "comparison", () => session.comparison.compared !== null);
   const followCourse = (["lesson", "checks"] as const).map((id) => openWhile(dock, id, () => session.course.isAvailable));
   const followTerminals = openWhile(dock, "terminal", () => session.terminals.isAvailable);
+  const followPrograms = openWhile(dock, "program", () => session.terminals.programs.length > 0);
   const { displays } = session;
   const pruneDisplayPanels = (): void => dock.displayPanels.prune(displays.displays.map(({ id }) => id));
   const countFindings = (): void => dock.setCount("diagnostics", session.diagnostics.length + displays.failingCount);
@@ -222,6 +225,10 @@ function followAvailability(dock: Dock, session: Session): void {
   session.modelling.changed.on(followWorld);
   session.comparison.changed.on(followComparison);
   session.terminals.availabilityChanged.on(followTerminals);
+  session.terminals.programsChanged.on((hasNew) => {
+    followPrograms();
+    if (hasNew) dock.open("program");
+  });
   session.course.availabilityChanged.on(() => followCourse.forEach((follow) => follow()));
   displays.treeChanged.on(pruneDisplayPanels);
   session.diagnosticsChanged.on(countFindings);
@@ -233,6 +240,7 @@ function followAvailability(dock: Dock, session: Session): void {
     followWorld();
     followComparison();
     followTerminals();
+    followPrograms();
     followCourse.forEach((follow) => follow());
     pruneDisplayPanels();
     countFindings();

@@ -118,6 +118,7 @@ export class TitleBar {
       ...dock.ids
         .filter((id) => id !== "joints" || this.session.joints.controls !== null)
         .filter((id) => id !== "terminal" || this.session.terminals.isAvailable)
+        .filter((id) => id !== "program" || this.session.terminals.programs.length > 0)
         .map((id) => ({
           label: strings.panels[id],
           checked: dock.isOpen(id),

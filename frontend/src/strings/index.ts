@@ -2,6 +2,7 @@ import { LANGUAGES, type Language } from "../protocol/languages";
 import { Signal } from "../signal";
 import { browserStorage } from "../storage";
 import { en, type Strings } from "./en";
+import { takeRequestedLanguage } from "./requested-language";
 import { zh } from "./zh";
 
 export type { Language };
@@ -16,8 +17,11 @@ function languageOf(tag: string): Language | undefined {
   return ALL.find((language) => language === tag.toLowerCase().split("-")[0]);
 }
 
+const requested = languageOf(takeRequestedLanguage(globalThis.location, globalThis.history) ?? "");
+if (requested) browserStorage().setItem(LANGUAGE_KEY, requested);
+
 export const language: Language =
-  languageOf(browserStorage().getItem(LANGUAGE_KEY) ?? "") ?? languageOf(navigator.language) ?? FALLBACK;
+  requested ?? languageOf(browserStorage().getItem(LANGUAGE_KEY) ?? "") ?? languageOf(navigator.language) ?? FALLBACK;
 
 /** Its tag, for the document. */
 export const languageTag: string = LANGUAGES[language];

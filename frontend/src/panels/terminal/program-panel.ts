@@ -1,0 +1,81 @@
+import { button, h } from "../../dom";
+import type { ProgramPage } from "../../protocol";
+import type { TerminalsState } from "../../state/terminals";
+import { language, strings } from "../../strings";
+import { withLanguage } from "../../strings/requested-language";
+import type { Panel } from "../panel";
+
+/** The page of a program may download files and open tabs, but not replace this page. */
+const SANDBOX = "allow-scripts allow-same-origin allow-downloads allow-forms allow-modals allow-popups allow-popups-to-escape-sandbox allow-pointer-lock";
+const FEATURES = "fullscreen; microphone; gamepad; clipboard-read; clipboard-write";
+
+/** The pages of programs in the terminals: a tab for each, and the page of the chosen one in a frame. */
+export class ProgramPanel implements Panel {
+  readonly id = "program";
+  readonly icon = "play";
+  readonly element: HTMLElement;
+  private readonly empty = h("p", { class: "empty" }, strings.terminal.noProgram);
+  private readonly tabs = h("div", { class: "segmented program-tabs", role: "group", aria: { label: strings.terminal.programs } });
+  private readonly bar: HTMLElement;
+  private readonly place = h("div", { class: "program-place" });
+  private readonly frames = new Map<number, HTMLIFrameElement>();
+  private current: ProgramPage | undefined;
+
+  constructor(private readonly state: TerminalsState) {
+    const words = strings.terminal;
+    const open = button(words.openProgramHint, () => this.openTab(), "tool", words.openProgram);
+    this.bar = h("div", { class: "toolbar" }, this.tabs, h("span", { class: "spacer" }), open);
+    this.element = h("div", { class: "panel program-panel" }, this.empty, this.bar, this.place);
+    state.programsChanged.on(() => this.update());
+    this.update();
+  }
+
+  /** Follows the programs: removes the pages of those that ended, and shows a new one. */
+  private update(): void {
+    const { programs } = this.state;
+    for (const [id, frame] of this.frames) {
+      if (programs.some((program) => program.id === id)) continue;
+      frame.remove();
+      this.frames.delete(id);
+    }
+    if (!programs.some(({ id }) => id === this.current?.id)) this.current = programs.at(-1);
+    for (const program of programs) {
+      if (this.frames.has(program.id)) continue;
+      this.current = program;
+      const frame = makeFrame(program);
+      this.frames.set(program.id, frame);
+      this.place.append(frame);
+    }
+    this.empty.hidden = programs.length > 0;
+    this.bar.hidden = this.place.hidden = programs.length === 0;
+    this.show();
+  }
+
+  private show(): void {
+    for (const [id, frame] of this.frames) frame.hidden = id !== this.current?.id;
+    const tabs = this.state.programs.map((program) => {
+      const isCurrent = program.id === this.current?.id;
+      const tab = button(program.title, () => this.choose(program), isCurrent ? "on" : "", program.title || strings.panels.program);
+      tab.setAttribute("aria-pressed", String(isCurrent));
+      return tab;
+    });
+    this.tabs.replaceChildren(...tabs);
+  }
+
+  private choose(program: ProgramPage): void {
+    this.current = program;
+    this.show();
+  }
+
+  private openTab(): void {
+    if (this.current) window.open(withLanguage(this.current.url, language), "_blank", "noopener");
+  }
+}
+
+function makeFrame({ title, url }: ProgramPage): HTMLIFrameElement {
+  const frame = h("iframe", { title: title || strings.panels.program });
+  frame.setAttribute("sandbox", SANDBOX);
+  frame.allow = FEATURES;
+  frame.src = withLanguage(url, language);
+  return frame;
+}
