@@ -18,7 +18,7 @@ import "./styles/editing.css";
 import "./styles/learning.css";
 import { Connection, socketUrl } from "./connection/connection";
 import { Tokens, type AddressBar } from "./connection/tokens";
-import { coalesced, h } from "./dom";
+import { button, coalesced, h, isFramed } from "./dom";
 import { publishInspection } from "./inspection";
 import { ComparisonPanel } from "./panels/description/comparison-panel";
 import { DiagnosticsPanel } from "./panels/description/diagnostics-panel";
@@ -78,7 +78,7 @@ import type { CourseState } from "./state/course";
 import { Session } from "./state/session";
 import { ThemeState } from "./state/theme";
 import { browserStorage } from "./storage";
-import { language, languageChosen, languageTag } from "./strings";
+import { language, languageChosen, languageTag, strings } from "./strings";
 import { matches, SHORTCUTS } from "./widgets/shortcuts";
 
 const CLOSING_MS = 2000;
@@ -177,7 +177,13 @@ function start(app: HTMLElement): void {
     loadPartHandles(stage, session, (made) => (handles = made));
   }
   const files = new FileCommands(session.configuration);
-  app.prepend(new TitleBar(session, dock, files, new RecordingDrop(session, tokens), theme, new ShareMenu(session, stage, tokens)).element);
+  const titleBar = new TitleBar(session, dock, files, new RecordingDrop(session, tokens), theme, new ShareMenu(session, stage, tokens));
+  app.prepend(titleBar.element);
+  if (isFramed()) {
+    document.documentElement.classList.add("framed");
+    const openTab = (): unknown => window.open(tokens.link, "_blank", "noopener");
+    titleBar.element.append(button(strings.shell.openTabHint, openTab, "tool", strings.shell.openTab));
+  }
   bindFileKeys(session, files);
   bindCourseKeys(session.course);
   const fold = new TimeFold(session.time, dock.strip);

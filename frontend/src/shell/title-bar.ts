@@ -56,7 +56,7 @@ export class TitleBar {
       button(
         words.languageHint,
         changeLanguage,
-        "tool",
+        "tool language-button",
         icon("language"),
         words.language,
       ),
@@ -192,7 +192,7 @@ function themeButton(theme: ThemeState): HTMLButtonElement {
     }));
     openMenu(element, entries);
   };
-  const element = button(words.theme, choose, "tool bare", icon("system"));
+  const element = button(words.theme, choose, "tool bare theme-button", icon("system"));
   element.setAttribute("aria-haspopup", "menu");
   const show = (): void => element.replaceChildren(icon(theme.theme === "light" ? "light" : "dark"));
   theme.changed.on(show);

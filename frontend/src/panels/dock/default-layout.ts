@@ -1,4 +1,5 @@
 import type { AddPanelOptions, Direction, DockviewApi } from "dockview";
+import { isFramed } from "../../dom";
 import { strings } from "../../strings";
 import type { PanelId } from "../panel";
 
@@ -160,7 +161,7 @@ function narrowHome(api: DockviewApi, id: PanelId): Placement {
   if (id === "scene") return PLACEMENTS.scene;
   const others = (Object.keys(PLACEMENTS) as PanelId[]).filter((each) => each !== "scene" && each !== id);
   const beside: Placement["beside"] = [...others.map((other) => [other, "within"] as const), ["scene", "below"]];
-  const lines = TOOLS_HEIGHT + (window.innerWidth < FOOT_WRAPS ? FOOT_LINE : 0);
+  const lines = TOOLS_HEIGHT + (window.innerWidth < FOOT_WRAPS && !isFramed() ? FOOT_LINE : 0);
   const left = api.height - lines - SCENE_SHARE * window.innerHeight;
   return { beside, height: Math.round(Math.min(left, api.height * MAX_BELOW_SHARE)), inactive: !IN_FRONT.includes(id) };
 }

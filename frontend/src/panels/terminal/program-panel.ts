@@ -9,7 +9,7 @@ import type { Panel } from "../panel";
 const SANDBOX = "allow-scripts allow-same-origin allow-downloads allow-forms allow-modals allow-popups allow-popups-to-escape-sandbox allow-pointer-lock";
 const FEATURES = "fullscreen; microphone; gamepad; clipboard-read; clipboard-write";
 
-/** The pages of programs in the terminals: a tab for each, and the page of the chosen one in a frame. */
+/** The pages of programs in the terminals, each in a frame; buttons choose one of several. */
 export class ProgramPanel implements Panel {
   readonly id = "program";
   readonly icon = "play";
@@ -22,9 +22,7 @@ export class ProgramPanel implements Panel {
   private current: ProgramPage | undefined;
 
   constructor(private readonly state: TerminalsState) {
-    const words = strings.terminal;
-    const open = button(words.openProgramHint, () => this.openTab(), "tool", words.openProgram);
-    this.bar = h("div", { class: "toolbar" }, this.tabs, h("span", { class: "spacer" }), open);
+    this.bar = h("div", { class: "toolbar" }, this.tabs);
     this.element = h("div", { class: "panel program-panel" }, this.empty, this.bar, this.place);
     state.programsChanged.on(() => this.update());
     this.update();
@@ -47,7 +45,8 @@ export class ProgramPanel implements Panel {
       this.place.append(frame);
     }
     this.empty.hidden = programs.length > 0;
-    this.bar.hidden = this.place.hidden = programs.length === 0;
+    this.place.hidden = programs.length === 0;
+    this.bar.hidden = programs.length < 2;
     this.show();
   }
 
@@ -65,10 +64,6 @@ export class ProgramPanel implements Panel {
   private choose(program: ProgramPage): void {
     this.current = program;
     this.show();
-  }
-
-  private openTab(): void {
-    if (this.current) window.open(withLanguage(this.current.url, language), "_blank", "noopener");
   }
 }
 

@@ -27,7 +27,5 @@ export const terminal = {
   program: "Program",
   programs: "Programs",
   noProgram: "The page of a program appears here when you start the program in the terminal.",
-  openProgram: "Open in a tab",
-  openProgramHint: "Open the page of this program in a tab of the browser",
   inputLost: "The program in this terminal does not read its input, and part of the input was discarded.",
 };

@@ -28,7 +28,5 @@ export const terminal: typeof english = {
   program: "程序",
   programs: "程序",
   noProgram: "在终端中启动程序后，它的页面显示在这里。",
-  openProgram: "在标签页中打开",
-  openProgramHint: "在浏览器的标签页中打开此程序的页面",
   inputLost: "此终端中的程序没有读取输入，部分输入已丢弃。",
 };
