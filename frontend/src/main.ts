@@ -76,7 +76,8 @@ import { StatusBar } from "./shell/status-bar";
 import { TitleBar } from "./shell/title-bar";
 import type { CourseState } from "./state/course";
 import { Session } from "./state/session";
-import { ThemeState } from "./state/theme";
+import { THEME_CHOICES, ThemeState } from "./state/theme";
+import { takeRequested } from "./requested-settings";
 import { browserStorage } from "./storage";
 import { language, languageChosen, languageTag, strings } from "./strings";
 import { matches, SHORTCUTS } from "./widgets/shortcuts";
@@ -86,6 +87,9 @@ const CLOSING_MS = 2000;
 function start(app: HTMLElement): void {
   document.documentElement.lang = languageTag;
   const theme = new ThemeState(document.documentElement, browserStorage(), matchMedia("(prefers-color-scheme: light)"));
+  const requestedTheme = takeRequested("theme", location, history);
+  const themeChoice = THEME_CHOICES.find((each) => each === requestedTheme);
+  if (themeChoice) theme.choose(themeChoice);
   const own = hasOwnDisplays(location.href) ? ownKey(browserStorage("sessionStorage")) : null;
   const tokens = new Tokens(addressBar(), browserStorage());
   const connection = new Connection(socketUrl(location.href, own, language), tokens);
@@ -135,7 +139,7 @@ function start(app: HTMLElement): void {
     new EditingPanel(session),
     voice,
     terminal,
-    new ProgramPanel(session.terminals),
+    new ProgramPanel(session.terminals, theme),
     lesson,
     new ChecksPanel(session.course),
     ...livePanels(session.monitor, (id) => dock.open(id), (topic) => showTopic(session, topic)),

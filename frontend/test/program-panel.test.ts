@@ -1,8 +1,8 @@
 import { describe, expect, it, vi } from "vitest";
 import { Connection } from "../src/connection/connection";
 import type { ProgramPage, ServerMessage } from "../src/protocol";
+import { takeRequested, withSettings } from "../src/requested-settings";
 import { TerminalsState } from "../src/state/terminals";
-import { takeRequestedLanguage, withLanguage } from "../src/strings/requested-language";
 
 const WORLD: ProgramPage = { id: 1, title: "world", url: "http://127.0.0.1:7449/?token=abc" };
 
@@ -39,15 +39,15 @@ describe("the pages of programs", () => {
   });
 });
 
-describe("the language of a program's page", () => {
-  it("is that of the page around it", () => {
-    const address = withLanguage(WORLD.url, "zh");
-    expect(address).toBe("http://127.0.0.1:7449/?token=abc&language=zh");
-    const replaceState = vi.fn<(state: unknown, unused: string, url: URL) => void>();
-    const history = { state: null, replaceState } as unknown as History;
-    expect(takeRequestedLanguage({ href: address } as Location, history)).toBe("zh");
-    expect(replaceState.mock.calls[0]?.[2].href).toBe(WORLD.url);
-    expect(takeRequestedLanguage({ href: WORLD.url } as Location, history)).toBeNull();
-    expect(takeRequestedLanguage(undefined, undefined)).toBeNull();
+describe("the settings of a program's page", () => {
+  it("are those of the page around it, and do not stay in its address", () => {
+    const address = withSettings(WORLD.url, { language: "zh", theme: "dark" });
+    expect(address).toBe("http://127.0.0.1:7449/?token=abc&language=zh&theme=dark");
+    const location = { href: address };
+    const history = { state: null, replaceState: (_: unknown, unused: string, url: URL) => (location.href = url.href + unused) };
+    const take = (setting: "language" | "theme"): string | null => takeRequested(setting, location as Location, history as unknown as History);
+    expect([take("language"), take("theme"), take("theme")]).toEqual(["zh", "dark", null]);
+    expect(location.href).toBe(WORLD.url);
+    expect(takeRequested("language", undefined, undefined)).toBeNull();
   });
 });

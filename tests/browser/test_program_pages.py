@@ -57,6 +57,10 @@ def test_it_is_shown_until_the_program_ends(page):
     page.keyboard.press("?")
     frame.wait_for_selector("dialog[open]")
     page.keyboard.press("Escape")
+    page.locator(".title-bar .theme-button").click()
+    page.get_by_role("menuitemcheckbox", name="Dark").click()
+    (frame,) = frames_of(page)
+    frame.wait_for_selector("html[data-theme=dark]", state="attached")
     page.get_by_role("button", name="中文").click()  # loads both pages again
     page.wait_for_selector("text=程序")
     (frame,) = frames_of(page)

@@ -1,8 +1,8 @@
 import { LANGUAGES, type Language } from "../protocol/languages";
+import { takeRequested } from "../requested-settings";
 import { Signal } from "../signal";
 import { browserStorage } from "../storage";
 import { en, type Strings } from "./en";
-import { takeRequestedLanguage } from "./requested-language";
 import { zh } from "./zh";
 
 export type { Language };
@@ -17,7 +17,7 @@ function languageOf(tag: string): Language | undefined {
   return ALL.find((language) => language === tag.toLowerCase().split("-")[0]);
 }
 
-const requested = languageOf(takeRequestedLanguage(globalThis.location, globalThis.history) ?? "");
+const requested = languageOf(takeRequested("language", globalThis.location, globalThis.history) ?? "");
 if (requested) browserStorage().setItem(LANGUAGE_KEY, requested);
 
 export const language: Language =

@@ -1,8 +1,9 @@
 import { button, h } from "../../dom";
 import type { ProgramPage } from "../../protocol";
+import { withSettings } from "../../requested-settings";
 import type { TerminalsState } from "../../state/terminals";
+import type { ThemeState } from "../../state/theme";
 import { language, strings } from "../../strings";
-import { withLanguage } from "../../strings/requested-language";
 import type { Panel } from "../panel";
 
 /** The page of a program may download files and open tabs, but not replace this page. */
@@ -21,10 +22,14 @@ export class ProgramPanel implements Panel {
   private readonly frames = new Map<number, HTMLIFrameElement>();
   private current: ProgramPage | undefined;
 
-  constructor(private readonly state: TerminalsState) {
+  constructor(
+    private readonly state: TerminalsState,
+    private readonly theme: ThemeState,
+  ) {
     this.bar = h("div", { class: "toolbar" }, this.tabs);
     this.element = h("div", { class: "panel program-panel" }, this.empty, this.bar, this.place);
     state.programsChanged.on(() => this.update());
+    theme.changed.on(() => this.load());
     this.update();
   }
 
@@ -40,14 +45,24 @@ export class ProgramPanel implements Panel {
     for (const program of programs) {
       if (this.frames.has(program.id)) continue;
       this.current = program;
-      const frame = makeFrame(program);
+      const frame = makeFrame(program.title);
       this.frames.set(program.id, frame);
       this.place.append(frame);
     }
     this.empty.hidden = programs.length > 0;
     this.place.hidden = programs.length === 0;
     this.bar.hidden = programs.length < 2;
+    this.load();
     this.show();
+  }
+
+  /** Loads the pages whose address has changed, because it requests another theme. */
+  private load(): void {
+    for (const { id, url } of this.state.programs) {
+      const frame = this.frames.get(id);
+      const address = withSettings(url, { language, theme: this.theme.choice });
+      if (frame && frame.src !== address) frame.src = address;
+    }
   }
 
   private show(): void {
@@ -67,10 +82,9 @@ export class ProgramPanel implements Panel {
   }
 }
 
-function makeFrame({ title, url }: ProgramPage): HTMLIFrameElement {
+function makeFrame(title: string): HTMLIFrameElement {
   const frame = h("iframe", { title: title || strings.panels.program });
   frame.setAttribute("sandbox", SANDBOX);
   frame.allow = FEATURES;
-  frame.src = withLanguage(url, language);
   return frame;
 }
