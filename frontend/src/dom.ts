@@ -37,6 +37,11 @@ export function button(label: string, onClick: () => void, className: string, ..
   return element;
 }
 
+/** Returns whether another page shows this one in a frame, as a page with terminals does. */
+export function isFramed(): boolean {
+  return window.parent !== window;
+}
+
 /** Returns a function that runs `work` once before the next paint, however often it is called. */
 export function coalesced(work: () => void): () => void {
   let due = false;

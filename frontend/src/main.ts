@@ -18,7 +18,7 @@ import "./styles/editing.css";
 import "./styles/learning.css";
 import { Connection, socketUrl } from "./connection/connection";
 import { Tokens, type AddressBar } from "./connection/tokens";
-import { coalesced, h } from "./dom";
+import { button, coalesced, h, isFramed } from "./dom";
 import { publishInspection } from "./inspection";
 import { ComparisonPanel } from "./panels/description/comparison-panel";
 import { DiagnosticsPanel } from "./panels/description/diagnostics-panel";
@@ -41,6 +41,7 @@ import { livePanels } from "./panels/monitor/live-panels";
 import { showTopic } from "./panels/monitor/show-topic";
 import { ScenePanel } from "./panels/over-scene/scene-panel";
 import type { PanelId } from "./panels/panel";
+import { ProgramPanel } from "./panels/terminal/program-panel";
 import { TerminalPanel } from "./panels/terminal/terminal-panel";
 import { TimeFold } from "./panels/timeline/time-fold";
 import { TimePanel } from "./panels/timeline/time-panel";
@@ -76,9 +77,10 @@ import { StatusBar } from "./shell/status-bar";
 import { TitleBar } from "./shell/title-bar";
 import type { CourseState } from "./state/course";
 import { Session } from "./state/session";
-import { ThemeState } from "./state/theme";
+import { THEME_CHOICES, ThemeState } from "./state/theme";
+import { takeRequested } from "./requested-settings";
 import { browserStorage } from "./storage";
-import { language, languageChosen, languageTag } from "./strings";
+import { language, languageChosen, languageTag, strings } from "./strings";
 import { matches, SHORTCUTS } from "./widgets/shortcuts";
 
 const CLOSING_MS = 2000;
@@ -88,6 +90,9 @@ const CONFIGURATION_PANELS: readonly PanelId[] = ["displays", "views", "tool-pro
 function start(app: HTMLElement): void {
   document.documentElement.lang = languageTag;
   const theme = new ThemeState(document.documentElement, browserStorage(), matchMedia("(prefers-color-scheme: light)"));
+  const requestedTheme = takeRequested("theme", location, history);
+  const themeChoice = THEME_CHOICES.find((each) => each === requestedTheme);
+  if (themeChoice) theme.choose(themeChoice);
   const own = hasOwnDisplays(location.href) ? ownKey(browserStorage("sessionStorage")) : null;
   const tokens = new Tokens(addressBar(), browserStorage());
   const connection = new Connection(socketUrl(location.href, own, language), tokens);
@@ -137,6 +142,7 @@ function start(app: HTMLElement): void {
     new EditingPanel(session),
     voice,
     terminal,
+    new ProgramPanel(session.terminals, theme),
     lesson,
     new ChecksPanel(session.course),
     ...livePanels(session.monitor, (id) => dock.open(id), (topic) => showTopic(session, topic)),
@@ -178,7 +184,13 @@ function start(app: HTMLElement): void {
     loadPartHandles(stage, session, (made) => (handles = made));
   }
   const files = new FileCommands(session.configuration);
-  app.prepend(new TitleBar(session, dock, files, new RecordingDrop(session, tokens), theme, new ShareMenu(session, stage, tokens)).element);
+  const titleBar = new TitleBar(session, dock, files, new RecordingDrop(session, tokens), theme, new ShareMenu(session, stage, tokens));
+  app.prepend(titleBar.element);
+  if (isFramed()) {
+    document.documentElement.classList.add("framed");
+    const openTab = (): unknown => window.open(tokens.link, "_blank", "noopener");
+    titleBar.element.append(button(strings.shell.openTabHint, openTab, "tool", strings.shell.openTab));
+  }
   bindFileKeys(session.configuration, files, source, panels.filter(({ id }) => CONFIGURATION_PANELS.includes(id)).map(({ element }) => element));
   bindCourseKeys(session.course);
   const fold = new TimeFold(session.time, dock.strip);
@@ -217,6 +229,7 @@ function followAvailability(dock: Dock, session: Session): void {
   const followComparison = openWhile(dock, "comparison", () => session.comparison.compared !== null);
   const followCourse = (["lesson", "checks"] as const).map((id) => openWhile(dock, id, () => session.course.isAvailable));
   const followTerminals = openWhile(dock, "terminal", () => session.terminals.isAvailable);
+  const followPrograms = openWhile(dock, "program", () => session.terminals.programs.length > 0);
   const { displays } = session;
   const pruneDisplayPanels = (): void => dock.displayPanels.prune(displays.displays.map(({ id }) => id));
   const countFindings = (): void => dock.setCount("diagnostics", session.diagnostics.length + displays.failingCount);
@@ -225,6 +238,10 @@ function followAvailability(dock: Dock, session: Session): void {
   session.modelling.changed.on(followWorld);
   session.comparison.changed.on(followComparison);
   session.terminals.availabilityChanged.on(followTerminals);
+  session.terminals.programsChanged.on((hasNew) => {
+    followPrograms();
+    if (hasNew) dock.open("program");
+  });
   session.course.availabilityChanged.on(() => followCourse.forEach((follow) => follow()));
   displays.treeChanged.on(pruneDisplayPanels);
   session.diagnosticsChanged.on(countFindings);
@@ -236,6 +253,7 @@ function followAvailability(dock: Dock, session: Session): void {
     followWorld();
     followComparison();
     followTerminals();
+    followPrograms();
     followCourse.forEach((follow) => follow());
     pruneDisplayPanels();
     countFindings();

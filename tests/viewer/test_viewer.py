@@ -19,9 +19,9 @@ from linkwright.nodes import NodeOptions
 from linkwright.nodes.joint_state_publisher_gui import JointStatePublisherGui
 from linkwright.nodes.robot_state_publisher import RobotStatePublisher
 from linkwright.packages import PackageFinder
-from linkwright.page import server
+from linkwright.page import listening, server
+from linkwright.page.listening import listen
 from linkwright.page.protocol.message import PROTOCOL_VERSION
-from linkwright.page.server import listen
 from linkwright.panels.joints import JointsFeature
 from linkwright.rviz import RvizConfig
 from linkwright.viewer import Viewer
@@ -305,8 +305,8 @@ async def test_a_taken_port_leaves_no_node_behind():
 @pytest.mark.parametrize("times", [1, 2])
 @pytest.mark.parametrize("steps", range(1, 6))
 async def test_a_start_that_is_broken_off_leaves_no_node_and_no_socket_behind(steps, times, monkeypatch):
-    listening = []
-    monkeypatch.setattr(server, "listen", lambda host, port: listening.append(listen(host, port)) or listening[0])
+    listeners = []
+    monkeypatch.setattr(listening, "listen", lambda host, port: listeners.append(listen(host, port)) or listeners[0])
     made = World()
     start = asyncio.ensure_future(made.viewer.start())
     for _ in range(steps):
@@ -318,7 +318,7 @@ async def test_a_start_that_is_broken_off_leaves_no_node_and_no_socket_behind(st
     await asyncio.wait([start])
     if not broken_off:  # it had started: ended as ever
         await made.viewer.close()
-    assert listening[0].fileno() == -1
+    assert listeners[0].fileno() == -1
     assert made.graph.node_names() == ["/publishers"]
     await made.graph.close()
 
@@ -327,13 +327,13 @@ async def test_it_listens_no_longer_where_a_part_of_it_cannot_be_started(monkeyp
     def fail(feature):
         raise OSError("the disk is full")
 
-    listening = []
-    monkeypatch.setattr(server, "listen", lambda host, port: listening.append(listen(host, port)) or listening[0])
+    listeners = []
+    monkeypatch.setattr(listening, "listen", lambda host, port: listeners.append(listen(host, port)) or listeners[0])
     monkeypatch.setattr(JointsFeature, "start", fail)
     made = World()
     with pytest.raises(OSError, match="the disk is full"):
         await made.viewer.start()
-    assert listening[0].fileno() == -1
+    assert listeners[0].fileno() == -1
     assert made.graph.node_names() == ["/publishers"]
     await made.graph.close()
 

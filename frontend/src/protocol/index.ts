@@ -168,12 +168,14 @@ import type {
   CloseTerminal,
   LeaveTerminal,
   OpenTerminal,
+  ProgramPages,
   ResizeTerminal,
   RestartTerminal,
   ShowTerminal,
   TerminalInputLost,
   TerminalOutput,
   Terminals,
+  WatchProgramPages,
   WriteTerminal,
 } from "./terminal";
 import type { EditorAttached, ElementSelected, ShowElement } from "./text-editor";
@@ -308,6 +310,7 @@ export type ServerMessage =
   | Playhead
   | PointFields
   | ProgramIsLate
+  | ProgramPages
   | PropertyChanged
   | RecordingState
   | RobotScene
@@ -460,6 +463,7 @@ export type PageMessage =
   | WatchNavigation
   | WatchNodeGraph
   | WatchParameters
+  | WatchProgramPages
   | WatchSeries
   | WatchTopics
   | WatchVoice

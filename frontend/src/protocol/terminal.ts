@@ -31,6 +31,24 @@ export interface TerminalInputLost {
   type: "terminal_input_lost";
 }
 
+/** The page of a program in a terminal. `url` contains its token. */
+export interface ProgramPage {
+  id: number;
+  title: string;
+  url: string;
+}
+
+/** The pages of the programs in terminals, oldest first. */
+export interface ProgramPages {
+  pages: ProgramPage[];
+  type: "program_pages";
+}
+
+/** A request to receive the pages of programs in terminals. */
+export interface WatchProgramPages {
+  type: "watch_program_pages";
+}
+
 /** A request to start a shell in a new terminal, which the page then shows. */
 export interface OpenTerminal {
   columns: number;

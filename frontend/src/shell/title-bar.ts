@@ -56,7 +56,7 @@ export class TitleBar {
       button(
         words.languageHint,
         changeLanguage,
-        "tool",
+        "tool language-button",
         icon("language"),
         words.language,
       ),
@@ -118,6 +118,7 @@ export class TitleBar {
       ...dock.ids
         .filter((id) => id !== "joints" || this.session.joints.controls !== null)
         .filter((id) => id !== "terminal" || this.session.terminals.isAvailable)
+        .filter((id) => id !== "program" || this.session.terminals.programs.length > 0)
         .map((id) => ({
           label: strings.panels[id],
           checked: dock.isOpen(id),
@@ -191,7 +192,7 @@ function themeButton(theme: ThemeState): HTMLButtonElement {
     }));
     openMenu(element, entries);
   };
-  const element = button(words.theme, choose, "tool bare", icon("system"));
+  const element = button(words.theme, choose, "tool bare theme-button", icon("system"));
   element.setAttribute("aria-haspopup", "menu");
   const show = (): void => element.replaceChildren(icon(theme.theme === "light" ? "light" : "dark"));
   theme.changed.on(show);

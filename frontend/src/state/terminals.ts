@@ -1,5 +1,5 @@
 import type { Connection } from "../connection/connection";
-import type { TerminalItem, TerminalOutput } from "../protocol";
+import type { ProgramPage, TerminalItem, TerminalOutput } from "../protocol";
 import { Signal } from "../signal";
 
 /** The size of a terminal in characters. */
@@ -22,9 +22,13 @@ export class TerminalsState {
   readonly output = new Signal<TerminalOutput>();
   /** Emitted with the number of a terminal whose program does not read its input. */
   readonly inputLost = new Signal<number>();
+  /** Emitted when the pages of programs have changed, with whether one is new. */
+  readonly programsChanged = new Signal<boolean>();
   /** The folder in which shells start. */
   folder = "";
   items: readonly TerminalItem[] = [];
+  /** The pages of the programs in terminals, oldest first. */
+  programs: readonly ProgramPage[] = [];
   /** Why the last request was refused, or empty. */
   whyNot = "";
   private isAvailableNow = false;
@@ -38,6 +42,7 @@ export class TerminalsState {
   constructor(private readonly connection: Connection) {
     connection.on("hello", ({ run }) => this.onHello(run));
     connection.on("terminals", ({ folder, terminals, why_not: whyNot }) => {
+      if (this.isUnknown && folder !== "") connection.send({ type: "watch_program_pages" });
       [this.folder, this.items, this.whyNot] = [folder, this.isUnknown ? this.withoutLost(terminals) : terminals, whyNot];
       this.isUnknown = false;
       this.setAvailable(folder !== "");
@@ -48,6 +53,7 @@ export class TerminalsState {
       if (this.isUnknown) this.setAvailable(false);
       this.isUnknown = false;
     });
+    connection.on("program_pages", ({ pages }) => this.setPrograms(pages));
     connection.on("terminal_output", (message) => this.output.emit(message));
     connection.on("terminal_input_lost", ({ terminal }) => this.inputLost.emit(terminal));
   }
@@ -111,9 +117,16 @@ export class TerminalsState {
     return items.map((item) => (item.shown === "elsewhere" && this.shownBefore.has(item.id) ? { ...item, shown: "nowhere" } : item));
   }
 
+  private setPrograms(pages: readonly ProgramPage[]): void {
+    const known = this.programs.map(({ id, url }) => `${id} ${url}`);
+    this.programs = pages;
+    this.programsChanged.emit(pages.some(({ id, url }) => !known.includes(`${id} ${url}`)));
+  }
+
   private setAvailable(isAvailable: boolean): void {
     if (isAvailable === this.isAvailableNow) return;
     this.isAvailableNow = isAvailable;
+    if (!isAvailable) this.setPrograms([]);
     this.availabilityChanged.emit();
   }
 }

@@ -1,4 +1,5 @@
 import { LANGUAGES, type Language } from "../protocol/languages";
+import { takeRequested } from "../requested-settings";
 import { Signal } from "../signal";
 import { browserStorage } from "../storage";
 import { en, type Strings } from "./en";
@@ -16,8 +17,11 @@ function languageOf(tag: string): Language | undefined {
   return ALL.find((language) => language === tag.toLowerCase().split("-")[0]);
 }
 
+const requested = languageOf(takeRequested("language", globalThis.location, globalThis.history) ?? "");
+if (requested) browserStorage().setItem(LANGUAGE_KEY, requested);
+
 export const language: Language =
-  languageOf(browserStorage().getItem(LANGUAGE_KEY) ?? "") ?? languageOf(navigator.language) ?? FALLBACK;
+  requested ?? languageOf(browserStorage().getItem(LANGUAGE_KEY) ?? "") ?? languageOf(navigator.language) ?? FALLBACK;
 
 /** Its tag, for the document. */
 export const languageTag: string = LANGUAGES[language];

@@ -79,7 +79,7 @@ class ViewerHost:
             self._release_port(plan)
             raise
         self._servers[plan.process_name] = server
-        self._announce(server)
+        await self._announce(server)
 
     def _create_server(self, plan: HostedPlan) -> PageServer:
         from linkwright.page.page_server import PageServer
@@ -92,9 +92,13 @@ class ViewerHost:
             needs_terminal=options.needs_terminal,
         )
 
-    def _announce(self, server: PageServer) -> None:
+    async def _announce(self, server: PageServer) -> None:
+        """Print the address of a page, and open it where the user looks: in the page of this terminal, or a browser."""
+        options = self._session.options
         self._session.log.announce(f"Viewer: {server.url}")
-        if self._session.options.open_browser and not server.pages_wait:
+        if not options.open_browser or await server.embed(os.environ, options.title):
+            return
+        if not server.pages_wait:
             _open_in_browser(server.url)
 
     async def start(
@@ -146,7 +150,7 @@ class ViewerHost:
         if session.options.terminal is not None:
             from linkwright.panels.terminal.feature import TerminalFeature
 
-            viewer.add_feature(TerminalFeature).enable(session.options.terminal)
+            viewer.add_feature(TerminalFeature).enable(session.options.terminal, programs=server.program_pages)
         await viewer.start()
         self._viewers[plan.process_name] = plan, viewer
         if plan.viewer_started is not None:
@@ -154,8 +158,8 @@ class ViewerHost:
         if session.options.viewer_started is not None:
             session.options.viewer_started(viewer)
         if not is_announced:
-            self._announce(server)
-        if session.options.open_browser and server.pages_wait:
+            await self._announce(server)
+        if session.options.open_browser and server.pages_wait and not server.is_embedded:
             session.spawn(self._open_unless_reconnected(viewer))
         replaced_window = "RViz" if plan.owner is not None else "Gazebo's window"
         session.log.write_info(

@@ -204,13 +204,18 @@ def _is_same_origin(origin: str, host: str) -> bool:
     return url.scheme in ("http", "https") and url.netloc.lower() == host.lower()
 
 
-def security_headers(host: str) -> dict[str, str]:
+def security_headers(host: str, *, frames: str = "'none'", frame_ancestors: str = "'none'") -> dict[str, str]:
     """Return the security headers for every response.
 
     Scripts are loaded only from the server's files. They may evaluate text, because browser automation does so to wait
     for a condition on ``window.linkwright``. The scripts of the page never do, and no foreign text can reach them
     without inline scripts. Inline styles are allowed because the dock and the property grid need them. The page may
     also create images and workers.
+
+    Args:
+        host: the Host header of the request.
+        frames: the pages that the page may show in frames, as a source list of a content security policy.
+        frame_ancestors: the origins whose pages may show the page in a frame, as a source list.
     """
     policy = {
         "default-src": "'none'",
@@ -220,10 +225,11 @@ def security_headers(host: str) -> dict[str, str]:
         "font-src": "'self' data:",
         "connect-src": f"'self' ws://{host} wss://{host} data: blob:",
         "worker-src": "'self' blob:",
+        "frame-src": frames,
         "manifest-src": "'self'",
         "base-uri": "'none'",
         "form-action": "'none'",
-        "frame-ancestors": "'none'",
+        "frame-ancestors": frame_ancestors,
     }
     return {
         "Content-Security-Policy": "; ".join(f"{name} {value}" for name, value in policy.items()),

@@ -109,6 +109,7 @@ class Page:
         may_be_own_user: returns whether the page's browser or tunnel may run as the user of this program; see
             `peers.may_be_own_user`.
         language: the language of the page's user, one of `LANGUAGES`; None to send texts untranslated.
+        origin: the origin of the page, such as ``http://127.0.0.1:7448``.
     """
 
     def __init__(
@@ -119,8 +120,10 @@ class Page:
         is_here: bool = False,
         may_be_own_user: Callable[[], bool] = lambda: False,
         language: str | None = None,
+        origin: str = "",
     ) -> None:
         self.outbox = Outbox()
+        self.origin = origin
         self.language = language
         self.own = configuration_name
         self.is_here = is_here

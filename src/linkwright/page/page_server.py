@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 from linkwright.page.access import Gate, PortToken, load_token, new_token, store_pages_wait
 from linkwright.page.files import Downloads, MeshFolders
+from linkwright.page.program_pages import Embedder, ProgramPages
 
 if TYPE_CHECKING:
+    from asyncio import StreamWriter
+
     from linkwright.page.audience import Audience
     from linkwright.page.server import WebServer
     from linkwright.page.uploads import Guests
@@ -30,6 +34,7 @@ class PageServer:
         url: the address to open in a browser, including the token; empty before `open`.
         is_open_to_others: whether other machines can reach the server.
         web: the server that handles requests; None before `open`.
+        program_pages: the pages of programs in terminals of the page; None if the page has no terminals.
     """
 
     def __init__(
@@ -44,6 +49,8 @@ class PageServer:
         self._only_loopback = only_loopback
         self._needs_terminal = needs_terminal
         self._port_token: tuple[int, PortToken] | None = None
+        self.program_pages = ProgramPages() if only_loopback else None
+        self._embedding: StreamWriter | None = None
 
     async def open(self) -> None:
         """Start listening, and serve the files of the page.
@@ -54,7 +61,8 @@ class PageServer:
             LinkwrightError: VIEW101 to VIEW103, the server cannot listen at the address; VIEW104, other machines could
                 reach it.
         """
-        from linkwright.page.server import WebServer, is_open_to_others, listen
+        from linkwright.page.listening import is_open_to_others, listen
+        from linkwright.page.server import WebServer
 
         listener = listen(self.host, self._port)
         self.is_open_to_others = is_open_to_others(listener)
@@ -65,13 +73,39 @@ class PageServer:
             port = listener.getsockname()[1]
             self._port_token = port, load_token(port)
         gate = Gate(self.host, self._port_token[1].token if self._port_token else new_token())
-        self.web = WebServer(gate, self.meshes, self.downloads)
+        self.web = WebServer(gate, self.meshes, self.downloads, program_pages=self.program_pages)
         self.url = await self.web.start(listener)
 
     def show(self, audience: Audience, guests: Guests | None) -> None:
         """Admit pages, see `WebServer.show`."""
         if self.web is not None:
             self.web.show(audience, guests)
+
+    @property
+    def is_embedded(self) -> bool:
+        """Whether a page in whose terminal this program runs shows the page of this server in a frame."""
+        return self._embedding is not None
+
+    async def embed(self, environment: Mapping[str, str], title: str) -> bool:
+        """Show the page in a frame of the page in whose terminal this program runs.
+
+        Pages that have terminals, or that other machines can reach, are never shown in frames.
+
+        Args:
+            environment: the environment variables of this program.
+            title: the title of the frame.
+
+        Returns:
+            Whether the page is shown there.
+        """
+        embedder = Embedder.of(environment)
+        if self.web is None or embedder is None or self.program_pages is not None or self.is_open_to_others:
+            return False
+        self.web.frame_ancestor = embedder.origin
+        self._embedding = await embedder.show(self.url, title)
+        if self._embedding is None and self.web is not None:
+            self.web.frame_ancestor = None
+        return self.is_embedded
 
     @property
     def pages_wait(self) -> bool:
@@ -89,6 +123,9 @@ class PageServer:
 
     async def close(self) -> None:
         """Close the connections to pages and stop listening."""
+        if self._embedding is not None:
+            self._embedding.close()
+            self._embedding = None
         web, self.web = self.web, None
         if web is not None:
             await web.close()

@@ -1,11 +1,9 @@
-"""The web server: its listening socket, the page, its WebSocket, and its files."""
+"""The web server: the page, its WebSocket, and its files."""
 
 from __future__ import annotations
 
 import asyncio
-import errno
 import gzip
-import ipaddress
 import os
 import re
 import socket
@@ -16,16 +14,18 @@ from pathlib import Path
 from typing import TYPE_CHECKING, cast
 from urllib.parse import quote
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
 from linkwright.page.access import TOKEN_PARAMETER, Admission, Gate, is_from_here, security_headers
 from linkwright.page.files import CONTENT_TYPES, IMAGE_TYPES, Downloads, FileRefusedError, MeshFolders
 from linkwright.page.http_server import SERVER_LOGGER, web
+from linkwright.page.listening import url_of
 from linkwright.page.peers import may_be_own_user
+from linkwright.page.program_pages import FRAME_SOURCES, PATH
 
 if TYPE_CHECKING:
     from collections.abc import Awaitable, Callable, Mapping
 
     from linkwright.page.audience import Audience
+    from linkwright.page.program_pages import ProgramPages
     from linkwright.page.uploads import Guests, Uploads
 
 PAGE_FOLDER = Path(__file__).parent / "built"
@@ -47,6 +47,7 @@ _MIN_PACKED_SIZE, _MAX_PACKED_RATIO, _PACKING_LEVEL = 4096, 0.9, 1
 """The minimum size of a mesh to compress, the ratio below which the result is sent, and the level of gzip. The next
 levels take twice the time and save another tenth."""
 
+_NO_STORE = "no-store"
 _CLOSE_TIMEOUT = 0.5
 """Seconds for a page to answer a closing handshake, and for a request to end."""
 
@@ -74,12 +75,6 @@ _PAGE_TYPES = {
     ".webmanifest": "application/manifest+json",
     ".txt": "text/plain; charset=utf-8",
 }
-
-DEFAULT_PORT = 7448
-"""The port after 7447, on which Zenoh routers listen (decision 0066)."""
-
-_PORT_COUNT = 10
-_WILDCARDS = {"0.0.0.0": "127.0.0.1", "::": "::1"}  # noqa: S104 - not bound here, only replaced in URLs
 
 MAX_UNSENT_BYTES = 16 * 1024
 """The number of unsent bytes, in the program and again in the operating system, above which writers wait."""
@@ -109,9 +104,22 @@ class WebServer:
         meshes: the folders that pages may read from.
         downloads: files that were generated for pages.
         page_folder: the folder of the built page.
+        program_pages: the pages of programs, which the page shows in frames; None to show none.
+
+    Attributes:
+        frame_ancestor: the origin whose pages may show the page in a frame; None for no page.
     """
 
-    def __init__(self, gate: Gate, meshes: MeshFolders, downloads: Downloads, page_folder: Path = PAGE_FOLDER) -> None:
+    def __init__(
+        self,
+        gate: Gate,
+        meshes: MeshFolders,
+        downloads: Downloads,
+        page_folder: Path = PAGE_FOLDER,
+        program_pages: ProgramPages | None = None,
+    ) -> None:
+        self.frame_ancestor: str | None = None
+        self._program_pages = program_pages
         self._gate = gate
         self._meshes = meshes
         self._downloads = downloads
@@ -140,6 +148,8 @@ class WebServer:
         application.router.add_post(
             "/export/{key}/{name}", self._require_token(partial(self._upload, self._show_own_recording))
         )
+        if self._program_pages is not None:
+            application.router.add_post(f"{PATH}{{key}}", self._program_pages.receive)
         application.router.add_get("/{path:.+}", self._page_file)
         self._runner = web.AppRunner(
             application,
@@ -211,8 +221,9 @@ class WebServer:
 
     async def _add_headers(self, request: web.Request, response: web.StreamResponse) -> None:
         host = request.host if self._gate.knows(request.host) else "localhost"
-        response.headers.update(security_headers(host))
-        response.headers.setdefault("Cache-Control", "no-store")
+        frames = "'none'" if self._program_pages is None else FRAME_SOURCES
+        response.headers.update(security_headers(host, frames=frames, frame_ancestors=self.frame_ancestor or "'none'"))
+        response.headers.setdefault("Cache-Control", _NO_STORE)
 
     # --- handlers of requests ----------------------------------------------------------------------------------
 
@@ -220,7 +231,9 @@ class WebServer:
         index = self._page_folder / "index.html"
         if not index.is_file():
             return web.Response(status=503, text=_NOT_BUILT)
-        return await self._page_response(request, index, _PAGE_TYPES[".html"], "no-cache")
+        # Browsers may apply a stored security policy to an unchanged page, and different programs use the same port.
+        is_stored = self._program_pages is None and self.frame_ancestor is None
+        return await self._page_response(request, index, _PAGE_TYPES[".html"], "no-cache" if is_stored else _NO_STORE)
 
     async def _proof(self, request: web.Request) -> web.Response:
         """Prove to a page that this program also has the token. See `Gate.proof`."""
@@ -267,8 +280,10 @@ class WebServer:
                 raise _not_found() from None
             if cached is None or file_version.body is not None:
                 cached = self._page_contents[path, unpack] = file_version
-        headers = {"Cache-Control": cache, "ETag": cached.tag, **(encoding_headers or {})}
-        if cached.body is None or cached.is_known_to(request):
+        headers = {"Cache-Control": cache, **(encoding_headers or {})}
+        if cache != _NO_STORE:
+            headers["ETag"] = cached.tag
+        if cached.body is None or (cache != _NO_STORE and cached.is_known_to(request)):
             return web.Response(status=304, headers=headers)
         response = web.StreamResponse(headers={**headers, "Content-Type": content_type})
         response.content_length = len(cached.body)
@@ -371,6 +386,7 @@ class WebServer:
             is_here=is_from_here(request.transport),
             may_be_own_user=cache(partial(may_be_own_user, request.transport)),
             language=requested_language(request),
+            origin=request.headers.get("Origin") or f"http://{request.host}",
         )
         await audience.attend(page, socket)
         return socket
@@ -505,76 +521,6 @@ def _read(path: Path, known_tags: str, *, unpack: bool = False) -> _FileVersion:
 
 def _is_among(tag: str, known_tags: str) -> bool:
     return tag in {entry.strip().removeprefix("W/") for entry in known_tags.split(",")}
-
-
-def listen(host: str, port: int | None) -> socket.socket:
-    """Return a listening socket.
-
-    Args:
-        host: a name or address of this machine.
-        port: the port; 0 for any free port; None for `DEFAULT_PORT` or the next free port.
-
-    Raises:
-        LinkwrightError: VIEW101, the requested port is in use; VIEW102, it is not possible to listen on the port;
-            VIEW103, the host is unknown.
-    """
-    try:
-        family, _, _, _, address = socket.getaddrinfo(host, 0, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE)[0]
-    except (OSError, UnicodeError):
-        hint = phrase("use 127.0.0.1, or 0.0.0.0 to accept connections from other machines")
-        message = phrase("'{host}' is not a name or address of this machine", host=host)
-        raise LinkwrightError(Diagnostic("VIEW103", message, hint=hint)) from None
-    candidates = [port] if port is not None else [*range(DEFAULT_PORT, DEFAULT_PORT + _PORT_COUNT), 0]
-    for candidate in candidates:
-        try:
-            return _listen_at(family, (address[0], candidate))
-        except OSError as error:  # noqa: PERF203 - few ports, and each may be in use
-            if candidate == candidates[-1] or error.errno != errno.EADDRINUSE:
-                raise LinkwrightError(_cannot_listen(host, candidate, error)) from None
-    raise AssertionError("the last port listens or raises")
-
-
-def url_of(listener: socket.socket) -> str:
-    """Return the URL with which a browser on this machine reaches a listening socket."""
-    host, port = listener.getsockname()[:2]
-    host = _WILDCARDS.get(host, host)
-    return f"http://[{host}]:{port}/" if ":" in host else f"http://{host}:{port}/"
-
-
-def is_open_to_others(listener: socket.socket) -> bool:
-    """Return whether other machines can reach a listening socket."""
-    return not ipaddress.ip_address(listener.getsockname()[0].partition("%")[0]).is_loopback
-
-
-def _listen_at(family: int, address: tuple[str | int, int]) -> socket.socket:
-    listener = socket.socket(family, socket.SOCK_STREAM)
-    try:
-        if os.name == "posix":
-            listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        listener.bind(address)
-        listener.listen(64)  # several programs may bind a port, but `listen` fails for all except one
-        listener.setblocking(False)
-    except (OSError, OverflowError) as error:
-        listener.close()
-        if isinstance(error, OverflowError):
-            raise OSError(errno.EINVAL, phrase("the port must be from 0 to 65535")) from None
-        raise
-    return listener
-
-
-def _cannot_listen(host: str, port: int, error: OSError) -> Diagnostic:
-    if error.errno == errno.EADDRINUSE:
-        hint = phrase("choose another port with '--port', or omit '--port' to use the next free one")
-        return Diagnostic("VIEW101", phrase("port {port} of '{host}' is in use", port=port, host=host), hint=hint)
-    return Diagnostic(
-        "VIEW102",
-        phrase(
-            "cannot listen on port {port} of '{host}': {strerror}",
-            port=port,
-            host=host,
-            strerror=foreign(error.strerror or error),
-        ),
-    )
 
 
 def limit_buffers(transport: asyncio.Transport) -> None:

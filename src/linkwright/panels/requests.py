@@ -59,6 +59,7 @@ ON_DEMAND = (
             "ResizeTerminal",
             "RestartTerminal",
             "ShowTerminal",
+            "WatchProgramPages",
             "WriteTerminal",
         ),
     ),

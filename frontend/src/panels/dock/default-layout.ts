@@ -1,4 +1,5 @@
 import type { AddPanelOptions, Direction, DockviewApi } from "dockview";
+import { isFramed } from "../../dom";
 import { strings } from "../../strings";
 import type { PanelId } from "../panel";
 
@@ -69,6 +70,7 @@ const PLACEMENTS: Readonly<Record<PanelId, Placement>> = {
   comparison: { beside: [["displays", "within"], ["links", "within"], ["scene", "left"]], width: 320 },
   world: { beside: [["displays", "within"], ["links", "within"], ["scene", "left"]], width: 320 },
   lesson: { beside: [["displays", "within"], ["links", "within"], ["scene", "left"]], width: 320 },
+  program: { beside: [["scene", "within"]] },
   terminal: BELOW,
   checks: BELOW,
   source: BELOW,
@@ -132,7 +134,7 @@ const MIN_WIDTH_SHARE = 0.7;
  * In windows where panels share a group, those that open in front: the displays, and the panel that the page was opened
  * for.
  */
-const IN_FRONT: readonly PanelId[] = ["displays", "world", "comparison", "lesson"];
+const IN_FRONT: readonly PanelId[] = ["displays", "world", "comparison", "lesson", "program"];
 
 /** A phone in landscape, where the status bar is hidden, too. */
 const LOW = "(max-height: 480px) and (max-width: 1000px) and (min-aspect-ratio: 3/2)";
@@ -159,7 +161,7 @@ function narrowHome(api: DockviewApi, id: PanelId): Placement {
   if (id === "scene") return PLACEMENTS.scene;
   const others = (Object.keys(PLACEMENTS) as PanelId[]).filter((each) => each !== "scene" && each !== id);
   const beside: Placement["beside"] = [...others.map((other) => [other, "within"] as const), ["scene", "below"]];
-  const lines = TOOLS_HEIGHT + (window.innerWidth < FOOT_WRAPS ? FOOT_LINE : 0);
+  const lines = TOOLS_HEIGHT + (window.innerWidth < FOOT_WRAPS && !isFramed() ? FOOT_LINE : 0);
   const left = api.height - lines - SCENE_SHARE * window.innerHeight;
   return { beside, height: Math.round(Math.min(left, api.height * MAX_BELOW_SHARE)), inactive: !IN_FRONT.includes(id) };
 }
@@ -198,7 +200,7 @@ function wideHome(api: DockviewApi, id: PanelId, isClassroom: boolean): Placemen
 }
 
 /** The order in which open panels move to their default places. */
-export const DEFAULT_ORDER: readonly PanelId[] = ["scene", "time", "lesson", "displays", "links", "world", "comparison", "views", "tool-properties", "selection", "diagnostics", "joints", "teleop", "voice", "navigation", "transformation", ...BOTTOM];
+export const DEFAULT_ORDER: readonly PanelId[] = ["scene", "time", "lesson", "program", "displays", "links", "world", "comparison", "views", "tool-properties", "selection", "diagnostics", "joints", "teleop", "voice", "navigation", "transformation", ...BOTTOM];
 
 /** Adds panels at their default places, or at those in the classroom. */
 export function addPanels(api: DockviewApi, ids: readonly PanelId[], isClassroom = false): void {
@@ -207,6 +209,7 @@ export function addPanels(api: DockviewApi, ids: readonly PanelId[], isClassroom
     const { beside, height, width, inactive } = homeIn(api, id, isClassroom);
     const found = beside.find(([other]) => api.getPanel(other) !== undefined);
     const options: AddPanelOptions = { id, component: id, tabComponent: id, title: strings.panels[id] };
+    if (id === "program") options.renderer = "always"; // a frame whose element is removed loads its page again
     if (width !== undefined) options.initialWidth = width;
     if (height !== undefined) options.initialHeight = height;
     // A panel that is alone in its group must be active, or the group stays empty.

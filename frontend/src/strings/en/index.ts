@@ -35,6 +35,7 @@ export const en = {
     voice: voice.panel,
     editing: editing.panel,
     terminal: terminal.panel,
+    program: terminal.program,
     lesson: learning.lesson,
     checks: learning.checks,
   },

@@ -19,6 +19,8 @@ export const shell = {
   menu: "Main menu",
   file: "File",
   panels: "Panels",
+  openTab: "Open in a tab",
+  openTabHint: "Open this page in a tab of the browser",
   resetLayout: "Reset layout",
   panelOpened: (title: string): string => `${title} opened`,
   panelClosed: (title: string): string => `${title} closed`,

@@ -24,5 +24,8 @@ export const terminal = {
   restart: "Start again",
   elsewhere: "This terminal is shown in another page.",
   showHere: "Show it here",
+  program: "Program",
+  programs: "Programs",
+  noProgram: "The page of a program appears here when you start the program in the terminal.",
   inputLost: "The program in this terminal does not read its input, and part of the input was discarded.",
 };

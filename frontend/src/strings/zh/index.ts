@@ -22,7 +22,7 @@ import { voice } from "./voice";
 /** 简体中文 */
 export const zh: Strings = {
   panels: { ...description.panels,
-    ...tools.panels, ...monitor.panels, displays: "显示", scene: "三维视图", views: "视角", joints: "关节", diagnostics: "诊断", world: modelling.panel, comparison: comparison.panel, voice: voice.panel, editing: editing.panel, terminal: terminal.panel, lesson: learning.lesson, checks: learning.checks },
+    ...tools.panels, ...monitor.panels, displays: "显示", scene: "三维视图", views: "视角", joints: "关节", diagnostics: "诊断", world: modelling.panel, comparison: comparison.panel, voice: voice.panel, editing: editing.panel, terminal: terminal.panel, program: terminal.program, lesson: learning.lesson, checks: learning.checks },
   shell,
   sharing,
   simulation,

@@ -6,6 +6,8 @@ export const shell: typeof english = {
   menu: "主菜单",
   file: "文件",
   panels: "面板",
+  openTab: "在标签页中打开",
+  openTabHint: "在浏览器的标签页中打开此页面",
   resetLayout: "恢复默认布局",
   panelOpened: (title: string): string => `已打开${title}`,
   panelClosed: (title: string): string => `已关闭${title}`,

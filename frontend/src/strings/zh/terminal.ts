@@ -25,5 +25,8 @@ export const terminal: typeof english = {
   restart: "重新启动",
   elsewhere: "此终端正显示在另一个页面中。",
   showHere: "在这里显示",
+  program: "程序",
+  programs: "程序",
+  noProgram: "在终端中启动程序后，它的页面显示在这里。",
   inputLost: "此终端中的程序没有读取输入，部分输入已丢弃。",
 };

@@ -59,6 +59,27 @@ class TerminalInputLost(ServerMessage):
     size: int
 
 
+class ProgramPage(Record):
+    """The page of a program in a terminal. `url` contains its token."""
+
+    id: int
+    title: str
+    url: str
+
+
+class ProgramPages(ServerMessage):
+    """The pages of the programs in terminals, oldest first.
+
+    It is sent to pages that may use terminals, after `WatchProgramPages` and whenever it changes.
+    """
+
+    pages: list[ProgramPage]
+
+
+class WatchProgramPages(PageMessage):
+    """A request to receive the pages of programs in terminals."""
+
+
 class OpenTerminal(PageMessage):
     """A request to start a shell in a new terminal, which the page then shows."""
 

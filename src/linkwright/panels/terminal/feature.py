@@ -14,6 +14,7 @@ from typing import Any
 from linkwright.diagnostics import Phrase, foreign, phrase
 from linkwright.diagnostics.extras import install_hint
 from linkwright.page.audience import Page
+from linkwright.page.program_pages import ProgramPages
 from linkwright.page.protocol import terminal as messages
 from linkwright.page.protocol.message import PageMessage, ServerMessage
 from linkwright.panels.page_feature import FeatureHost, PageFeature
@@ -52,8 +53,10 @@ class TerminalFeature(PageFeature):
         self._command: tuple[str, ...] = _SHELL
         self._terminals: dict[int, Terminal] = {}
         self._numbers = count(1)
+        self._programs: ProgramPages | None = None
         self._endings: set[asyncio.Task[None]] = set()
         self._handlers: Mapping[type[PageMessage], Callable[[Page, Any], object]] = {
+            messages.WatchProgramPages: self._send_program_pages,
             messages.OpenTerminal: self._open,
             messages.ShowTerminal: self._show,
             messages.LeaveTerminal: self._leave,
@@ -64,7 +67,7 @@ class TerminalFeature(PageFeature):
             messages.CloseTerminal: self._close,
         }
 
-    def enable(self, folder: Path, command: tuple[str, ...] = _SHELL) -> None:
+    def enable(self, folder: Path, command: tuple[str, ...] = _SHELL, *, programs: ProgramPages | None = None) -> None:
         """Let this user's pages on this machine run a shell.
 
         Call it only for a server that no other machine can reach.
@@ -72,8 +75,12 @@ class TerminalFeature(PageFeature):
         Args:
             folder: the folder in which shells start.
             command: the absolute path of the program to run in terminals, and its arguments.
+            programs: the pages of programs in terminals, which pages show; None to show none.
         """
-        self._folder, self._command = folder, command
+        self._folder, self._command, self._programs = folder, command, programs
+        if programs is not None:
+            programs.is_shown = lambda: bool(self._trusted_pages())
+            programs.on_change = self._report_program_pages
         self._report()
 
     def opening_messages(self) -> list[ServerMessage]:
@@ -129,7 +136,8 @@ class TerminalFeature(PageFeature):
             page.send(self._state(page, problem))
             return
         assert self._folder is not None, "checked by _refusal"
-        program = TerminalProgram(self._command, self._folder, terminal_environment(os.environ))
+        variables = {} if self._programs is None else self._programs.variables(page.origin)
+        program = TerminalProgram(self._command, self._folder, terminal_environment(os.environ) | variables)
         number, size = next(self._numbers), _size(message)
         terminal = Terminal(number, partial(open_pty, program), size, self._report)
         self._terminals[number] = terminal
@@ -180,6 +188,19 @@ class TerminalFeature(PageFeature):
     def _state(self, page: Page | None, why_not: Phrase | str = "") -> messages.Terminals:
         items = [terminal.item_for(page) for terminal in self._terminals.values()]
         return messages.Terminals(str(self._folder), items, why_not)
+
+    def _trusted_pages(self) -> list[Page]:
+        """Return the open pages that may use terminals."""
+        return [page for page in self.context.pages if self._refusal(page) is None]
+
+    def _send_program_pages(self, page: Page, _: object = None) -> None:
+        if self._programs is not None:
+            page.send(messages.ProgramPages(self._programs.pages))
+
+    def _report_program_pages(self) -> None:
+        """Send the pages of programs to all pages that may use terminals."""
+        for page in self._trusted_pages():
+            self._send_program_pages(page)
 
     def _report(self) -> None:
         """Send all pages the state of the terminals."""

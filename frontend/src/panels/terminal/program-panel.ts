@@ -1,0 +1,90 @@
+import { button, h } from "../../dom";
+import type { ProgramPage } from "../../protocol";
+import { withSettings } from "../../requested-settings";
+import type { TerminalsState } from "../../state/terminals";
+import type { ThemeState } from "../../state/theme";
+import { language, strings } from "../../strings";
+import type { Panel } from "../panel";
+
+/** The page of a program may download files and open tabs, but not replace this page. */
+const SANDBOX = "allow-scripts allow-same-origin allow-downloads allow-forms allow-modals allow-popups allow-popups-to-escape-sandbox allow-pointer-lock";
+const FEATURES = "fullscreen; microphone; gamepad; clipboard-read; clipboard-write";
+
+/** The pages of programs in the terminals, each in a frame; buttons choose one of several. */
+export class ProgramPanel implements Panel {
+  readonly id = "program";
+  readonly icon = "play";
+  readonly element: HTMLElement;
+  private readonly empty = h("p", { class: "empty" }, strings.terminal.noProgram);
+  private readonly tabs = h("div", { class: "segmented program-tabs", role: "group", aria: { label: strings.terminal.programs } });
+  private readonly bar: HTMLElement;
+  private readonly place = h("div", { class: "program-place" });
+  private readonly frames = new Map<number, HTMLIFrameElement>();
+  private current: ProgramPage | undefined;
+
+  constructor(
+    private readonly state: TerminalsState,
+    private readonly theme: ThemeState,
+  ) {
+    this.bar = h("div", { class: "toolbar" }, this.tabs);
+    this.element = h("div", { class: "panel program-panel" }, this.empty, this.bar, this.place);
+    state.programsChanged.on(() => this.update());
+    theme.changed.on(() => this.load());
+    this.update();
+  }
+
+  /** Follows the programs: removes the pages of those that ended, and shows a new one. */
+  private update(): void {
+    const { programs } = this.state;
+    for (const [id, frame] of this.frames) {
+      if (programs.some((program) => program.id === id)) continue;
+      frame.remove();
+      this.frames.delete(id);
+    }
+    if (!programs.some(({ id }) => id === this.current?.id)) this.current = programs.at(-1);
+    for (const program of programs) {
+      if (this.frames.has(program.id)) continue;
+      this.current = program;
+      const frame = makeFrame(program.title);
+      this.frames.set(program.id, frame);
+      this.place.append(frame);
+    }
+    this.empty.hidden = programs.length > 0;
+    this.place.hidden = programs.length === 0;
+    this.bar.hidden = programs.length < 2;
+    this.load();
+    this.show();
+  }
+
+  /** Loads the pages whose address has changed, because it requests another theme. */
+  private load(): void {
+    for (const { id, url } of this.state.programs) {
+      const frame = this.frames.get(id);
+      const address = withSettings(url, { language, theme: this.theme.choice });
+      if (frame && frame.src !== address) frame.src = address;
+    }
+  }
+
+  private show(): void {
+    for (const [id, frame] of this.frames) frame.hidden = id !== this.current?.id;
+    const tabs = this.state.programs.map((program) => {
+      const isCurrent = program.id === this.current?.id;
+      const tab = button(program.title, () => this.choose(program), isCurrent ? "on" : "", program.title || strings.panels.program);
+      tab.setAttribute("aria-pressed", String(isCurrent));
+      return tab;
+    });
+    this.tabs.replaceChildren(...tabs);
+  }
+
+  private choose(program: ProgramPage): void {
+    this.current = program;
+    this.show();
+  }
+}
+
+function makeFrame(title: string): HTMLIFrameElement {
+  const frame = h("iframe", { title: title || strings.panels.program });
+  frame.setAttribute("sandbox", SANDBOX);
+  frame.allow = FEATURES;
+  return frame;
+}

@@ -1,0 +1,93 @@
+"""The page of a program in a terminal of the classroom: it comes beside the lesson, takes keys, and goes."""
+
+from __future__ import annotations
+
+import shutil
+import sys
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Frame, Page
+
+from linkwright.learning.course import find_course
+from tests.browser.axe import violations
+from tests.browser.conftest import becomes, until
+from tests.waiting import SECONDS, wait_until
+
+pytestmark = [
+    pytest.mark.browser,
+    pytest.mark.skipif(sys.platform == "win32", reason="pseudoterminals of POSIX"),
+]
+
+ROBOT = find_course("example") / "01-one-link/solution/one-link/robot.urdf"
+FRAMES = ".program-place iframe"
+KEYS = ".terminal-screen:visible .xterm-helper-textarea"
+
+
+@pytest.fixture
+def page(start, open_page, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Page:
+    monkeypatch.setenv("SHELL", "/bin/bash")
+    monkeypatch.setenv("HOME", str(tmp_path))
+    (tmp_path / "ws").mkdir()
+    shutil.copy(ROBOT, tmp_path / "ws")
+    page = open_page(start("learn", str(tmp_path / "ws"), "--course", "example"), wait=False)
+    until(page, "/[$#] *$/.test(lw.panels.terminal.text ?? '')")
+    page.locator(KEYS).focus()
+    return page
+
+
+def frames_of(page: Page) -> list[Frame]:
+    """Wait for the pages of programs, and for what they show."""
+    page.wait_for_selector(f"{FRAMES}:visible")
+    wait_until(lambda: all("127.0.0.1" in frame.url for frame in page.frames), SECONDS)
+    frames = [frame for frame in page.frames if frame is not page.main_frame]
+    for frame in frames:
+        frame.wait_for_function("window.linkwright?.ready === true", timeout=1000 * SECONDS)
+    return frames
+
+
+def test_it_is_shown_until_the_program_ends(page):
+    page.keyboard.type("linkwright view robot.urdf\n")
+    (frame,) = frames_of(page)
+    assert page.locator(FRAMES).is_visible()
+    assert page.evaluate("document.activeElement.className") == "xterm-helper-textarea"
+    assert frame.evaluate("location.search") == ""  # the page has taken the token and the language
+    assert violations(page) == []
+    frame.locator("canvas").first.click()
+    page.keyboard.press("?")
+    frame.wait_for_selector("dialog[open]")
+    page.keyboard.press("Escape")
+    page.locator(".title-bar .theme-button").click()
+    page.get_by_role("menuitemcheckbox", name="Dark").click()
+    (frame,) = frames_of(page)
+    frame.wait_for_selector("html[data-theme=dark]", state="attached")
+    page.get_by_role("button", name="中文").click()  # loads both pages again
+    page.wait_for_selector("text=程序")
+    (frame,) = frames_of(page)
+    assert frame.get_by_role("button", name="在标签页中打开").is_visible()
+    with page.expect_popup() as popup:
+        frame.get_by_role("button", name="在标签页中打开").click()
+    popup.value.wait_for_function("window.linkwright?.ready === true")
+    popup.value.close()
+    page.locator(KEYS).focus()
+    page.keyboard.press("Control+c")
+    page.wait_for_selector(FRAMES, state="detached")
+    becomes(lambda: page.locator(".program-panel").count(), 0)
+    until(page, "lw.ready && /[$#] *$/.test(lw.panels.terminal.text)")
+
+
+def test_a_second_program_has_a_button_and_a_killed_one_goes(page):
+    page.keyboard.type("linkwright view robot.urdf & linkwright view robot.urdf --no-open --port 0 & sleep 1\n")
+    frames_of(page)
+    page.keyboard.type("linkwright view robot.urdf\n")
+    buttons = page.locator(".program-tabs button")
+    becomes(buttons.count, 2)
+    frames_of(page)
+    assert [page.locator(FRAMES).nth(number).is_visible() for number in range(2)] == [False, True]
+    buttons.first.click()
+    assert [page.locator(FRAMES).nth(number).is_visible() for number in range(2)] == [True, False]
+    page.locator(KEYS).focus()
+    page.keyboard.press("Control+c")
+    becomes(page.locator(FRAMES).count, 1)
+    page.keyboard.type("kill -9 %1 %2\n")
+    page.wait_for_selector(FRAMES, state="detached")

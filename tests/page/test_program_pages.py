@@ -1,0 +1,144 @@
+"""Programs in terminals of a page let it show their pages in frames, and nobody else may."""
+
+from __future__ import annotations
+
+import json
+import socket
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from pathlib import Path
+from urllib.parse import urlsplit
+
+import aiohttp
+import pytest
+
+from linkwright.page.page_server import PageServer
+from linkwright.page.program_pages import VARIABLE, Embedder
+from linkwright.panels.terminal.feature import TerminalFeature
+from tests.viewer.scene import World, page
+
+FRAMES = "frame-src http://127.0.0.1:* http://localhost:*"
+
+
+@asynccontextmanager
+async def classroom(folder: Path, command: tuple[str, ...] = ("/bin/sh", "-i")) -> AsyncIterator[World]:
+    """A viewer whose page has terminals."""
+    made = World(server=PageServer("127.0.0.1", 0, only_loopback=True))
+    await made.viewer.start()
+    server = made.viewer._server
+    made.viewer.add_feature(TerminalFeature).enable(folder, command, programs=server.program_pages)
+    try:
+        yield made
+    finally:
+        await made.viewer.close()
+        await made.graph.close()
+
+
+@asynccontextmanager
+async def program() -> AsyncIterator[PageServer]:
+    """The server of a program that would open its page in the browser."""
+    server = PageServer("127.0.0.1", 0)
+    await server.open()
+    try:
+        yield server
+    finally:
+        await server.close()
+
+
+def environment(made: World) -> dict[str, str]:
+    origin = made.viewer.url.partition("/?")[0]
+    return made.viewer._server.program_pages.variables(origin)
+
+
+async def policy(server: PageServer) -> str:
+    async with aiohttp.ClientSession() as browser, browser.get(server.url) as answer:
+        return answer.headers["Content-Security-Policy"]
+
+
+async def status_of(address: str, line: bytes, **headers: str) -> int:
+    async with aiohttp.ClientSession() as session, session.post(address, data=line, headers=headers) as answer:
+        return answer.status
+
+
+async def test_the_page_is_shown_until_its_program_ends(tmp_path):
+    async with classroom(tmp_path) as made, page(made.viewer) as client, program() as server:
+        await client.send("watch_program_pages")
+        assert (await client.until("program_pages"))["pages"] == []
+        assert "frame-ancestors 'none'" in await policy(server)
+        assert await server.embed(environment(made), "a world")
+        shown = await client.until("program_pages")
+        assert shown["pages"] == [{"id": 1, "title": "a world", "url": server.url}]
+        assert f"frame-ancestors {made.viewer.url.partition('/?')[0]};" in f"{await policy(server)};"
+        assert FRAMES in await policy(made.viewer._server)
+        assert "frame-ancestors 'none'" in await policy(made.viewer._server)
+        await server.close()
+        assert (await client.until("program_pages"))["pages"] == []
+
+
+async def test_the_shell_knows_where_its_page_is(tmp_path):
+    command = ("/bin/sh", "-c", f"echo ${VARIABLE}")
+    async with classroom(tmp_path, command) as made, page(made.viewer) as client:
+        await client.send("open_terminal", columns=200, rows=24)
+        output = await client.until("terminal_output", is_replay=False)
+        assert output["text"].strip() == environment(made)[VARIABLE]
+
+
+async def test_a_wrong_key_and_a_page_elsewhere_are_refused(tmp_path):
+    async with classroom(tmp_path) as made, page(made.viewer), program() as server:
+        address = environment(made)[VARIABLE]
+        line = json.dumps({"title": "", "url": server.url}).encode() + b"\n"
+        assert await status_of(address[:-1], line) == 401
+        assert await status_of(address, line, Origin="http://evil.example") == 403
+        for url in ("http://evil.example/?token=abcdefgh", "https://127.0.0.1:1/?token=abc", "javascript:alert(1)", ""):
+            assert await status_of(address, json.dumps({"title": "", "url": url}).encode() + b"\n") == 400
+        for nonsense in (b"", b"[]", b"{", b"x" * 100_000, b"[" * 60_000 + b"\n"):
+            assert await status_of(address, nonsense) == 400
+        token = urlsplit(made.viewer.url).query
+        assert await status_of(f"{address.rpartition('/')[0]}/?{token}", line) in (401, 404, 405)
+
+
+async def test_a_page_that_may_have_no_terminal_receives_no_addresses(tmp_path, monkeypatch):
+    monkeypatch.setattr("linkwright.page.server.may_be_own_user", lambda _: False)
+    async with classroom(tmp_path) as made, page(made.viewer) as client, program() as server:
+        await client.send("watch_program_pages")
+        assert "browser of the user" in (await client.until("terminals", folder=""))["why_not"]
+        assert not await server.embed(environment(made), "")
+        assert "frame-ancestors 'none'" in await policy(server)
+
+
+async def test_nobody_shows_it_without_an_open_page_or_after_the_classroom(tmp_path):
+    async with program() as server:
+        async with classroom(tmp_path) as made:
+            variables = environment(made)
+            assert not await server.embed(variables, "")
+        assert not await server.embed(variables, "")
+        assert not server.is_embedded
+
+
+async def test_a_page_with_terminals_of_its_own_is_never_in_a_frame(tmp_path):
+    async with classroom(tmp_path) as made, page(made.viewer), classroom(tmp_path) as other:
+        assert not await other.viewer._server.embed(environment(made), "")
+        assert "frame-ancestors 'none'" in await policy(other.viewer._server)
+
+
+async def test_a_server_that_says_nothing_is_not_waited_for_long(monkeypatch):
+    monkeypatch.setattr("linkwright.page.program_pages._TIMEOUT", 0.1)
+    with socket.create_server(("127.0.0.1", 0)) as silent:
+        address = f"http://127.0.0.1:{silent.getsockname()[1]}/programs/abc"
+        async with program() as server:
+            assert not await server.embed({VARIABLE: address}, "")
+            assert "frame-ancestors 'none'" in await policy(server)
+
+
+@pytest.mark.parametrize(
+    "address",
+    ["", "http://evil.example:80/programs/abc", "http://127.0.0.1@evil.example:80/programs/a", "file:///programs/a",
+     "http://127.0.0.1:80/programs/a b", "http://127.0.0.1:80/programs/a\r\nX: y"],
+)  # fmt: skip
+def test_only_addresses_on_this_machine_are_used(address):
+    assert Embedder.of({VARIABLE: address}) is None
+
+
+def test_an_embedder_has_the_origin_of_its_address():
+    found = Embedder.of({VARIABLE: "http://localhost:7448/programs/a-b_c"})
+    assert found == Embedder("http://localhost:7448", "/programs/a-b_c")
