@@ -57,6 +57,12 @@ def test_it_is_shown_until_the_program_ends(page):
     page.keyboard.press("?")
     frame.wait_for_selector("dialog[open]")
     page.keyboard.press("Escape")
+    frame.evaluate("window.isFirst = true")
+    page.locator(".panel-tab", has_text="3D View").click()
+    page.wait_for_selector(FRAMES, state="hidden")
+    page.locator(".panel-tab", has_text="Program").click()
+    page.wait_for_selector(FRAMES)
+    assert frame.evaluate("window.isFirst"), "the page was not loaded again"
     page.locator(".title-bar .theme-button").click()
     page.get_by_role("menuitemcheckbox", name="Dark").click()
     (frame,) = frames_of(page)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import json
 import socket
 from collections.abc import AsyncIterator
@@ -16,6 +17,7 @@ from linkwright.page.page_server import PageServer
 from linkwright.page.program_pages import VARIABLE, Embedder
 from linkwright.panels.terminal.feature import TerminalFeature
 from tests.viewer.scene import World, page
+from tests.waiting import SECONDS
 
 FRAMES = "frame-src http://127.0.0.1:* http://localhost:*"
 
@@ -142,3 +144,12 @@ def test_only_addresses_on_this_machine_are_used(address):
 def test_an_embedder_has_the_origin_of_its_address():
     found = Embedder.of({VARIABLE: "http://localhost:7448/programs/a-b_c"})
     assert found == Embedder("http://localhost:7448", "/programs/a-b_c")
+
+
+async def test_a_server_that_ends_does_not_wait_for_programs(tmp_path, monkeypatch):
+    monkeypatch.setattr("linkwright.page.server._CLOSE_TIMEOUT", 600.0)
+    async with classroom(tmp_path) as made, program() as server:
+        async with page(made.viewer):
+            assert await server.embed(environment(made), "")
+        await asyncio.wait_for(made.viewer._server.close(), SECONDS)
+        assert made.viewer._server.program_pages.pages == []

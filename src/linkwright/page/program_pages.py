@@ -53,6 +53,7 @@ class ProgramPages:
         self._key = secrets.token_urlsafe(24)
         self._numbers = count(1)
         self._pages: dict[int, ProgramPage] = {}
+        self._connections: set[asyncio.Transport] = set()
 
     @property
     def pages(self) -> list[ProgramPage]:
@@ -63,12 +64,14 @@ class ProgramPages:
         """Return the environment variables for programs whose pages are shown in a page of an origin."""
         return {VARIABLE: f"{origin}{PATH}{self._key}"}
 
+    def is_key(self, key: str) -> bool:
+        """Return whether a key is that of the address in `variables`."""
+        return hmac.compare_digest(key.encode(errors="replace"), self._key.encode())
+
     async def receive(self, request: web.Request) -> web.StreamResponse:
         """Show the page whose address a program sends, until the request ends."""
         from linkwright.page.http_server import web
 
-        if not hmac.compare_digest(request.match_info["key"].encode(errors="replace"), self._key.encode()):
-            return web.Response(status=401, text="This address is for programs in terminals of the page.\n")
         page = await self._read_page(request)
         if page is None:
             return web.Response(status=400, text="This is not the address of a page on this machine.\n")
@@ -77,7 +80,11 @@ class ProgramPages:
         response = web.StreamResponse()
         await response.prepare(request)
         await response.write(b"\n")
+        transport = request.transport
+        if transport is None:
+            return response
         self._pages[page.id] = page
+        self._connections.add(transport)
         self.on_change()
         try:
             with suppress(ConnectionError, web.RequestPayloadError):
@@ -85,8 +92,14 @@ class ProgramPages:
                     pass
         finally:
             del self._pages[page.id]
+            self._connections.discard(transport)
             self.on_change()
         return response
+
+    def close(self) -> None:
+        """Close the connections to programs, which continue."""
+        for transport in self._connections:
+            transport.abort()
 
     async def _read_page(self, request: web.Request) -> ProgramPage | None:
         """Return the page in the first line of a request, or None if the line is not valid."""

@@ -149,7 +149,7 @@ class WebServer:
             "/export/{key}/{name}", self._require_token(partial(self._upload, self._show_own_recording))
         )
         if self._program_pages is not None:
-            application.router.add_post(f"{PATH}{{key}}", self._program_pages.receive)
+            application.router.add_post(f"{PATH}{{key}}", partial(self._show_program, self._program_pages))
         application.router.add_get("/{path:.+}", self._page_file)
         self._runner = web.AppRunner(
             application,
@@ -189,6 +189,8 @@ class WebServer:
         if self._server is not None:
             self._server.close()
             self._server = None
+        if self._program_pages is not None:
+            self._program_pages.close()
         if not self._services.done():
             self._services.cancel()
         elif not self._services.cancelled():
@@ -347,6 +349,12 @@ class WebServer:
         if recording is None:
             raise web.HTTPNotFound(text="There is no such recording.\n")
         return await uploads.show(request, recording)
+
+    async def _show_program(self, programs: ProgramPages, request: web.Request) -> web.StreamResponse:
+        if not programs.is_key(request.match_info["key"]):
+            return _without_token()
+        self._admit(request)
+        return await programs.receive(request)
 
     def _require_token(
         self, handler: Callable[[web.Request], Awaitable[web.Response]]
