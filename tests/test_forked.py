@@ -101,6 +101,15 @@ def test_programs_start_afresh_where_the_server_cannot_begin(tmp_path, monkeypat
     server.close()
 
 
+def test_it_is_ready_when_it_has_imported():
+    server = forked.ForkServer(["linkwright.process.nanoseconds"])
+    assert not server.is_ready
+    server.prepare()
+    wait_until(lambda: server.is_ready)
+    server.close()
+    assert not server.is_ready
+
+
 def test_a_server_that_was_killed_is_replaced(tmp_path):
     server = ForkServer()
     program = server.start(["view", str(ROBOT), "--no-open"], cwd=tmp_path, env={**QUIET, "PYTHONUNBUFFERED": "1"})

@@ -1,5 +1,6 @@
 """A learner's way through a course: files, checks, hints, solutions, and the progress that is kept."""
 
+import importlib.util
 import json
 import os
 import re
@@ -13,6 +14,7 @@ import pytest
 from linkwright.cli import main
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Span, phrase
 from linkwright.graph.parameters.files import read_parameter_file
+from linkwright.learning.checks import running
 from linkwright.learning.checks.findings import describe_finding
 from linkwright.learning.checks.running import check_in_process, new_check_server
 from linkwright.learning.classroom import open_classroom
@@ -344,3 +346,8 @@ def test_a_read_only_workspace_is_one_error(tmp_path, monkeypatch):
     with pytest.raises(LinkwrightError) as raised:
         classroom.open_step(classroom.course.steps[0])
     assert raised.value.diagnostics[0].code == "LEARN111"
+
+
+def test_what_the_server_imports_is_there():
+    names = [name.removesuffix(".*") for name in running._IMPORTED]
+    assert [name for name in names if importlib.util.find_spec(name) is None] == []

@@ -201,7 +201,9 @@ def main() -> None:
     _import_all(names)
     gc.collect()
     gc.freeze()  # collecting garbage would write to shared memory, and thereby copy it
-    if request := _Server(socket.socket(fileno=int(descriptor))).serve():
+    control = socket.socket(fileno=int(descriptor))
+    control.send(b"ready")
+    if request := _Server(control).serve():
         _become(request)
 
 

@@ -54,7 +54,7 @@ class ForkedProcess:
 
     def poll(self) -> int | None:
         """Return the exit status, or None while the program runs."""
-        if self.returncode is None and self._has_report(0.0):
+        if self.returncode is None and _is_readable(self._report, 0.0):
             self._end(self._read_number())
         return self.returncode
 
@@ -64,7 +64,7 @@ class ForkedProcess:
         Raises:
             subprocess.TimeoutExpired: the program did not end within `timeout` seconds.
         """
-        if self.returncode is None and not self._has_report(timeout):
+        if self.returncode is None and not _is_readable(self._report, timeout):
             raise subprocess.TimeoutExpired(self.args, timeout or 0.0)
         status = self.poll()
         assert status is not None, "there was a report"
@@ -83,11 +83,6 @@ class ForkedProcess:
         """Send SIGKILL."""
         self.send_signal(signal.SIGKILL)
 
-    def _has_report(self, timeout: float | None) -> bool:
-        with selectors.DefaultSelector() as selector:
-            selector.register(self._report, selectors.EVENT_READ)
-            return bool(selector.select(timeout))
-
     def _read_number(self) -> int:
         from linkwright.process.fork_server import NUMBER
 
@@ -98,6 +93,12 @@ class ForkedProcess:
     def _end(self, status: int) -> None:
         self.returncode = status
         os.close(self._report)
+
+
+def _is_readable(descriptor: int, timeout: float | None) -> bool:
+    with selectors.DefaultSelector() as selector:
+        selector.register(descriptor, selectors.EVENT_READ)
+        return bool(selector.select(timeout))
 
 
 Program = Union[ForkedProcess, "subprocess.Popen[bytes]"]
@@ -154,10 +155,16 @@ class ForkServer:
         self.close()
 
     def prepare(self) -> None:
-        """Start the server, so that it imports before the first program is needed."""
+        """Start the server unless it runs, so that it imports before the first program is needed."""
         with self._lock:
-            if IS_POSSIBLE and self._control is None:
-                self._begin()
+            if IS_POSSIBLE:
+                self._running_control()
+
+    @property
+    def is_ready(self) -> bool:
+        """Whether the server has imported the modules, so that a program starts at once."""
+        with self._lock:
+            return self._control is not None and _is_readable(self._control.fileno(), 0.0)
 
     def start(
         self, module: str, words: Sequence[str], *, cwd: Path, env: Mapping[str, str], streams: Streams
@@ -189,12 +196,15 @@ class ForkServer:
         return process
 
     def _send(self, data: bytes, descriptors: Sequence[int]) -> None:
-        """Send a request, to a new server if the last one was killed."""
+        """Send a request to the server."""
         with self._lock:
-            if self._process is not None and self._process.poll() is not None:
-                self._end()
-            control = self._control or self._begin()
-            socket.send_fds(control, [data], list(descriptors))
+            socket.send_fds(self._running_control(), [data], list(descriptors))
+
+    def _running_control(self) -> socket.socket:
+        """Return the socket of the server, which is started if it does not run."""
+        if self._process is not None and self._process.poll() is not None:
+            self._end()
+        return self._control or self._begin()
 
     def _begin(self) -> socket.socket:
         control, far = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)

@@ -43,11 +43,14 @@ MODULE = "linkwright.learning.checks"
 
 _IMPORTED = (
     "linkwright.learning.checks.*",
+    "linkwright.control.*",
     "linkwright.graph.*",
     "linkwright.hosting.*",
     "linkwright.launch.*",
     "linkwright.lint.*",
     "linkwright.messages.*",
+    "linkwright.navigation.*",
+    "linkwright.nodes.*",
     "linkwright.packages.*",
     "linkwright.rviz.*",
     "linkwright.sdf.*",

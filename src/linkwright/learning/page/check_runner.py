@@ -25,7 +25,6 @@ class CheckRunner:
         self._workspace = workspace
         self._on_result = on_result
         self._server = new_check_server()
-        self._server.prepare()
         self._process: CheckProcess | None = None
         self._task: asyncio.Task[None] | None = None
         self._requested: tuple[Step, str | None] | None = None
@@ -56,9 +55,11 @@ class CheckRunner:
         while self._requested is not None:
             step, answer = self._requested
             self._requested = None
-            self._process = CheckProcess(step, self._workspace, answer=answer, server=self._server)
+            server = self._server if self._server.is_ready else None
+            self._process = CheckProcess(step, self._workspace, answer=answer, server=server)
             result = await asyncio.to_thread(self._process.run)
             self._process = None
+            self._server.prepare()  # for the next checks; beside the first one, it would delay that
             if self._requested is None:
                 self._task = None
                 self._on_result(step, result)
