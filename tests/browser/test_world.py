@@ -204,7 +204,7 @@ def test_a_robot_that_touches_nothing_is_told_over_the_scene_until_that_is_close
 
 
 def test_a_slow_world_is_told_over_the_scene_with_a_button_for_a_lighter_one(live, open_page):
-    image = "- {Class: rviz_default_plugins/Image, Name: Front, Enabled: true, Topic: {Value: /front}}\n"
+    image = "\n- {Class: rviz_default_plugins/Image, Name: Front, Enabled: true, Topic: {Value: /front}}"
     viewer = described(live, image)
     page = open_page(viewer)
     until(page, "lw.displays.some(({ name, enabled }) => name === 'Front' && enabled)")
