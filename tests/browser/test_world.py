@@ -42,8 +42,8 @@ SERVICES = {
 }
 
 
-def described(live):
-    viewer = live(configuration(DISPLAYS, distance=12.0).replace("Fixed Frame: base", "Fixed Frame: world"))
+def described(live, more=""):
+    viewer = live(configuration(DISPLAYS + more, distance=12.0).replace("Fixed Frame: base", "Fixed Frame: world"))
     viewer.publish("/world_description", String(data=WORLD), DESCRIPTION_QOS)
     return viewer
 
@@ -201,6 +201,21 @@ def test_a_robot_that_touches_nothing_is_told_over_the_scene_until_that_is_close
     assert banner.get_by_role("button", name="Close this message").count() == 0
     viewer.run(lambda: viewer.viewer.show_diagnostics(both))
     banner.wait_for(state="hidden")
+
+
+def test_a_slow_world_is_told_over_the_scene_with_a_button_for_a_lighter_one(live, open_page):
+    image = "\n- {Class: rviz_default_plugins/Image, Name: Front, Enabled: true, Topic: {Value: /front}}"
+    viewer = described(live, image)
+    page = open_page(viewer)
+    until(page, "lw.displays.some(({ name, enabled }) => name === 'Front' && enabled)")
+    slow = Diagnostic("SIM146", phrase("links without a mass"), severity=Severity.WARNING)
+    viewer.run(lambda: viewer.viewer.show_diagnostics([slow]))
+    banner = page.locator(".banner")
+    banner.get_by_text("links without a mass").wait_for()
+    button = banner.get_by_role("button", name="Switch off images")
+    button.click()
+    until(page, "lw.displays.some(({ name, enabled }) => name === 'Front' && !enabled)")
+    button.wait_for(state="detached")
 
 
 LAMPS = """

@@ -1,6 +1,7 @@
 import { button, h } from "../../dom";
 import { icon, LEVEL_ICONS } from "../../icons";
 import type { DiagnosticItem } from "../../protocol";
+import type { DisplayState } from "../../state/displays";
 import type { Session } from "../../state/session";
 import { strings } from "../../strings";
 import { placeText, shortPath } from "../place";
@@ -8,10 +9,13 @@ import { placeText, shortPath } from "../place";
 /** Codes of findings on files of the viewer, which do not prevent the robot from being shown. */
 const VIEWER_CODES = /^(RVIZ|VIEW)/;
 /**
- * Codes of warnings that the user needs to understand the scene: the robot has fallen out of the world, or all its
- * meshes are missing.
+ * Codes of warnings that the user needs to understand the scene: the robot has fallen out of the world, the world is
+ * slow, or all meshes of the robot are missing.
  */
-const EXPLAINING_CODES = new Set(["SIM143", "VIEW207"]);
+const SLOW_CODE = "SIM146";
+const EXPLAINING_CODES = new Set(["SIM143", SLOW_CODE, "VIEW207"]);
+/** Displays for which the simulation renders images. */
+const IMAGE_DISPLAYS = /\/(Camera|DepthCloud|Image)$/;
 
 /**
  * The banner over the scene while the description has an error: its cause, its hint, and whether the robot shown is the
@@ -55,9 +59,21 @@ export class DiagnosticsBanner {
         h("span", {}, place ? h("span", { class: "place" }, place) : null, first.hints[0] ?? ""),
         isError && this.keepsRobot(first) ? h("span", {}, words.lastGood) : null,
       ),
+      ...(first.code === SLOW_CODE && this.imageDisplays.length > 0
+        ? [button(words.withoutImages, () => this.switchOffImages(), "tool", words.withoutImages)]
+        : []),
       button(words.show, this.showAll, "tool", words.show),
       ...(isError ? [] : [button(words.close, () => this.close(first), "tool", icon("close"))]),
     );
+  }
+
+  private get imageDisplays(): readonly DisplayState[] {
+    return this.session.displays.displays.filter(({ cls, enabled }) => enabled && IMAGE_DISPLAYS.test(cls));
+  }
+
+  private switchOffImages(): void {
+    for (const { enabledId } of this.imageDisplays) this.session.setProperty(enabledId, false);
+    this.update();
   }
 
   private close({ message }: DiagnosticItem): void {

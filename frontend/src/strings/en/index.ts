@@ -92,6 +92,7 @@ export const en = {
     none: "No problems found.",
     hint: "Hint",
     note: "Note",
+    withoutImages: "Switch off images",
     lastGood: "The last valid robot remains until this is fixed.",
     show: "Show",
     close: "Close this message",

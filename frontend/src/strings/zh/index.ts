@@ -76,6 +76,7 @@ export const zh: Strings = {
     none: "没有发现问题。",
     hint: "提示",
     note: "说明",
+    withoutImages: "关闭图像显示",
     lastGood: "修复之前，保留上一个正确的机器人。",
     show: "查看",
     close: "关闭此消息",

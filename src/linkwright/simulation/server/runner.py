@@ -11,6 +11,7 @@ from linkwright.diagnostics import LinkwrightError
 from linkwright.graph import run_logged
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.sdf.worlds import physics_of
+from linkwright.simulation.server.pace import PaceWatch
 from linkwright.simulation.server.server import SimulationServer
 
 _CHUNK = 0.005
@@ -58,6 +59,7 @@ class Runner:
         self.is_paused = paused
         self.real_time_factor = 0.0
         self._server = server
+        self._pace = PaceWatch(server.show_pace)
         self._requested_factor = factor
         self._factor = 1.0
         self._remaining_ns = None if seconds is None else round(seconds * NANOSECONDS_PER_SECOND)
@@ -192,3 +194,5 @@ class Runner:
         if elapsed >= _MEASUREMENT_PERIOD:
             self.real_time_factor = max(simulated - self._last_measurement[1], 0) / NANOSECONDS_PER_SECOND / elapsed
             self._last_measurement = now, simulated
+            if not self.is_paused:
+                self._pace.add(self.real_time_factor, self._factor, elapsed)

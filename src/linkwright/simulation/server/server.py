@@ -52,6 +52,8 @@ from linkwright.simulation.simulation import Simulation
 
 _WORLD_OWNER = ""
 """The key of the world's plugins. No model has this name."""
+_PACE_OWNER = "::pace"
+"""The key of the finding about the pace. No model has this name, because names contain no '::'."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -513,6 +515,12 @@ class SimulationServer:
                 logger.error(line)
             else:
                 logger.warning(line)
+
+    def show_pace(self, finding: Diagnostic | None) -> None:
+        """Keep and log the finding that the world is slow, or remove it."""
+        self._forget_findings({_PACE_OWNER})
+        if finding is not None:
+            self.report([finding], _PACE_OWNER)
 
     def _forget_findings(self, models: Collection[str]) -> None:
         models_with_findings = models & self._findings.keys()

@@ -1,0 +1,54 @@
+"""The finding that this computer cannot simulate a world as fast as requested."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import inf
+
+from linkwright.diagnostics import Diagnostic, Severity, phrase
+
+_SLOW = 0.8
+_FAST = 0.9
+"""The shares of the requested real-time factor below which a world is slow, and above which it is no longer."""
+_PATIENCE_S = 10.0
+"""The real time in s for which a world must be slow or fast."""
+
+
+class PaceWatch:
+    """Watches the real-time factor of a simulation.
+
+    Args:
+        report: called with the finding when the world has become slow, and with None when it has recovered.
+    """
+
+    def __init__(self, report: Callable[[Diagnostic | None], object]) -> None:
+        self._report = report
+        self._is_slow = False
+        self._changed_s = 0.0
+
+    def add(self, factor: float, requested: float, elapsed_s: float) -> None:
+        """Add a measurement.
+
+        Args:
+            factor: the real-time factor.
+            requested: the requested one; infinite for as fast as possible.
+            elapsed_s: the real time since the last measurement.
+        """
+        limit = _FAST if self._is_slow else _SLOW
+        is_slow = requested < inf and factor < limit * requested
+        self._changed_s = 0.0 if is_slow == self._is_slow else self._changed_s + elapsed_s
+        if self._changed_s >= _PATIENCE_S:
+            self._changed_s = 0.0
+            self._is_slow = not self._is_slow
+            self._report(_finding(factor) if self._is_slow else None)
+
+
+def _finding(factor: float) -> Diagnostic:
+    message = phrase(
+        "the world runs at {factor} of real time, because this computer cannot hold more", factor=f"{factor:.1g}"
+    )
+    hint = phrase(
+        "nothing is wrong: nodes follow the simulated time, and all only takes longer; for a lighter world, switch off "
+        "displays of images, give cameras fewer pixels and lower rates, close other programs and pages"
+    )
+    return Diagnostic("SIM146", message, severity=Severity.WARNING, hint=hint)
