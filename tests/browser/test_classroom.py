@@ -148,6 +148,38 @@ def test_a_file_that_another_program_creates_meanwhile_is_shown(start, open_page
     page.locator(".editor-notice").wait_for(state="hidden")
 
 
+def test_texts_are_whole_and_only_what_is_typed_can_be_copied(start, open_page, workspace):
+    page = open_page(start("learn", str(workspace)), wait=False, size=(1024, 700))
+    until(page, f"{CHECKS}?.checked_at")
+    assert page.locator(".source-heading").first.is_hidden()
+    place = page.locator(".lesson-place")
+    assert "0 of 81 steps passed" in place.inner_text()
+    assert place.evaluate("element => element.scrollWidth <= element.clientWidth")
+    page.get_by_role("button", name="Steps").click()
+    page.locator(".outline-step", has_text="A package for nodes").click()
+    until(page, "lw.panels.lesson.step === '05-nodes/package'")
+    output = page.locator(".lesson-code", has=page.locator("code.language-text"))
+    assert output.count() == 1
+    assert output.locator("button").count() == 0
+    assert page.locator(".lesson-code", has=page.locator("code.language-bash")).first.locator("button").count() == 1
+    page.get_by_role("button", name="中文").click()
+    page.get_by_role("button", name="步骤").click()
+    page.locator(".outline-step", has_text="发布").first.click()
+    until(page, "lw.panels.lesson.step === '05-nodes/publish'")
+    tops = page.evaluate(
+        """() => [...document.querySelectorAll('.lesson-text p > code')].filter(
+            code => /^[：，。；、]/.test(code.nextSibling?.textContent ?? '')
+        ).map(code => {
+            const mark = document.createRange();
+            mark.setStart(code.nextSibling, 0);
+            mark.setEnd(code.nextSibling, 1);
+            return mark.getBoundingClientRect().bottom - [...code.getClientRects()].at(-1).bottom;
+        })"""
+    )
+    assert tops
+    assert all(abs(top) < 8 for top in tops), "punctuation is on the line of the code before it"
+
+
 def test_the_classroom_fits_a_small_screen_and_is_accessible(start, open_page, workspace):
     workspace.mkdir()
     shutil.copy(ROBOT, workspace)

@@ -56,6 +56,17 @@ def test_a_fix_is_offered_only_for_the_text_that_was_checked(workspace, folder):
     assert workspace.fixable(file, {}) == []
 
 
+def test_an_empty_manifest_has_no_findings_once_it_is_filled(workspace, folder):
+    file = folder / "arm" / "package.xml"
+    file.parent.mkdir()
+    file.write_text("")
+    texts = {file: ""}
+    assert workspace.subjects(file, texts) == []
+    assert [finding.code for finding in workspace.check(file, texts, [file])[file]] == ["XML105"]
+    file.write_text("<package><name>arm</name></package>")
+    assert codes(workspace, file, {file: file.read_text()}) == {"package.xml": []}
+
+
 def test_findings_go_with_the_file(workspace, folder):
     file = folder / "r.urdf"
     file.write_text(LONG_AXIS)

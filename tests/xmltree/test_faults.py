@@ -99,6 +99,16 @@ def test_empty_files(text: str) -> None:
     assert (code, message) == ("XML105", "'robot.urdf' is empty")
 
 
+@pytest.mark.parametrize(
+    ("name", "element"),
+    [("arm.xacro", "<robot"), ("package.xml", "<package"), ("a.launch", "<launch>"), ("a.launch.xml", "<launch>")],
+)
+def test_the_hint_for_an_empty_file_names_its_first_element(name: str, element: str) -> None:
+    with pytest.raises(LinkwrightError) as caught:
+        parse("", name)
+    assert element in str(caught.value.diagnostics[0].hint)
+
+
 def test_bytes_that_are_no_text() -> None:
     code, message, line, column, hint = finding_of(b"<a>\n\xc3\xa9<b n='\xff'/></a>")
     assert (code, message, line, column) == ("XML104", "byte 0xff is not valid UTF-8", 2, 8)

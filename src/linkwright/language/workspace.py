@@ -227,7 +227,10 @@ class Workspace:
                 return [*dict.fromkeys((*entries, *below))]
         package = enclosing_package(file.parent)
         found = self.index.entries(file, texts) if is_description else []
-        return [*found, *([] if package is None else [real(package[1])])]
+        subjects = [*found, *([] if package is None else [real(package[1])])]
+        if subjects and file not in subjects:
+            self._results.pop(file, None)  # of the file alone, before it belonged to a description or a package
+        return subjects
 
     def check(
         self, subject: Path, texts: Mapping[Path, str], changed: Iterable[Path] = ()

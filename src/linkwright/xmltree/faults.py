@@ -101,6 +101,27 @@ def forbidden_entity(source: SourceText, offset: int, message: Phrase) -> Linkwr
     )
 
 
+_FIRST_ELEMENTS = (
+    ("package.xml", '<package format="3">'),
+    (".srdf", '<robot name="...">'),
+    (".urdf", '<robot name="...">'),
+    (".xacro", '<robot name="...">'),
+    (".sdf", '<sdf version="...">'),
+    (".world", '<sdf version="...">'),
+    (".launch", "<launch>"),
+    ("launch.xml", "<launch>"),
+    (".config", "<model>"),
+)
+"""The first elements of files, by the ends of their names."""
+
+
+def _first_element_hint(name: str) -> Phrase:
+    for end, element in _FIRST_ELEMENTS:
+        if name.endswith(end):
+            return phrase("such a file begins with {element}; was the file saved?", element=element)
+    return phrase("was the file saved?")
+
+
 class _Fault:
     def __init__(self, source: SourceText, offset: int, open_elements: list[tuple[str, int]]) -> None:
         self._source = source
@@ -112,7 +133,7 @@ class _Fault:
         code = error.code
         if not self._text.strip():
             message = phrase("'{name}' is empty", name=self._source.name)
-            hint = phrase('a description begins with <robot name="...">; was the file saved?')
+            hint = _first_element_hint(self._source.name)
             return Diagnostic("XML105", message, span=self._source.span(0, 0), hint=hint, source=self._source)
         if template := self._template():
             return template

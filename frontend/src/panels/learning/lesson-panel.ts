@@ -72,7 +72,7 @@ export class LessonPanel implements Panel {
     if (step === null) return;
     const words = strings.learning;
     const passedCount = state.steps.filter(({ is_passed: isPassed }) => isPassed).length;
-    this.place.textContent = words.place(localText(step.lesson), passedCount, state.steps.length);
+    this.place.replaceChildren(`${localText(step.lesson)} · `, h("span", {}, words.progress(passedCount, state.steps.length)));
     this.back.disabled = state.neighbor(-1) === undefined;
     this.next.disabled = state.neighbor(1) === undefined;
     this.next.classList.toggle("primary", state.isPassed);

@@ -28,7 +28,8 @@ function clean(element: Element, allowsImages: boolean): void {
     for (const { name, value } of [...child.attributes]) {
       const isLink = child.tagName === "A" && name === "href" && /^https?:\/\//i.test(value);
       const isOfImage = isImage && (name === "src" || name === "alt");
-      if (!isLink && !isOfImage && !(child.tagName === "SPAN" && name === "class")) child.removeAttribute(name);
+      const isLanguage = child.tagName === "CODE" && name === "class" && /^language-\w+$/.test(value);
+      if (!isLink && !isOfImage && !isLanguage && !(child.tagName === "SPAN" && name === "class")) child.removeAttribute(name);
     }
     if (child.tagName === "A") {
       child.setAttribute("target", "_blank");

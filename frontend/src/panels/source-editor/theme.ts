@@ -84,6 +84,7 @@ const colors = EditorView.theme({
     color: "var(--text)",
   },
   ".cm-panel.cm-panel-lint": { font: "12px var(--font)" },
+  ".cm-panel-lint .cm-diagnostic": { overflowWrap: "anywhere", paddingRight: "24px" },
 });
 
 const syntax = HighlightStyle.define([

@@ -7,7 +7,7 @@ export const learning = {
   off: "No course is open. Start one with `linkwright learn`.",
   outline: "Steps",
   outlineHint: "Show all lessons and steps",
-  place: (lesson: string, passed: number, count: number): string => `${lesson} · ${passed} of ${count} steps passed`,
+  progress: (passed: number, count: number): string => `${passed} of ${count} steps passed`,
   passedStep: (name: string): string => `${name} (passed)`,
   takenOverStep: (name: string): string => `${name} (taken over from the course)`,
   missingSteps: (count: number): string => `${plural(count, "earlier step")} ${count === 1 ? "is" : "are"} not done. These checks may need ${count === 1 ? "its" : "their"} files.`,
