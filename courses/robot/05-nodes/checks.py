@@ -78,6 +78,20 @@ def knows_radius(work):
     work.expect_number(0.4, tolerance=0.03, slips=slips)
 
 
+@check("stop", en="rclpy leaves Ctrl-C to the program.", zh="rclpy 把 Ctrl-C 留给程序处理。")
+def leaves_signals(work):
+    sources = (work.package("my_control").folder / "my_control").glob("*.py")
+    if not any(
+        re.search(r"SignalHandlerOptions\.NO\b|\bsignal\.signal\(", source.read_text("utf-8")) for source in sources
+    ):
+        raise NotYet(
+            en="After rclpy.init() alone, Ctrl-C shuts rclpy down before the program can publish; write "
+            "rclpy.init(signal_handler_options=SignalHandlerOptions.NO).",
+            zh="只写 rclpy.init() 时，按 Ctrl-C 会先关闭 rclpy，程序来不及发布；请写成 "
+            "rclpy.init(signal_handler_options=SignalHandlerOptions.NO)。",
+        )
+
+
 @check("stop", en="The last velocity is zero when the node has ended.", zh="节点结束后，最后的速度是零。")
 def stops_robot(work):
     _, all_commands, _ = run_first_move(work, 1.0)
@@ -97,20 +111,6 @@ def expect_speed(work, speed, *arguments):
         raise NotYet(
             en=f"With {what}, the speed is {actual:g} m/s, but should be {speed:g}.",
             zh=f"参数为“{' '.join(arguments) or '无'}”时，速度是 {actual:g} m/s，应当是 {speed:g}。",
-        )
-
-
-@check("stop", en="rclpy leaves Ctrl-C to the program.", zh="rclpy 把 Ctrl-C 留给程序处理。")
-def leaves_signals(work):
-    sources = (work.package("my_control").folder / "my_control").glob("*.py")
-    if not any(
-        re.search(r"SignalHandlerOptions\.NO\b|\bsignal\.signal\(", source.read_text("utf-8")) for source in sources
-    ):
-        raise NotYet(
-            en="After rclpy.init() alone, Ctrl-C shuts rclpy down before the program can publish; write "
-            "rclpy.init(signal_handler_options=SignalHandlerOptions.NO).",
-            zh="只写 rclpy.init() 时，按 Ctrl-C 会先关闭 rclpy，程序来不及发布；请写成 "
-            "rclpy.init(signal_handler_options=SignalHandlerOptions.NO)。",
         )
 
 
