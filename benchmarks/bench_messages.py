@@ -41,18 +41,29 @@ def joint_state() -> Any:
     """Twelve joints."""
     values = np.linspace(-1.0, 1.0, 12)
     names = [f"arm_{number}_joint" for number in range(12)]
-    return JointState(Header(Time(1_700_000_000, 5), "base_link"), names, values, values, values)
+    return JointState(
+        header=Header(stamp=Time(sec=1_700_000_000, nanosec=5), frame_id="base_link"),
+        name=names,
+        position=values,
+        velocity=values,
+        effort=values,
+    )
 
 
 def transforms(count: int) -> Any:
     """That many links of one robot."""
-    header = Header(Time(1_700_000_000, 5), "base_link")
-    return TFMessage([TransformStamped(header, f"link_{number}", Transform()) for number in range(count)])
+    header = Header(stamp=Time(sec=1_700_000_000, nanosec=5), frame_id="base_link")
+    return TFMessage(
+        transforms=[
+            TransformStamped(header=header, child_frame_id=f"link_{number}", transform=Transform())
+            for number in range(count)
+        ]
+    )
 
 
 def messages() -> dict[str, Any]:
     """What is measured, by what a reader calls it."""
-    header = Header(Time(1_700_000_000, 5), "camera")
+    header = Header(stamp=Time(sec=1_700_000_000, nanosec=5), frame_id="camera")
     pixels = np.arange(640 * 480 * 3, dtype=np.uint8)
     laser = np.linspace(0.0, 10.0, 720, dtype=np.float32)
     image = get_message("sensor_msgs/msg/Image")

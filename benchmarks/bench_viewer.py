@@ -104,7 +104,7 @@ async def cost(links: int, pages: int | None) -> Cost:
     library = DescriptionLibrary()
     async with viewer_of(graph, library) as viewer:
         description = graph.create_node("describer").create_publisher(String, "robot_description", DESCRIPTION_QOS)
-        description.publish(String(tree_robot(links)))
+        description.publish(String(data=tree_robot(links)))
         stop, told = spawn.Event(), spawn.Queue()
         url = viewer.url.replace("/?", "/ws?")
         readies = [spawn.Event() for _ in range(pages)]

@@ -190,7 +190,9 @@ async def show(scene: Scene) -> None:
     publisher = node.create_publisher(type(messages[0]), TOPIC, 10)
     tasks = [at_rate(scene.rate, lambda turn: publisher.publish(messages[turn % len(messages)]))]
     if scene.links:
-        node.create_publisher(String, "robot_description", DESCRIPTION_QOS).publish(String(tree_robot(scene.links)))
+        node.create_publisher(String, "robot_description", DESCRIPTION_QOS).publish(
+            String(data=tree_robot(scene.links))
+        )
         tasks.append(at_rate(scene.frame_rate, Frames(graph, scene.links).publish))
     ended = asyncio.Event()
     asyncio.get_running_loop().add_signal_handler(signal.SIGINT, ended.set)

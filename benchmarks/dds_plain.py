@@ -114,7 +114,9 @@ def message(kind: str) -> Any:
         return JointState(header, names, [0.1] * JOINTS, [0.2] * JOINTS, [0.3] * JOINTS)
     if kind in ("transforms", "objects"):
         transform = Transform(Vector3(0.0, 0.0, 0.0), Quaternion(0.0, 0.0, 0.0, 1.0))
-        return TFMessage([TransformStamped(header, f"link_{number}", transform) for number in range(TRANSFORMS)])
+        return TFMessage(
+            transforms=[TransformStamped(header, f"link_{number}", transform) for number in range(TRANSFORMS)]
+        )
     return Image(header, HEIGHT, WIDTH, "rgb8", 0, 3 * WIDTH, bytes(3 * WIDTH * HEIGHT))
 
 

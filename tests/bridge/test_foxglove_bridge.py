@@ -133,7 +133,7 @@ async def test_messages_come_as_cdr_and_stop_on_demand():
         channel = await client.channel("/chatter")
         await client.send("subscribe", subscriptions=[{"id": 42, "channelId": channel["id"]}])
         await eventually(lambda: publisher.get_subscription_count() == 1)
-        publisher.publish(String("hello"))
+        publisher.publish(String(data="hello"))
         frame = await client.frame(1)
         code, subscription, stamp = struct.unpack_from("<BIQ", frame)
         assert (code, subscription) == (1, 42)
@@ -145,7 +145,7 @@ async def test_messages_come_as_cdr_and_stop_on_demand():
 
 async def test_a_late_client_gets_what_lasts():
     async with world() as w:
-        w.node.create_publisher(String, "/robot_description", DESCRIPTION_QOS).publish(String("<robot/>"))
+        w.node.create_publisher(String, "/robot_description", DESCRIPTION_QOS).publish(String(data="<robot/>"))
         async with w.client() as client:
             channel = await client.channel("/robot_description")
             await client.send("subscribe", subscriptions=[{"id": 1, "channelId": channel["id"]}])
@@ -277,7 +277,7 @@ async def test_only_meshes_of_packages_that_a_description_names_are_given(tmp_pa
     async with world() as w, w.client() as client:
         assert (await fetched(client, "package://arm_pkg/meshes/a.stl"))[0] == 1
         w.node.create_publisher(String, "/robot_description", DESCRIPTION_QOS).publish(
-            String('<robot><mesh filename="package://arm_pkg/meshes/a.stl"/></robot>')
+            String(data='<robot><mesh filename="package://arm_pkg/meshes/a.stl"/></robot>')
         )
         await w.graph.settle()
         assert await fetched(client, "package://arm_pkg/meshes/a.stl") == (0, b"solid a")

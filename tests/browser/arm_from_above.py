@@ -102,7 +102,7 @@ class Scene:
 def open_scene(live: Any, open_page: Any) -> Scene:
     """The arm, published and seen from above; the arguments are the fixtures of these names."""
     viewer = live(yaml.safe_dump(CONFIG))
-    viewer.publish("/robot_description", String(ARM), DESCRIPTION_QOS)
+    viewer.publish("/robot_description", String(data=ARM), DESCRIPTION_QOS)
     viewer.place("tip", *TIP, 0.0)
     viewer.place("mark", 0.0, 0.0, 0.0, parent="tip")
     made = Scene(viewer, open_page(viewer))

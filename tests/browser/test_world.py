@@ -44,7 +44,7 @@ SERVICES = {
 
 def described(live):
     viewer = live(configuration(DISPLAYS, distance=12.0).replace("Fixed Frame: base", "Fixed Frame: world"))
-    viewer.publish("/world_description", String(WORLD), DESCRIPTION_QOS)
+    viewer.publish("/world_description", String(data=WORLD), DESCRIPTION_QOS)
     return viewer
 
 
@@ -225,7 +225,7 @@ def test_a_world_is_in_the_light_of_the_camera_a_studio_or_its_own_lights(live, 
     ):
         displays = DISPLAYS.replace("Name: World", f"Name: World, Light: {choice}")
         viewer = live(configuration(displays, distance=16.0).replace("Fixed Frame: base", "Fixed Frame: world"))
-        viewer.publish("/world_description", String(WORLD.replace("</world>", LAMPS)), DESCRIPTION_QOS)
+        viewer.publish("/world_description", String(data=WORLD.replace("</world>", LAMPS)), DESCRIPTION_QOS)
         page = open_page(viewer)
         viewer.settle(page)
         assert lit(page) == expected
@@ -246,7 +246,7 @@ def test_rays_and_frustums_are_drawn_as_the_display_chooses(live, open_page):
         return page.evaluate("() => window.linkwright.displays[0].drawn.sensors")
 
     viewer = described(live)
-    viewer.publish("/world_description", String(WORLD.replace("</world>", SENSING)), DESCRIPTION_QOS)
+    viewer.publish("/world_description", String(data=WORLD.replace("</world>", SENSING)), DESCRIPTION_QOS)
     page = open_page(viewer)
     viewer.settle(page)
     assert drawn(page) == {"rays": {}, "frustums": []}

@@ -47,7 +47,7 @@ async def test_the_text_and_the_state_of_the_judge_are_shown(tmp_path):
             "the world has not sent the state of the judge yet"
         )
         publisher = scene.graph.create_node("judge").create_publisher(String, "/judge/status", 10)
-        publisher.publish(String(json.dumps(STATE)))
+        publisher.publish(String(data=json.dumps(STATE)))
         (check,) = (await client.until("step_checks"))["checks"]
         assert check["title"] == {"en": "lap time 23.4 s", "zh": "一圈的时间 23.4 s"}
         assert (check["is_passed"], check["message"]["en"]) == (False, "It left the line.")

@@ -213,7 +213,9 @@ def test_arrays_that_are_no_rows_in_memory_are_written_by_value():
 
 
 def test_what_was_read_can_be_changed_and_is_nobody_elses():
-    data = serialize(JointState(Header(Time(1, 2), "a"), ["x", "y"], [1.0, 2.0]))
+    data = serialize(
+        JointState(header=Header(stamp=Time(sec=1, nanosec=2), frame_id="a"), name=["x", "y"], position=[1.0, 2.0])
+    )
     first, second = deserialize(data, JointState), deserialize(data, JointState)
     first.name.append("z")
     first.position[0] = 5.0

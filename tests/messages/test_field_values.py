@@ -62,13 +62,13 @@ def test_fields_that_are_not_given_keep_their_values_nested_ones_their_defaults(
 def test_stamps_of_the_time_of_sending():
     message = get_message("geometry_msgs/msg/PoseStamped")()
     (set_stamp,) = set_fields(message, {"header": "auto"}, expand_header_auto=True)
-    set_stamp(Time(7, 8))
-    assert message.header.stamp == Time(7, 8)
+    set_stamp(Time(sec=7, nanosec=8))
+    assert message.header.stamp == Time(sec=7, nanosec=8)
     array_message = get_message("visualization_msgs/msg/MarkerArray")()
     values = {"markers": [{"header": {"stamp": "now", "frame_id": "a"}}, {"header": "auto"}]}
     setters = set_fields(array_message, values, expand_header_auto=True, expand_time_now=True)
     for setter in setters:
-        setter(Time(9))
+        setter(Time(sec=9))
     assert [marker.header.stamp.sec for marker in array_message.markers] == [9, 9]
     assert array_message.markers[0].header.frame_id == "a"
     with pytest.raises(FieldValueError):

@@ -27,15 +27,17 @@ from tests.messages.random_messages import rosbags_object, rosbags_store
 
 NAMES = st.sampled_from(["", "a", "base_link", "é漢", "link_17", "x" * 40])
 NUMBERS = st.floats(allow_nan=False)
-STAMPS = st.builds(Time, st.integers(-(2**31), 2**31 - 1), st.integers(0, 2**32 - 1))
+STAMPS = st.builds(Time, sec=st.integers(-(2**31), 2**31 - 1), nanosec=st.integers(0, 2**32 - 1))
 TRANSFORMS = st.builds(
     TransformStamped,
-    st.builds(Header, STAMPS, NAMES),
-    NAMES,
-    st.builds(
-        Transform, st.builds(Vector3, *[NUMBERS] * 3), st.builds(Quaternion, *[NUMBERS] * 4)
+    header=st.builds(Header, stamp=STAMPS, frame_id=NAMES),
+    child_frame_id=NAMES,
+    transform=st.builds(
+        Transform,
+        translation=st.builds(Vector3, x=NUMBERS, y=NUMBERS, z=NUMBERS),
+        rotation=st.builds(Quaternion, x=NUMBERS, y=NUMBERS, z=NUMBERS, w=NUMBERS),
     ),
-)  # fmt: skip
+)
 
 
 def chain(count, seed=0, prefix="link"):
@@ -48,7 +50,7 @@ def chain(count, seed=0, prefix="link"):
 @given(st.lists(TRANSFORMS, max_size=12), st.integers(0, 10))
 @settings(max_examples=150, deadline=None)
 def test_all_forms_are_the_same_message(transforms, changed):
-    message = TFMessage(transforms)
+    message = TFMessage(transforms=transforms)
     data = serialize(message)
     assert data == bytes(rosbags_store().serialize_cdr(rosbags_object(message), TFMessage.TYPE_NAME))
     for _ in range(3):  # read one by one, then known again
@@ -64,15 +66,15 @@ def test_all_forms_are_the_same_message(transforms, changed):
         # The same frames with other numbers and stamps.
         other = copy.deepcopy(transforms)
         other[changed % len(other)].transform.translation.x = 17.0
-        other[changed % len(other)].header.stamp = Time(1, 2)
-        assert deserialize(serialize(TFMessage(other)), TFMessage).transforms == other
+        other[changed % len(other)].header.stamp = Time(sec=1, nanosec=2)
+        assert deserialize(serialize(TFMessage(transforms=other)), TFMessage).transforms == other
 
 
 @pytest.mark.parametrize("count", [0, 1, 5, 6, 7, 20, 100])
 def test_a_batch_is_written_as_its_objects_are(count):
     batch = chain(count) if count else TransformBatch((), (), 0, np.zeros((0, 7)))
     data = serialize(TFMessage(batch=batch))
-    assert data == serialize(TFMessage(batch.to_messages()))
+    assert data == serialize(TFMessage(transforms=batch.to_messages()))
     received = deserialize(data, TFMessage)
     assert received == TFMessage(batch=batch)
     again = deserialize(data, TFMessage).batch

@@ -89,13 +89,15 @@ class Stage:
         return JointStatePublisherGui(self.graph, self.options(parameters))
 
     async def describe(self, text: str) -> None:
-        self._descriptions.publish(String(text))
+        self._descriptions.publish(String(data=text))
         await self.graph.settle()
 
     async def move(self, positions: dict[str, float], *, stamp_ns: int | None = None) -> None:
         """Publish joint states, stamped now unless it is said otherwise."""
         stamp = Time.from_nanoseconds(self.clock.now_ns() if stamp_ns is None else stamp_ns)
-        self._joint_states.publish(JointState(Header(stamp), list(positions), list(positions.values())))
+        self._joint_states.publish(
+            JointState(header=Header(stamp=stamp), name=list(positions), position=list(positions.values()))
+        )
         await self.graph.settle()
 
     async def send(self, message: JointState) -> None:

@@ -195,7 +195,7 @@ class TestSources:
         await stage.describe(robot(joint("a"), joint("b")))
         for topic, name, position in (("left", "a", 99.0), ("right", "b", 1.0), ("right", "unknown", 1.0)):
             source = stage.node.create_publisher(JointState, topic, 10)
-            source.publish(JointState(Header(), [name], [position]))
+            source.publish(JointState(header=Header(), name=[name], position=[position]))
         await stage.graph.settle()
         assert len(stage.joint_states) == 1
         await clock.advance(0.1)
@@ -206,7 +206,7 @@ class TestSources:
         await stage.describe(robot(joint("a"), joint("b")))
         assert list(stage.joint_states[-1].position) == []
         source = stage.node.create_publisher(JointState, "source", 10)
-        source.publish(JointState(Header(), ["b"], np.array([1.0])))
+        source.publish(JointState(header=Header(), name=["b"], position=np.array([1.0])))
         await clock.advance(0.1)
         assert stage.positions() == {"a": 0.0, "b": 1.0}
 

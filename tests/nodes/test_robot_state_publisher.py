@@ -206,7 +206,7 @@ class TestBadMessages:
     async def test_names_twice_take_the_first(self, stage, clock):
         stage.robot_state_publisher(TWO)
         stamp = Time.from_nanoseconds(clock.now_ns())
-        await stage.send(JointState(Header(stamp), ["a", "a"], [0.0, 1.0]))
+        await stage.send(JointState(header=Header(stamp=stamp), name=["a", "a"], position=[0.0, 1.0]))
         assert stage.buffer.lookup("base", "a_link")[6] == 1.0
 
 

@@ -79,7 +79,7 @@ class Compared:
 
     def move(self, **positions: float) -> None:
         stamp = self.made.graph.timebase.now_ns()
-        message = JointState(Header(), list(positions), list(positions.values()))
+        message = JointState(header=Header(), name=list(positions), position=list(positions.values()))
         message.header.stamp = type(message.header.stamp).from_nanoseconds(stamp)
         self.joint_states.publish(message)
 

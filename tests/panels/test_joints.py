@@ -65,7 +65,9 @@ async def filled(graph, panel):
     from linkwright.graph import DESCRIPTION_QOS
     from linkwright.messages import String
 
-    graph.create_node("rsp").create_publisher(String, "robot_description", DESCRIPTION_QOS).publish(String(GRIPPER))
+    graph.create_node("rsp").create_publisher(String, "robot_description", DESCRIPTION_QOS).publish(
+        String(data=GRIPPER)
+    )
     await graph.settle()
     assert panel.sliders()
 

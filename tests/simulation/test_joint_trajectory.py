@@ -25,10 +25,10 @@ def controller(more: str = GAINS) -> str:
 def trajectory(*points: tuple[float, float], name: str = "shoulder", stamp: int = 0):
     """A message: seconds from the start and positions in rad."""
     message = get_message("trajectory_msgs/msg/JointTrajectory")(joint_names=[name])
-    message.header.stamp = Time(stamp, 0)
+    message.header.stamp = Time(sec=stamp, nanosec=0)
     for seconds, position in points:
         point = get_message("trajectory_msgs/msg/JointTrajectoryPoint")(positions=[position])
-        point.time_from_start = Duration(int(seconds), round(seconds % 1 * SECOND))
+        point.time_from_start = Duration(sec=int(seconds), nanosec=round(seconds % 1 * SECOND))
         message.points.append(point)
     return message
 

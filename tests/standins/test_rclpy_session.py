@@ -55,7 +55,7 @@ class TestContexts:
         with pytest.raises(RuntimeError):
             rclpy.init(args=[], context=context)
         rclpy.shutdown(context=context)
-        with pytest.raises(RCLError, match="it was shut down already"):
+        with pytest.raises(RCLError, match="already called on the given context"):
             rclpy.shutdown(context=context)
         rclpy.try_shutdown(context=context)
 
@@ -140,7 +140,25 @@ class TestSignals:
             rclpy.spin(node)
         assert not rclpy.ok()
         node.destroy_node()
-        rclpy.shutdown()
+        with pytest.raises(RCLError, match="already called on the given context"):
+            rclpy.shutdown()
+
+    def test_after_a_signal_a_node_can_log_but_not_publish(self, node):
+        """The real rclpy of Humble, Jazzy and Kilted does the same."""
+        publisher = node.create_publisher(String, "chatter", 1)
+        client = node.create_client(AddTwoInts, "sum")
+        signal.raise_signal(signal.SIGTERM)
+        node.get_logger().info(f"{node.get_name()} stops at {node.get_clock().now()}")
+        for use in (
+            lambda: publisher.publish(String()),
+            lambda: client.call_async(AddTwoInts.Request()),
+            lambda: node.create_publisher(String, "other", 1),
+            lambda: node.create_timer(1.0, print),
+        ):
+            with pytest.raises(RCLError, match="context is invalid"):
+                use()
+        node.destroy_node()
+        rclpy.try_shutdown()
 
     def test_sigterm_ends_spin(self, node):
         threading.Timer(0.05, os.kill, [os.getpid(), signal.SIGTERM]).start()
@@ -165,7 +183,7 @@ class TestSignals:
                 print("interrupted", flush=True)
             finally:
                 node.destroy_node()
-                rclpy.shutdown()
+                rclpy.try_shutdown()
             """)
         )
         child = subprocess.Popen(

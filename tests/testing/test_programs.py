@@ -322,24 +322,42 @@ def test_sys_exit_ends_a_program(write):
     assert run(write("sys.exit('no robot')"))[1].exit_code == 1
 
 
-def test_ctrl_c_at_the_end_lets_a_program_stop_the_robot(write):
-    program = write("""
-        rclpy.init()
-        node = Node("talker")
-        publisher = node.create_publisher(String, "chatter", 10)
-        try:
-            rclpy.spin(node)
-        except KeyboardInterrupt:
-            publisher.publish(String(data="stop"))
-            time.sleep(0.5)
-            publisher.publish(String(data="stopped"))
-    """)
+STOPS_AT_CTRL_C = """
+    from rclpy.signals import SignalHandlerOptions
+
+    rclpy.init({options})
+    node = Node("talker")
+    publisher = node.create_publisher(String, "chatter", 10)
+    try:
+        rclpy.spin(node)
+    except KeyboardInterrupt:
+        publisher.publish(String(data="stop"))
+        time.sleep(0.5)
+        publisher.publish(String(data="stopped"))
+"""
+
+
+def run_until_ctrl_c(program):
     with SteppedGraph() as test:
         chatter = test.record("/chatter", String)
         ended = test.start_program(program)
         test.advance(1.0)
-    assert [message.data for message in chatter] == ["stop", "stopped"]
+    return [message.data for message in chatter], ended
+
+
+def test_a_program_that_handles_ctrl_c_itself_can_stop_the_robot(write):
+    program = write(STOPS_AT_CTRL_C.format(options="signal_handler_options=SignalHandlerOptions.NO"))
+    messages, ended = run_until_ctrl_c(program)
+    assert messages == ["stop", "stopped"]
     assert ended.exit_code == 0
+
+
+def test_after_ctrl_c_rclpy_publishes_nothing(write, capsys):
+    """The program fails as under ROS 2, but the test does not: the test ends the program."""
+    messages, ended = run_until_ctrl_c(write(STOPS_AT_CTRL_C.format(options="")))
+    assert messages == []
+    assert ended.exit_code == 1
+    assert "RCLError: the context is invalid" in capsys.readouterr().err
 
 
 def test_a_handler_of_the_program_receives_ctrl_c(write):

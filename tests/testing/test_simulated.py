@@ -23,6 +23,20 @@ SLOPE = """<sdf version="1.7"><world name="slope"><model name="ramp"><static>tru
 <collision name="c"><pose>0 0 -0.5 0 0.3 0</pose><geometry><box><size>20 20 1</size></box></geometry></collision>
 </link></model></world></sdf>"""
 
+LASER_BEHIND_A_POST = """<robot name="observer">
+<link name="base_link"><inertial><origin xyz="0 0 0.1"/><mass value="2"/>
+<inertia ixx="0.1" iyy="0.1" izz="0.1" ixy="0" ixz="0" iyz="0"/></inertial>
+<collision><origin xyz="0 0 0.1"/><geometry><box size="0.2 0.2 0.2"/></geometry></collision></link>
+<joint name="laser_joint" type="fixed"><origin xyz="0 0 0.3"/><parent link="base_link"/><child link="laser"/></joint>
+<link name="laser"/>
+<joint name="post_joint" type="fixed"><origin xyz="0.5 0 0.2"/><parent link="base_link"/><child link="post"/></joint>
+<link name="post"><collision><geometry><box size="0.2 0.2 0.4"/></geometry></collision></link>
+<gazebo reference="laser"><sensor type="ray" name="laser"><update_rate>10</update_rate><ray><scan><horizontal>
+<samples>1</samples><min_angle>0</min_angle><max_angle>0</max_angle></horizontal></scan>
+<range><min>0.1</min><max>5</max></range></ray><plugin name="laser" filename="libgazebo_ros_ray_sensor.so">
+<ros><remapping>~/out:=scan</remapping></ros><output_type>sensor_msgs/LaserScan</output_type>
+<frame_name>laser</frame_name></plugin></sensor></gazebo></robot>"""
+
 
 def test_the_example_of_the_documentation_runs():
     results = doctest.testmod(linkwright.testing.simulated)
@@ -59,6 +73,16 @@ def test_wheels_that_begin_to_turn_do_not_slip_away_from_their_odometry(linear, 
         result = [getattr(pose.orientation, name) for name in "xyzw"]
         assert [x, y] == pytest.approx([pose.position.x, pose.position.y], abs=1e-3)
         assert rpy_from_quaternion(rotation)[2] == pytest.approx(rpy_from_quaternion(result)[2], abs=1e-3)
+
+
+def test_a_laser_measures_the_links_on_fixed_joints_as_in_the_server(tmp_path):
+    """gz merges them with the laser's link, whose collisions no ray meets. The server keeps them."""
+    robot = tmp_path / "robot.urdf"
+    robot.write_text(LASER_BEHIND_A_POST, encoding="utf-8")
+    with SteppedSimulation("empty", robot) as test:
+        scan = test.record("/scan")
+        test.advance(0.5)
+        assert list(scan.last.ranges) == pytest.approx([0.4], abs=0.01)
 
 
 def _driven(seed: int) -> tuple[list[bytes], list[float]]:

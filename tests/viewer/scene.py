@@ -67,7 +67,7 @@ class World:
         )
 
     def describe(self, text: str) -> None:
-        self._description.publish(String(text))
+        self._description.publish(String(data=text))
 
     def move(self, poses: dict[tuple[str, str], tuple[float, ...]], *, static: bool = False) -> None:
         """Publish poses of children in parents: (parent, child) -> x y z qx qy qz qw."""

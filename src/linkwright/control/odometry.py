@@ -127,17 +127,22 @@ class OdometryTopics:
     def _odometry_message(self, stamp: Time, pose: Transform, forward: float, sideways: float, angular: float) -> Any:
         classes = _classes()
         x, y, z, qx, qy, qz, qw = pose
-        message_pose = classes.pose(classes.point(x, y, z), Quaternion(qx, qy, qz, qw))
-        message_twist = classes.twist(Vector3(forward, sideways, 0.0), Vector3(0.0, 0.0, angular))
-        pose_covariance, twist_covariance = self._covariances
-        pose_with_covariance, twist_with_covariance = (
-            classes.pose_covariance(message_pose, pose_covariance),
-            classes.twist_covariance(message_twist, twist_covariance),
+        pose_message = classes.pose(
+            position=classes.point(x=x, y=y, z=z), orientation=Quaternion(x=qx, y=qy, z=qz, w=qw)
         )
-        return classes.odometry(Header(stamp, self.frame), self.child, pose_with_covariance, twist_with_covariance)
+        twist_message = classes.twist(
+            linear=Vector3(x=forward, y=sideways, z=0.0), angular=Vector3(x=0.0, y=0.0, z=angular)
+        )
+        pose_covariance, twist_covariance = self._covariances
+        return classes.odometry(
+            header=Header(stamp=stamp, frame_id=self.frame),
+            child_frame_id=self.child,
+            pose=classes.pose_covariance(pose=pose_message, covariance=pose_covariance),
+            twist=classes.twist_covariance(twist=twist_message, covariance=twist_covariance),
+        )
 
     def _transform_message(self, stamp: Time, pose: Transform, *_velocity: float) -> Any:
-        return transform_message(Header(stamp, self.frame), self.child, pose)
+        return transform_message(Header(stamp=stamp, frame_id=self.frame), self.child, pose)
 
 
 def _diagonal_matrix(variances: Variances) -> Array:
@@ -146,13 +151,17 @@ def _diagonal_matrix(variances: Variances) -> Array:
 
 def transform_message(header: Header, child: str, pose: Transform) -> Any:
     """Return a tf2_msgs/TFMessage with one transform."""
-    return _classes().transforms([transform_stamped(header, child, pose)])
+    return _classes().transforms(transforms=[transform_stamped(header, child, pose)])
 
 
 def transform_stamped(header: Header, child: str, pose: Transform) -> TransformStamped:
     """Return the pose of a child frame in the frame of a header, as a TransformStamped."""
     x, y, z, qx, qy, qz, qw = pose
-    return TransformStamped(header, child, TransformMessage(Vector3(x, y, z), Quaternion(qx, qy, qz, qw)))
+    return TransformStamped(
+        header=header,
+        child_frame_id=child,
+        transform=TransformMessage(translation=Vector3(x=x, y=y, z=z), rotation=Quaternion(x=qx, y=qy, z=qz, w=qw)),
+    )
 
 
 def transforms_topic(node: SteppedNode, name: str = "/tf") -> Output:

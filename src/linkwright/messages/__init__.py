@@ -12,7 +12,15 @@ from linkwright.messages.definitions.embedded import add_definitions
 from linkwright.messages.definitions.hashing import type_hash
 from linkwright.messages.distribution import is_before_iron
 from linkwright.messages.errors import DefinitionError, FieldValueError, InterfaceNotFoundError, MessageDataError
-from linkwright.messages.message import ActionType, Message, ServiceType, definition_of, deserialize, serialize
+from linkwright.messages.message import (
+    ActionType,
+    Message,
+    ServiceType,
+    definition_of,
+    deserialize,
+    from_values,
+    serialize,
+)
 from linkwright.messages.wellknown import (
     Duration,
     FloatSequence,
@@ -57,6 +65,7 @@ __all__ = [
     "definition_of",
     "definition_text",
     "deserialize",
+    "from_values",
     "get_action",
     "get_interface",
     "get_message",

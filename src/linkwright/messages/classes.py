@@ -220,7 +220,8 @@ class _FieldCode:
 def _constructor(fields: list[_FieldCode]) -> str:
     parameters = "".join(field.parameter() for field in fields)
     lines = "".join(field.initial() for field in fields)
-    return f"def __init__(M, {parameters}**Rest):\n{lines}    if Rest: Checks.refuse_arguments(Rest)\n"
+    keyword_only = "*, " if fields else ""
+    return f"def __init__(M, {keyword_only}{parameters}**Rest):\n{lines}    if Rest: Checks.refuse_arguments(Rest)\n"
 
 
 def _docstring(name: str, structure: Structure) -> str:

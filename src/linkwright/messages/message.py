@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import struct
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 from linkwright.diagnostics import foreign, phrase
@@ -12,6 +12,8 @@ from linkwright.messages.checks import ndarray_class
 from linkwright.messages.definitions.interfaces import Structure
 from linkwright.messages.errors import MessageDataError, data_error
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
+
+_M = TypeVar("_M")
 
 
 def definition_of(message_class: type[Any]) -> Structure:
@@ -123,6 +125,12 @@ def _rebuild(type_name: str, values: tuple[Any, ...]) -> Message:
     return message
 
 
+def from_values(message_class: type[_M], values: Iterable[object]) -> _M:
+    """Return a message whose fields have values, in the order of the definition."""
+    names = [field.name for field in definition_of(message_class).fields]
+    return message_class(**dict(zip(names, values, strict=True)))
+
+
 class ServiceType:
     """The base class of services, which contain the classes of request and response.
 
@@ -194,7 +202,7 @@ class _Nanoseconds(Message):
 
     if TYPE_CHECKING:  # The constructor is generated at run time.
 
-        def __init__(self, sec: int = 0, nanosec: int = 0) -> None: ...
+        def __init__(self, *, sec: int = 0, nanosec: int = 0) -> None: ...
 
     @classmethod
     def from_nanoseconds(cls: type[_Self], nanoseconds: int) -> _Self:  # noqa: PYI019 - Python 3.10 has no Self
@@ -203,7 +211,8 @@ class _Nanoseconds(Message):
         Raises:
             AssertionError: the seconds do not fit into 32 bits.
         """
-        return cls(*divmod(nanoseconds, NANOSECONDS_PER_SECOND))
+        seconds, rest = divmod(nanoseconds, NANOSECONDS_PER_SECOND)
+        return cls(sec=seconds, nanosec=rest)
 
     @property
     def nanoseconds(self) -> int:

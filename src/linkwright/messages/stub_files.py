@@ -82,7 +82,8 @@ def _message(structure: Structure, names: StructureNames) -> Iterable[str]:
     for constant in structure.constants:
         yield f"    {constant.name}: ClassVar[{type(constant.value).__name__}]"
     arguments = [f"{field.name}: {_types(field.type, names)[1]} = ..." for field in structure.fields]
-    yield f"    def __init__({', '.join(['self', *arguments])}) -> None: ..."
+    parameters = ["self", "*", *arguments] if arguments else ["self"]
+    yield f"    def __init__({', '.join(parameters)}) -> None: ..."
     for field in structure.fields:
         value_type, assignable_type = _types(field.type, names)
         if value_type == assignable_type:

@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 from linkwright.messages.cdr.values import TEXT4
 from linkwright.messages.classes import add_class, class_of
 from linkwright.messages.definitions.library import LIBRARY
-from linkwright.messages.message import Message, definition_of
+from linkwright.messages.message import Message, definition_of, from_values
 from linkwright.messages.wellknown import Header, Quaternion, Time, Transform, TransformStamped, Vector3
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
@@ -249,9 +249,11 @@ class TransformBatch:
         stamp = Time.from_nanoseconds(self.stamp_ns)
         return [
             TransformStamped(
-                Header(Time(stamp.sec, stamp.nanosec), parent),
-                child,
-                Transform(Vector3(*pose[:3]), Quaternion(*pose[3:])),
+                header=Header(stamp=Time(sec=stamp.sec, nanosec=stamp.nanosec), frame_id=parent),
+                child_frame_id=child,
+                transform=Transform(
+                    translation=from_values(Vector3, pose[:3]), rotation=from_values(Quaternion, pose[3:])
+                ),
             )
             for parent, child, pose in zip(self.parents, self.children, self.poses.tolist(), strict=True)
         ]
@@ -275,7 +277,7 @@ class TFMessage(Message):
     _definition = LIBRARY.structure("tf2_msgs/msg/TFMessage")
 
     def __init__(
-        self, transforms: Iterable[TransformStamped] | None = None, *, batch: TransformBatch | None = None, **other: Any
+        self, *, transforms: Iterable[TransformStamped] | None = None, batch: TransformBatch | None = None, **other: Any
     ) -> None:
         if other:
             raise AssertionError("Invalid arguments passed to constructor: " + ", ".join(sorted(other)))

@@ -383,7 +383,7 @@ class JointStatePublisher(SingleNode):
         self._publish()
 
     def _publish(self) -> None:
-        message = JointState(Header(Time.from_nanoseconds(self._clock.now_ns())))
+        message = JointState(header=Header(stamp=Time.from_nanoseconds(self._clock.now_ns())))
         self._joints.fill(message)
         if message.name:
             self._publisher.publish(message)

@@ -391,7 +391,7 @@ class RobotStatePublisher(SingleNode):
         self._robot = robot
         self._transforms = self._make_transforms()
         self._clear_publications()
-        self._description_publisher.publish(String(text))
+        self._description_publisher.publish(String(data=text))
         self._node.get_logger().info("Robot initialized")
         self._publish_fixed()
 

@@ -52,7 +52,8 @@ def read_model(path: Path, arguments: Mapping[str, str]) -> Model:
 
     def read() -> tuple[Model, tuple[Path, ...]]:
         finder = PackageFinder(start=[path.parent, Path.cwd()])
-        conversion = as_sdf(path, finder, arguments=dict(arguments), folder=Path.cwd())
+        # The server of a simulated world keeps the links on fixed joints, too: a laser measures all links but its own.
+        conversion = as_sdf(path, finder, arguments=dict(arguments), lump_fixed_joints=False, folder=Path.cwd())
         if conversion.sdf is None or not conversion.sdf.models:
             message = phrase("the file '{path}' contains no model", path=str(path))
             hint = phrase("use a URDF or xacro file, or an SDF file with a <model>")

@@ -232,9 +232,7 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
         await self.settle()
 
     def _publish_time(self) -> None:
-        self._clock_topic.publish(
-            get_message(_CLOCK)(clock=Time(*divmod(self.simulation.time, NANOSECONDS_PER_SECOND)))
-        )
+        self._clock_topic.publish(get_message(_CLOCK)(clock=Time.from_nanoseconds(self.simulation.time)))
 
 
 def _with_arguments_of(

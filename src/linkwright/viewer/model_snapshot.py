@@ -64,7 +64,7 @@ async def _snapshot(
     viewer = Viewer(graph, library=library, finder=finder, config=config, title=robot.name)
     viewer.manager.start()
     node = graph.create_node("robot_state_publisher")
-    node.create_publisher(String, "robot_description", DESCRIPTION_QOS).publish(String(text))
+    node.create_publisher(String, "robot_description", DESCRIPTION_QOS).publish(String(data=text))
     now_ns = time.time_ns()
     transforms = RobotTransforms(robot, "")
     layout = make_layout(robot, JointSettings())

@@ -24,11 +24,11 @@ def trajectory(
     made = [
         kind(
             **dict(zip(fields, lists, strict=False)),
-            time_from_start=Duration(*divmod(round(seconds * SECOND), SECOND)),
+            time_from_start=Duration.from_nanoseconds(round(seconds * SECOND)),
         )
         for seconds, *lists in points
     ]
-    header = Header(stamp=Time(*divmod(start_ns, SECOND)))
+    header = Header(stamp=Time.from_nanoseconds(start_ns))
     return get_message("trajectory_msgs/msg/JointTrajectory")(header=header, joint_names=list(names), points=made)
 
 

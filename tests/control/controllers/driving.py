@@ -13,13 +13,15 @@ STEP = 0.01
 
 def twist(forward: float = 0.0, turning: float = 0.0, sideways: float = 0.0) -> Any:
     """A velocity."""
-    return get_message("geometry_msgs/msg/Twist")(Vector3(forward, sideways, 0.0), Vector3(0.0, 0.0, turning))
+    return get_message("geometry_msgs/msg/Twist")(
+        linear=Vector3(x=forward, y=sideways, z=0.0), angular=Vector3(x=0.0, y=0.0, z=turning)
+    )
 
 
 def stamped(nanoseconds: int, *velocity: float) -> Any:
     """A velocity with the time that it was told at."""
-    header = Header(Time(*divmod(nanoseconds, 1_000_000_000)), "base_link")
-    return get_message("geometry_msgs/msg/TwistStamped")(header, twist(*velocity))
+    header = Header(stamp=Time.from_nanoseconds(nanoseconds), frame_id="base_link")
+    return get_message("geometry_msgs/msg/TwistStamped")(header=header, twist=twist(*velocity))
 
 
 async def roll(stand: Stand, controller: Controller[Any], count: int = 1) -> None:

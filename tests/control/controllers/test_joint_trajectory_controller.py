@@ -314,7 +314,7 @@ async def test_a_goal_brings_tolerances_of_its_own(stand):
     second = arm.ask(
         trajectory((0.5, [1.0, 0.0])),
         path_tolerance=[tolerance("shoulder", 3.0)],
-        goal_time_tolerance=Duration(1, 0),
+        goal_time_tolerance=Duration(sec=1, nanosec=0),
     )
     await arm.run(1.2)
     assert second.status is None
@@ -497,7 +497,7 @@ async def test_the_state_at_a_time_can_be_asked_for(stand):
     client = stand.node.create_client(query, "/controller/query_state")
 
     async def ask(seconds: float) -> Any:
-        future = client.call_async(query.Request(time=Time(*divmod(round(seconds * SECOND), SECOND))))
+        future = client.call_async(query.Request(time=Time.from_nanoseconds(round(seconds * SECOND))))
         await arm.run(0.01)
         return future.result()
 

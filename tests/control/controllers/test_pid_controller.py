@@ -23,9 +23,13 @@ def wheel(stand: Any, position: float = 0.0, velocity: float = 0.0, **parameters
     return stand.start(PidController, **parameters)
 
 
+def command(names: list[str], values: list[float], rates: list[float]) -> Any:
+    return get_message(COMMAND)(dof_names=names, values=values, values_dot=rates)
+
+
 def ask(stand: Any, *values: float, names: tuple[str, ...] = ("wheel",), rates: tuple[float, ...] = ()) -> None:
     """Send a reference."""
-    stand.say(COMMAND, "/controller/reference", get_message(COMMAND)(list(names), list(values), list(rates)))
+    stand.say(COMMAND, "/controller/reference", command(list(names), list(values), list(rates)))
 
 
 async def test_a_command_is_made_of_the_error(stand):
@@ -69,7 +73,7 @@ async def test_angles_may_wrap_around(stand):
 async def test_states_may_come_by_topic(stand):
     controller = wheel(stand, **WHEEL, use_external_measured_states=True, gains={"wheel": {"p": 1.0}})
     ask(stand, 4.0)
-    stand.say(COMMAND, "/controller/measured_state", get_message(COMMAND)(["wheel"], [1.0], []))
+    stand.say(COMMAND, "/controller/measured_state", command(["wheel"], [1.0], []))
     await stand.step(controller)
     assert stand.commands["wheel/effort"].value == pytest.approx(3.0)
 

@@ -111,7 +111,7 @@ async def test_remappings_of_the_process_reach_controllers(graph, clock, tmp_pat
 async def test_the_description_comes_by_its_topic(graph, clock, tmp_path, logged):
     running = start(graph, tmp_path)
     node = graph.create_node("audience")
-    node.create_publisher(String, "/robot_description", DESCRIPTION_QOS).publish(String(CONTROL))
+    node.create_publisher(String, "/robot_description", DESCRIPTION_QOS).publish(String(data=CONTROL))
     await graph.settle()
     components = (await ask(graph, node, "list_hardware_components")).component
     assert [component.name for component in components] == ["arm"]
@@ -124,10 +124,10 @@ async def test_the_description_comes_by_its_topic(graph, clock, tmp_path, logged
 async def test_a_description_that_cannot_be_read_is_told_and_the_next_one_taken(graph, clock, tmp_path, logged):
     running = start(graph, tmp_path)
     publisher = graph.create_node("audience").create_publisher(String, "/robot_description", DESCRIPTION_QOS)
-    publisher.publish(String("<robot"))
+    publisher.publish(String(data="<robot"))
     await graph.settle()
     assert logged("ERROR")[0].startswith("The published robot description file (urdf) seems not to be genuine")
-    publisher.publish(String(CONTROL))
+    publisher.publish(String(data=CONTROL))
     await graph.settle()
     assert list(running._manager.resources.components) == ["arm"]
     running.close()

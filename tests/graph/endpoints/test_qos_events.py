@@ -190,9 +190,9 @@ async def test_a_message_is_worth_nothing_after_its_lifespan(graph, clock):
     node.create_subscription(String, "topic", received.append, 10)
     publisher = node.create_publisher(String, "topic", QoSProfile(depth=10, lifespan=Duration(seconds=1.0)))
     node.handle.set_dispatcher(None)
-    publisher.publish(String("old"))
+    publisher.publish(String(data="old"))
     await clock.advance(1.5)
-    publisher.publish(String("new"))
+    publisher.publish(String(data="new"))
     node.handle.set_dispatcher(graph.dispatcher)
     await graph.settle()
     assert [message.data for message in received] == ["new"]

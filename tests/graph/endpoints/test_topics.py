@@ -29,7 +29,7 @@ async def test_messages_arrive_in_order_and_never_inside_publish(graph):
     listener.create_subscription(String, "chatter", received.append, 10)
     publisher = talker.create_publisher(String, "chatter", 10)
     for number in range(3):
-        publisher.publish(String(str(number)))
+        publisher.publish(String(data=str(number)))
     assert received == []
     await graph.settle()
     assert texts(received) == ["0", "1", "2"]
@@ -43,8 +43,8 @@ async def test_messages_that_are_taken_together_come_in_one_call_of_the_dispatch
     publish_many, publish_few = node.create_publisher(String, "many", 10), node.create_publisher(String, "few", 10)
     many.deliver_in_batches()
     for number in range(3):
-        publish_many.publish(String(f"many {number}"))
-        publish_few.publish(String(f"few {number}"))
+        publish_many.publish(String(data=f"many {number}"))
+        publish_few.publish(String(data=f"few {number}"))
     await graph.settle()
     assert order == ["many 0", "many 1", "many 2", "few 0", "few 1", "few 2"]
 
@@ -53,7 +53,7 @@ async def test_of_messages_that_are_taken_together_those_that_cannot_be_read_are
     node, received = graph.create_node("node"), []
     subscription = node.create_subscription(String, "many", received.append, 10)
     subscription.deliver_in_batches()
-    for message in (String("a"), b"no CDR", String("b")):
+    for message in (String(data="a"), b"no CDR", String(data="b")):
         subscription.receive(message)
     await graph.settle()
     assert texts(received) == ["a", "b"]
@@ -70,12 +70,12 @@ async def test_callbacks_are_not_reentrant(graph):
         deepest = max(deepest, depth)
         seen.append(message.data)
         if len(message.data) < 5:
-            publisher.publish(String(message.data + "x"))
+            publisher.publish(String(data=message.data + "x"))
         depth -= 1
 
     node.create_subscription(String, "loop", on_message, 10)
     publisher = node.create_publisher(String, "loop", 10)
-    publisher.publish(String(""))
+    publisher.publish(String(data=""))
     await graph.settle()
     assert seen == ["", "x", "xx", "xxx", "xxxx", "xxxxx"]
     assert deepest == 1
@@ -89,8 +89,8 @@ async def test_order_holds_across_topics_and_subscriptions(graph):
         publishers[topic] = node.create_publisher(String, topic, 10)
         for subscriber in (1, 2):
             node.create_subscription(String, topic, lambda message, s=subscriber: order.append((message.data, s)), 10)
-    publishers["b"].publish(String("b"))
-    publishers["a"].publish(String("a"))
+    publishers["b"].publish(String(data="b"))
+    publishers["a"].publish(String(data="a"))
     await graph.settle()
     assert order == [("b", 1), ("b", 2), ("a", 1), ("a", 2)]
 
@@ -117,7 +117,7 @@ async def test_a_failing_callback_is_logged_and_stops_nobody(graph, log):
 
     for callback in (fail, complain, received.append):
         node.create_subscription(String, "topic", callback, 10)
-    node.create_publisher(String, "topic", 10).publish(String("boom"))
+    node.create_publisher(String, "topic", 10).publish(String(data="boom"))
     await graph.settle()
     assert texts(received) == ["boom"]
     bug, user_error = log
@@ -134,7 +134,7 @@ async def test_only_the_last_messages_wait(graph):
     node.create_subscription(String, "topic", everything.append, QoSProfile(depth=1, history=HistoryPolicy.KEEP_ALL))
     publisher = node.create_publisher(String, "topic", 1)
     for number in range(5):
-        publisher.publish(String(str(number)))
+        publisher.publish(String(data=str(number)))
     await graph.settle()
     assert texts(last) == ["3", "4"]
     assert texts(everything) == ["0", "1", "2", "3", "4"]
@@ -144,11 +144,11 @@ async def test_late_comers_get_what_a_transient_local_publisher_keeps(graph):
     node = graph.create_node("node")
     publisher = node.create_publisher(String, "topic", QoSProfile(depth=2, durability=DurabilityPolicy.TRANSIENT_LOCAL))
     for text in "abc":
-        publisher.publish(String(text))
+        publisher.publish(String(data=text))
     latched, volatile = [], []
     node.create_subscription(String, "topic", latched.append, QoSProfile(5, durability=LATCHED.durability))
     node.create_subscription(String, "topic", volatile.append, 5)
-    publisher.publish(String("d"))
+    publisher.publish(String(data="d"))
     await graph.settle()
     assert texts(latched) == ["b", "c", "d"]
     assert texts(volatile) == ["d"]
@@ -159,7 +159,7 @@ async def test_late_comers_do_not_get_what_has_outlived_its_lifespan(graph, cloc
     qos = QoSProfile(depth=5, durability=DurabilityPolicy.TRANSIENT_LOCAL, lifespan=Duration(seconds=1))
     publisher = node.create_publisher(String, "topic", qos)
     for text in "abc":
-        publisher.publish(String(text))
+        publisher.publish(String(data=text))
         await clock.advance(0.6)
     received, sent = [], []
     node.create_subscription(String, "topic", received.append, QoSProfile(5, durability=LATCHED.durability))
@@ -172,7 +172,7 @@ async def test_late_comers_do_not_get_what_has_outlived_its_lifespan(graph, cloc
 async def test_a_volatile_publisher_keeps_nothing(graph):
     node = graph.create_node("node")
     received = []
-    node.create_publisher(String, "topic", 10).publish(String("gone"))
+    node.create_publisher(String, "topic", 10).publish(String(data="gone"))
     node.create_subscription(String, "topic", received.append, 10)
     await graph.settle()
     assert received == []
@@ -225,7 +225,7 @@ async def test_more_may_be_offered_than_is_requested(graph, log, requested):
     node = graph.create_node("node")
     received = []
     node.create_subscription(String, "topic", received.append, requested)
-    node.create_publisher(String, "topic", LATCHED).publish(String("x"))
+    node.create_publisher(String, "topic", LATCHED).publish(String(data="x"))
     await graph.settle()
     assert texts(received) == ["x"]
     assert log == []
@@ -244,7 +244,7 @@ async def test_a_node_that_takes_both_types_is_not_warned(graph, log):
     received = []
     for kind in (String, Header):
         node.create_subscription(kind, "topic", received.append, 1)
-    other.create_publisher(String, "topic", 1).publish(String("x"))
+    other.create_publisher(String, "topic", 1).publish(String(data="x"))
     other.create_publisher(Header, "topic", 1).publish(Header(frame_id="map"))
     await graph.settle()
     assert [type(each) for each in received] == [String, Header]
@@ -265,12 +265,12 @@ async def test_what_is_destroyed_is_silent(graph):
     publisher = talker.create_publisher(String, "topic", 10)
     listener.create_subscription(String, "topic", kept.append, 10)
     subscription = listener.create_subscription(String, "topic", dropped.append, 10)
-    publisher.publish(String("sent"))
+    publisher.publish(String(data="sent"))
     listener.destroy_subscription(subscription)
     talker.destroy_node()
     talker.destroy_node()
     with pytest.raises(InvalidHandleError, match="destruction was requested"):
-        publisher.publish(String("too late"))
+        publisher.publish(String(data="too late"))
     await graph.settle()
     assert texts(kept) == ["sent"]
     assert dropped == []

@@ -107,7 +107,7 @@ async def test_a_node_that_stays_inside_is_not_mirrored_and_is_heard_inside(grap
     listener = graph.create_node("listener")
     listener.create_subscription(String, "topic", heard.append, 1)
     assert transport.open == ["listener", (EndpointKind.SUBSCRIPTION, "/topic")]
-    publisher.publish(String("here"))
+    publisher.publish(String(data="here"))
     await graph.settle()
     assert [each.data for each in heard] == ["here"]
     publisher.destroy()
@@ -127,26 +127,26 @@ async def test_there_is_one_transport_at_most(graph, transport):
 async def test_what_is_published_goes_out_while_somebody_matches(graph):
     publisher = graph.create_node("node").create_publisher(String, "topic", 1)
     sent = []
-    publisher.publish(String("before"))
+    publisher.publish(String(data="before"))
     publisher.set_remote_sender(sent.append)
     publisher.set_remote_count(2)
     assert publisher.get_subscription_count() == 2
-    publisher.publish(String("out"))
-    data = serialize(String("raw"))
+    publisher.publish(String(data="out"))
+    data = serialize(String(data="raw"))
     publisher.publish(data)
     publisher.set_remote_sender(None)
-    publisher.publish(String("after"))
-    assert sent == [String("out"), data]
+    publisher.publish(String(data="after"))
+    assert sent == [String(data="out"), data]
 
 
 async def test_what_is_kept_for_late_comers_goes_out_first_and_once(graph):
     publisher = graph.create_node("node").create_publisher(String, "topic", LATCHED)
     for text in "abcd":
-        publisher.publish(String(text))
+        publisher.publish(String(data=text))
     sent = []
     publisher.set_remote_sender(sent.append)
     publisher.set_remote_sender(sent.append)
-    publisher.publish(String("e"))
+    publisher.publish(String(data="e"))
     assert [message.data for message in sent] == list("bcde")
 
 
@@ -157,13 +157,13 @@ async def test_what_is_published_before_there_is_a_writer_is_held(graph):
     waited = []
     publisher.hold_for_remote(lambda seconds: waited.append(seconds) or len(waited) > 1)
     for text in "abc":
-        publisher.publish(String(text))
+        publisher.publish(String(data=text))
     assert not publisher.wait_for_all_acked(Duration(seconds=1))
     assert publisher.wait_for_all_acked()
     assert waited == [1.0, None]
     sent = []
     publisher.set_remote_sender(sent.append)
-    publisher.publish(String("d"))
+    publisher.publish(String(data="d"))
     assert [message.data for message in sent] == list("bcd")
     assert publisher.wait_for_all_acked()
     assert len(waited) == 2
@@ -172,7 +172,7 @@ async def test_what_is_published_before_there_is_a_writer_is_held(graph):
 async def test_nothing_is_held_when_nobody_listens(graph):
     publisher = graph.create_node("node").create_publisher(String, "topic", 2)
     publisher.hold_for_remote(lambda _: True)
-    publisher.publish(String("a"))
+    publisher.publish(String(data="a"))
     publisher.set_remote_sender(None)
     sent = []
     publisher.set_remote_sender(sent.append)
@@ -199,14 +199,14 @@ async def test_bytes_that_come_in_are_read_when_their_turn_comes(graph, log):
         node.create_subscription(String, "topic", raw.append, 10, raw=True),
         node.create_subscription(String, "topic", lambda message, info: received.append((message, info)), 10),
     ]
-    data = serialize(String("hello"))
+    data = serialize(String(data="hello"))
     info = MessageInfo(1, 2, b"g" * 16, is_remote=True)
     for reader in readers:
         reader.receive(data, info)
     await graph.settle()
-    assert messages == [String("hello")]
+    assert messages == [String(data="hello")]
     assert raw == [data]
-    assert received == [(String("hello"), info)]
+    assert received == [(String(data="hello"), info)]
     assert (info["source_timestamp"], dict(info)["received_timestamp"]) == (1, 2)
     assert "source_timestamp" in info
     assert info.get("sender") is None
@@ -221,9 +221,9 @@ async def test_malformed_bytes_are_dropped_and_told_once(graph, log):
     reader = node.create_subscription(String, "topic", received.append, 10)
     for _ in range(3):
         reader.receive(b"\x00\x01\x00\x00\xff\xff\xff\x7f", MessageInfo(0, 0, is_remote=True))
-    reader.receive(serialize(String("good")), MessageInfo(0, 0))
+    reader.receive(serialize(String(data="good")), MessageInfo(0, 0))
     await graph.settle()
-    assert received == [String("good")]
+    assert received == [String(data="good")]
     assert reader.malformed_count == 3
     (record,) = log
     assert record.text.startswith("Dropped a malformed message of topic '/topic'")
@@ -235,11 +235,11 @@ async def test_raw_subscriptions_and_publications_inside_the_process(graph):
     node.create_subscription(String, "topic", messages.append, 10)
     node.create_subscription(String, "topic", raw.append, 10, raw=True)
     publisher = node.create_publisher(String, "topic", 10)
-    publisher.publish(String("object"))
-    publisher.publish(serialize(String("bytes")))
+    publisher.publish(String(data="object"))
+    publisher.publish(serialize(String(data="bytes")))
     await graph.settle()
     assert [message.data for message in messages] == ["object", "bytes"]
-    assert raw == [serialize(String("object")), serialize(String("bytes"))]
+    assert raw == [serialize(String(data="object")), serialize(String(data="bytes"))]
 
 
 async def test_the_sender_is_told_to_callbacks_that_ask(graph, clock):

@@ -79,11 +79,11 @@ def run_of(seed):
                 def heard(message, node=node, topic=topic):
                     happened.append((clock.steady_ns(), node.get_name(), topic, message.data))
                     if len(message.data) < 4:
-                        chance.choice(publishers).publish(String(message.data + topic))
+                        chance.choice(publishers).publish(String(data=message.data + topic))
 
                 node.create_subscription(String, topic, heard, chance.randint(1, 10))
             period = chance.choice((0.1, 0.25, 0.3))
-            node.create_timer(period, lambda node=node: chance.choice(publishers).publish(String("")))
+            node.create_timer(period, lambda node=node: chance.choice(publishers).publish(String(data="")))
 
             async def wait(_request, response, node=node):
                 await asyncio.sleep(0)
@@ -124,7 +124,7 @@ async def test_coroutines_of_a_node_follow_one_another(graph):
     node.create_subscription(String, "plain", lambda message: order.append(message.data), 10)
     other.create_subscription(String, "plain", lambda message: order.append(f"other {message.data}"), 10)
     for topic, text in (("topic", "a"), ("topic", "b"), ("plain", "c")):
-        node.create_publisher(String, topic, 10).publish(String(text))
+        node.create_publisher(String, topic, 10).publish(String(data=text))
     await graph.settle()
     assert sorted(order) == ["begin a", "other c"]
     waiting[0].set()
@@ -164,7 +164,7 @@ async def test_groups_are_respected_across_nodes(graph, make):
     for name in ("one", "two"):
         node = graph.create_node(name)
         node.create_subscription(String, name, work, 10, callback_group=group)
-        node.create_publisher(String, name, 10).publish(String(name))
+        node.create_publisher(String, name, 10).publish(String(data=name))
     await graph.settle()
     assert order == ["one"]
     gate.set()
@@ -236,7 +236,7 @@ async def test_messages_of_other_threads_arrive_on_the_loop(graph):
 
     def talk(name):
         for number in range(1000):
-            publisher.publish(String(f"{name}{number}"))
+            publisher.publish(String(data=f"{name}{number}"))
 
     threads = [threading.Thread(target=talk, args=(name,)) for name in "abcd"]
     for thread in threads:
@@ -269,14 +269,14 @@ def test_what_falls_due_without_a_dispatcher_waits_for_one():
     timer = node.create_timer(0.0005, lambda: calls.append(1))
     publisher = node.create_publisher(String, "topic", 2)
     for text in "abc":
-        publisher.publish(String(text))
+        publisher.publish(String(data=text))
     wait_until(timer.is_ready)
     dispatcher = Collecting()
     node.handle.set_dispatcher(dispatcher)
     dispatcher.run()
     assert received == ["b", "c"]
     node.handle.set_dispatcher(None)
-    publisher.publish(String("d"))
+    publisher.publish(String(data="d"))
     dispatcher.run()
     assert received == ["b", "c"]
     node.handle.set_dispatcher(dispatcher)

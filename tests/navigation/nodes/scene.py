@@ -56,7 +56,7 @@ class Scene:
         self._tf.publish(message)
 
     def _transform(self, parent: str, child: str, x: float, y: float, yaw: float) -> TransformStamped:
-        transform = TransformStamped(Header(self.stamp(), parent), child)
+        transform = TransformStamped(header=Header(stamp=self.stamp(), frame_id=parent), child_frame_id=child)
         transform.transform.translation.x, transform.transform.translation.y = x, y
         transform.transform.rotation.z, transform.transform.rotation.w = sin(yaw / 2.0), cos(yaw / 2.0)
         return transform

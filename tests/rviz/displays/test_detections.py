@@ -136,7 +136,7 @@ def test_a_class_named_for_a_colour_has_it_unless_the_file_says_another():
 
 def image(seconds: int):
     made = get_message("sensor_msgs/msg/Image")(height=1, width=1, encoding="mono8", step=1, data=[seconds])
-    made.header.stamp = Time(seconds, 0)
+    made.header.stamp = Time(sec=seconds, nanosec=0)
     return made
 
 
@@ -145,7 +145,7 @@ def found(seconds: int, *results):
     one.bbox.center.position.x, one.bbox.center.position.y = 10.0, 20.0
     one.bbox.size_x, one.bbox.size_y = 4.0, 6.0
     made = get_message("vision_msgs/msg/Detection2DArray")(detections=[one])
-    made.header.stamp = Time(seconds, 0)
+    made.header.stamp = Time(sec=seconds, nanosec=0)
     return made
 
 

@@ -385,7 +385,7 @@ async def test_pages_tell_which_meshes_they_cannot_read(tmp_path):
 def published(made: World, node: str, text: str):
     """A node that publishes a description."""
     publisher = made.graph.create_node(node)
-    publisher.create_publisher(String, "robot_description", DESCRIPTION_QOS).publish(String(text))
+    publisher.create_publisher(String, "robot_description", DESCRIPTION_QOS).publish(String(data=text))
     return publisher
 
 
@@ -414,14 +414,14 @@ async def test_a_description_changes_hands_with_a_word_after_this_process_has_jo
     async with world(config()) as made:
         first = made.graph.create_node("first")
         publisher = first.create_publisher(String, "robot_description", DESCRIPTION_QOS)
-        publisher.publish(String(ARM))
+        publisher.publish(String(data=ARM))
         await made.settle()
         publisher.gid = bytes(range(16))
         second = published(made, "second", ARM.replace('name="arm"', 'name="other"'))
         await made.settle()
         level, text = made.status("RobotModel")["Topic"]
         assert (level, "of /second is shown; /first also publish" in text) == ("warn", True)
-        publisher.publish(String(ARM))
+        publisher.publish(String(data=ARM))
         await made.settle()
         assert "of /first is shown; /second also publish" in made.status("RobotModel")["Topic"][1]
         second.destroy_node()

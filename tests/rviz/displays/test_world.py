@@ -57,7 +57,7 @@ class Simulation:
         self.poses = node.create_publisher(TFMessage, "/world_poses", TF_QOS)
 
     async def describe(self, text: str, links: int = 3) -> None:
-        self.description.publish(String(text))
+        self.description.publish(String(data=text))
         await eventually(lambda: links_of(self.made) == links)
 
     async def move(self, **poses: tuple[float, ...]) -> None:
@@ -211,7 +211,7 @@ async def test_a_text_that_says_no_world_is_told_of_and_the_world_before_stays(t
     async with world(config("world")) as made:
         simulation = Simulation(made)
         await simulation.describe(WORLD)
-        simulation.description.publish(String(text))
+        simulation.description.publish(String(data=text))
         await eventually(lambda: made.status("World")["World"][0] == "error")
         assert message in made.status("World")["World"][1]
         assert links_of(made) == 3
@@ -386,7 +386,7 @@ async def test_the_rays_of_lidars_are_listened_to_while_they_are_drawn():
         assert shown["ranges"].reshape(16, 44)[1, :3].tolist() == [2000.0, 2023.0, 2046.0]
 
         revision = sent(made, "world_scene").fields["revision"]  # of a recording the world is told again
-        simulation.description.publish(String(WORLD.replace("</world>", SEEING)))
+        simulation.description.publish(String(data=WORLD.replace("</world>", SEEING)))
         await eventually(lambda: sent(made, "world_scene").fields["revision"] > revision)
         assert sent(made, "world_rays") is not None
         made.display("World").on_time_reset()

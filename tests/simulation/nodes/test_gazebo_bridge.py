@@ -224,7 +224,9 @@ async def test_poses_become_what_is_asked_for(stage, logged):
     word = "/many@geometry_msgs/msg/PoseArray[gz.msgs.Pose_V"
     ParameterBridge(stage.graph, NodeOptions(arguments=[word], remappings=[("/many", "/PoseArray")]))
     publisher(stage, "geometry_msgs/msg/TransformStamped", "/one").publish(transform)
-    publisher(stage, "tf2_msgs/msg/TFMessage", "/many").publish(get_message("tf2_msgs/msg/TFMessage")([transform]))
+    publisher(stage, "tf2_msgs/msg/TFMessage", "/many").publish(
+        get_message("tf2_msgs/msg/TFMessage")(transforms=[transform])
+    )
     await stage.graph.settle()
     assert results["Pose"][0].position.x == results["PoseStamped"][0].pose.position.x == 2.0
     assert results["Transform"][0].translation.x == results["PoseArray"][0].poses[0].position.x == 2.0

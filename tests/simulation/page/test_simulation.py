@@ -99,7 +99,7 @@ async def test_pages_hear_whether_time_passes_and_how_fast():
         simulation.state.publish(STATE(state=2))
         await client.until("simulation_status", paused=True)
         message = METRICS(real_time_factor=0.5)
-        message.header.stamp = Time(12, 500_000_000)
+        message.header.stamp = Time(sec=12, nanosec=500_000_000)
         simulation.metrics.publish(message)
         await client.until("simulation_status", paused=True, time=12.5, real_time_factor=0.5)
 

@@ -57,7 +57,7 @@ class Controlled:
         self.node = graph.create_node("audience")
 
     async def describe(self, text: str, topic: str = "/robot_description") -> None:
-        self.node.create_publisher(String, topic, DESCRIPTION_QOS).publish(String(text))
+        self.node.create_publisher(String, topic, DESCRIPTION_QOS).publish(String(data=text))
         await self.advance(0.01)
 
     async def advance(self, seconds: float) -> None:

@@ -443,7 +443,9 @@ async def test_without_a_server_it_says_so(talk, tmp_path):
 
 async def test_what_a_service_answers_is_said(stage, talk):
     kind = get_service("std_srvs/srv/Trigger")
-    stage.node.create_service(kind, "/vision/describe/en", lambda request, response: kind.Response(True, "a red ball"))
+    stage.node.create_service(
+        kind, "/vision/describe/en", lambda request, response: kind.Response(success=True, message="a red ball")
+    )
     robot = talk()
     await stage.graph.settle()
     await robot.type("what do you see")
@@ -460,7 +462,9 @@ async def test_a_service_that_only_some_commands_need_is_not_waited_for(stage, t
     assert [client for client in clients(stage) if "/_action/" not in client] == []
     assert await robot.type("what do you see") == "I cannot do it: no node serves '/vision/describe/en'"
     kind = get_service("std_srvs/srv/Trigger")
-    stage.node.create_service(kind, "/vision/describe/en", lambda request, response: kind.Response(True, "a red ball"))
+    stage.node.create_service(
+        kind, "/vision/describe/en", lambda request, response: kind.Response(success=True, message="a red ball")
+    )
     await robot.type("what do you see")
     await eventually(lambda: robot.said["response"][-1] == "a red ball")
     assert "/vision/describe/en" not in clients(stage)

@@ -139,7 +139,7 @@ class SeekingRobot(SteppedSimulation):
         """The box of the ball, as a detector would see it: give or take a pixel."""
         header = get_message("std_msgs/msg/Header")(frame_id="camera_optical_frame")
         now_ns = self.simulation.time
-        header.stamp = Time(*divmod(now_ns, 10**9))
+        header.stamp = Time.from_nanoseconds(now_ns)
         info = get_message("sensor_msgs/msg/CameraInfo")(header=header, width=_WIDTH, height=_HEIGHT)
         info.k = [_FOCAL, 0.0, 319.5, 0.0, _FOCAL, 239.5, 0.0, 0.0, 1.0]
         self._info.publish(info)

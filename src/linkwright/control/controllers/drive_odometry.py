@@ -107,7 +107,7 @@ class DriveOdometry:
         is_wanted = self._topics.is_wanted
         if not is_wanted and not self._transforms.is_wanted:
             return
-        stamp, pose = Time(*divmod(time_ns, NANOSECONDS_PER_SECOND)), self.odometer.pose.transform
+        stamp, pose = Time.from_nanoseconds(time_ns), self.odometer.pose.transform
         if is_wanted:
             self._topics.publish(stamp, self._fixed_pose or pose, *self.odometer.velocity)
         self._transforms.publish(stamp, pose, 0.0, 0.0, 0.0)

@@ -14,7 +14,6 @@ from linkwright.control.controllers.controller import Controller, InterfaceNames
 from linkwright.control.hardware.interfaces import EFFORT, POSITION, VELOCITY, Interfaces, StateInterface
 from linkwright.messages import Header, JointState, Time, get_message
 from linkwright.nodes.parameter_tables import parameter
-from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -101,7 +100,7 @@ class JointStateBroadcaster(Controller[Parameters]):
         return set(self.robot.joints) if self.robot is not None else None
 
     def _header(self, time_ns: int) -> Header:
-        return Header(stamp=Time(*divmod(time_ns, NANOSECONDS_PER_SECOND)), frame_id=self.parameters.frame_id)
+        return Header(stamp=Time.from_nanoseconds(time_ns), frame_id=self.parameters.frame_id)
 
     def _joint_states(self, header: Header) -> JointState:
         position, velocity, effort = (
@@ -112,11 +111,13 @@ class JointStateBroadcaster(Controller[Parameters]):
     def _dynamic_states(self, header: Header) -> object:
         value_type = get_message("control_msgs/msg/InterfaceValue")
         rows = [
-            value_type(list(states), [state.value for state in states.values()])
+            value_type(interface_names=list(states), values=[state.value for state in states.values()])
             for states in self._states_by_joint.values()
-        ] + [value_type([POSITION, VELOCITY, EFFORT], [0.0, 0.0, 0.0]) for _ in self._extra]
+        ] + [value_type(interface_names=[POSITION, VELOCITY, EFFORT], values=[0.0, 0.0, 0.0]) for _ in self._extra]
         names: Sequence[str] = [*self._states_by_joint, *self._extra]
-        return get_message("control_msgs/msg/DynamicJointState")(header, list(names), rows)
+        return get_message("control_msgs/msg/DynamicJointState")(
+            header=header, joint_names=list(names), interface_values=rows
+        )
 
 
 def _values(states: Sequence[StateInterface]) -> array[float]:

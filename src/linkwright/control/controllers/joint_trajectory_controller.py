@@ -415,7 +415,7 @@ class JointTrajectoryController(Controller[Parameters]):
         self._next_feedback_ns = time_ns + round(NANOSECONDS_PER_SECOND / self.parameters.action_monitor_rate)
         goal.feedback(
             self._feedback_type(
-                header=Header(stamp=Time(*divmod(time_ns, NANOSECONDS_PER_SECOND))),
+                header=Header(stamp=Time.from_nanoseconds(time_ns)),
                 joint_names=list(self.parameters.joints),
                 desired=self._point_message(desired),
                 actual=self._point_message(self._current),
@@ -434,7 +434,7 @@ class JointTrajectoryController(Controller[Parameters]):
         reference, feedback = self._point_message(desired), self._point_message(self._current)
         commands = {kind: [interface.value for interface in interfaces] for kind, interfaces in self._command.items()}
         message = self._state_type(
-            header=Header(stamp=Time(*divmod(time_ns, NANOSECONDS_PER_SECOND))),
+            header=Header(stamp=Time.from_nanoseconds(time_ns)),
             joint_names=list(self.parameters.joints),
             reference=reference,
             feedback=feedback,

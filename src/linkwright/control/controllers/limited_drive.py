@@ -17,7 +17,6 @@ from linkwright.control.controllers.speed_limits import NO_LIMITS, SpeedLimits
 from linkwright.control.controllers.velocity_input import VelocityInput
 from linkwright.messages import Header, Time, Vector3, get_message
 from linkwright.nodes.parameter_tables import HUMBLE, parameter
-from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 _NO_VARIANCES = (0.0,) * 6
 
@@ -127,6 +126,8 @@ class LimitedDrive(Controller[P], Generic[P]):
         """
         self._odometry.publish(time_ns)
         if self._limited_output is not None and self._limited_output.is_wanted:
-            twist = get_message("geometry_msgs/msg/Twist")(Vector3(forward, sideways, 0.0), Vector3(0.0, 0.0, angular))
-            header = Header(Time(*divmod(time_ns, NANOSECONDS_PER_SECOND)), "")
-            self._limited_output.publish(get_message("geometry_msgs/msg/TwistStamped")(header, twist))
+            twist = get_message("geometry_msgs/msg/Twist")(
+                linear=Vector3(x=forward, y=sideways, z=0.0), angular=Vector3(x=0.0, y=0.0, z=angular)
+            )
+            header = Header(stamp=Time.from_nanoseconds(time_ns), frame_id="")
+            self._limited_output.publish(get_message("geometry_msgs/msg/TwistStamped")(header=header, twist=twist))

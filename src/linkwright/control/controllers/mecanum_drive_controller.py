@@ -19,7 +19,6 @@ from linkwright.control.hardware.interfaces import VELOCITY
 from linkwright.kinematics.drives import MecanumDrive
 from linkwright.messages import Header, Time, Vector3, get_message
 from linkwright.nodes.parameter_tables import above, not_empty, parameter
-from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 _DEFAULT_VARIANCES = (0.0, 7.0, 14.0, 21.0, 28.0, 35.0)
 
@@ -206,14 +205,14 @@ class MecanumDriveController(Controller[Parameters]):
     def _publish_state(self, time_ns: int, measured: list[float], requested: list[float]) -> None:
         front_left, front_right, rear_right, rear_left = measured
         state = get_message("control_msgs/msg/MecanumDriveControllerState")(
-            header=Header(Time(*divmod(time_ns, NANOSECONDS_PER_SECOND)), self._frame),
+            header=Header(stamp=Time.from_nanoseconds(time_ns), frame_id=self._frame),
             front_left_wheel_velocity=front_left,
             front_right_wheel_velocity=front_right,
             back_right_wheel_velocity=rear_right,
             back_left_wheel_velocity=rear_left,
         )
-        state.reference_velocity.linear = Vector3(requested[0], requested[1], 0.0)
-        state.reference_velocity.angular = Vector3(0.0, 0.0, requested[2])
+        state.reference_velocity.linear = Vector3(x=requested[0], y=requested[1], z=0.0)
+        state.reference_velocity.angular = Vector3(x=0.0, y=0.0, z=requested[2])
         self._state.publish(state)
 
 

@@ -19,7 +19,6 @@ from linkwright.diagnostics import Phrase, phrase
 from linkwright.graph.qos.profile import QoSProfile, ReliabilityPolicy
 from linkwright.messages import Header, Time, get_message
 from linkwright.nodes.parameter_tables import for_each, not_empty, parameter
-from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 _LATEST = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 
@@ -236,4 +235,4 @@ class PidController(Controller[Parameters]):
                     output=self.commands[number].value,
                 )
             )
-        self._output.publish(message(Header(stamp=Time(*divmod(time_ns, NANOSECONDS_PER_SECOND))), states))
+        self._output.publish(message(header=Header(stamp=Time.from_nanoseconds(time_ns)), dof_states=states))

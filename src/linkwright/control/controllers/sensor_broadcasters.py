@@ -14,7 +14,7 @@ from typing import Any, ClassVar, TypeVar
 
 from linkwright.control.controllers.controller import Controller, ControllerError, InterfaceNames
 from linkwright.diagnostics import Phrase, phrase
-from linkwright.messages import Header, Quaternion, Time, Transform, TransformStamped, Vector3, get_message
+from linkwright.messages import Header, Quaternion, Time, Transform, TransformStamped, Vector3, from_values, get_message
 from linkwright.nodes.parameter_tables import at_least, not_empty, parameter
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
@@ -193,7 +193,7 @@ class SensorBroadcaster(Controller[P]):
     def header(self, time_ns: int) -> Header:
         """Return a header with a time in nanoseconds and the frame from the parameters."""
         frame: str = self.parameters.frame_id  # type: ignore[attr-defined]  # All parameter classes have it.
-        return Header(stamp=Time(*divmod(time_ns, NANOSECONDS_PER_SECOND)), frame_id=frame)
+        return Header(stamp=Time.from_nanoseconds(time_ns), frame_id=frame)
 
 
 def _wrench_values(wrench: WrenchNames | Offset | Multiplier) -> list[Any]:
@@ -202,7 +202,7 @@ def _wrench_values(wrench: WrenchNames | Offset | Multiplier) -> list[Any]:
 
 
 def _vector(values: Sequence[float]) -> Vector3:
-    return Vector3(values[0], values[1], values[2])
+    return Vector3(x=values[0], y=values[1], z=values[2])
 
 
 class ImuBroadcaster(SensorBroadcaster[ImuParameters]):
@@ -222,7 +222,7 @@ class ImuBroadcaster(SensorBroadcaster[ImuParameters]):
         parameters = self.parameters
         return kind(
             header=header,
-            orientation=Quaternion(*values[:4]),
+            orientation=from_values(Quaternion, values[:4]),
             orientation_covariance=parameters.static_covariance_orientation,
             angular_velocity=_vector(values[4:7]),
             angular_velocity_covariance=parameters.static_covariance_angular_velocity,
@@ -352,7 +352,10 @@ class PoseBroadcaster(SensorBroadcaster[PoseParameters]):
         """Return a pose message."""
         pose = get_message("geometry_msgs/msg/Pose")
         point = get_message("geometry_msgs/msg/Point")
-        return kind(header=header, pose=pose(position=point(*values[:3]), orientation=Quaternion(*values[3:])))
+        return kind(
+            header=header,
+            pose=pose(position=from_values(point, values[:3]), orientation=from_values(Quaternion, values[3:])),
+        )
 
     def update(self, time_ns: int, period_s: float) -> None:
         """Publish the pose, and the transform if its period has passed and all values are finite."""
@@ -366,6 +369,8 @@ class PoseBroadcaster(SensorBroadcaster[PoseParameters]):
         if not self._transforms.is_wanted or not all(map(isfinite, values)):
             return
         self._next_transform_ns = time_ns + period_ns
-        transform = Transform(_vector(values), Quaternion(*values[3:]))
-        stamped_transform = TransformStamped(self.header(time_ns), self._child_frame, transform)
-        self._transforms.publish(get_message("tf2_msgs/msg/TFMessage")([stamped_transform]))
+        transform = Transform(translation=_vector(values), rotation=from_values(Quaternion, values[3:]))
+        stamped_transform = TransformStamped(
+            header=self.header(time_ns), child_frame_id=self._child_frame, transform=transform
+        )
+        self._transforms.publish(get_message("tf2_msgs/msg/TFMessage")(transforms=[stamped_transform]))

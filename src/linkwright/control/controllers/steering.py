@@ -22,7 +22,6 @@ from linkwright.diagnostics import phrase
 from linkwright.kinematics.drives import CarDrive
 from linkwright.messages import Header, Time, get_message
 from linkwright.nodes.parameter_tables import HUMBLE, JAZZY, above, parameter
-from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 _DEFAULT_VARIANCES = (0.0, 7.0, 14.0, 21.0, 28.0, 35.0)
 _SLOWDOWN_START, _SLOWDOWN_END = pi / 6.0, 1.5608
@@ -271,7 +270,7 @@ class SteeringController(Controller[P], Generic[P]):
         wheels: list[float] = states[:driven_count]
         has_positions = self._settings.position_feedback
         status = get_message("control_msgs/msg/SteeringControllerStatus")(
-            header=Header(Time(*divmod(time_ns, NANOSECONDS_PER_SECOND)), self._settings.odom_frame_id),
+            header=Header(stamp=Time.from_nanoseconds(time_ns), frame_id=self._settings.odom_frame_id),
             traction_wheels_position=wheels if has_positions else [],
             traction_wheels_velocity=[] if has_positions else wheels,
             steer_positions=states[driven_count:],

@@ -147,7 +147,10 @@ class ManagerServices:
     def _interface_message(self, name: str) -> Any:
         resources = self._manager.resources
         return get_message(f"{_PACKAGE}/msg/HardwareInterface")(
-            name, "double", resources.is_available(name), name in resources.claims
+            name=name,
+            data_type="double",
+            is_available=resources.is_available(name),
+            is_claimed=name in resources.claims,
         )
 
     def _list_interfaces(self, _: Any, response: Any) -> Any:
@@ -211,7 +214,7 @@ def _named_state(name: str, state: LifecycleState) -> Any:
 def _status(name: str, subject: str, states: dict[str, LifecycleState]) -> Any:
     status = get_message("diagnostic_msgs/msg/DiagnosticStatus")(name=name, hardware_id="ros2_control")
     value = get_message("diagnostic_msgs/msg/KeyValue")
-    status.values = [value(key, state.label) for key, state in states.items()]
+    status.values = [value(key=key, value=state.label) for key, state in states.items()]
     all_active = all(state is ACTIVE for state in states.values())
     status.message = f"All {subject} are active" if all_active else f"Not all {subject} are active"
     return status

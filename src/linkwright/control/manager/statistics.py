@@ -59,7 +59,7 @@ class StatisticsTopics:
         if self._full_output.is_wanted:
             statistic_type = get_message(f"{_PACKAGE}/Statistic")
             message = get_message(f"{_PACKAGE}/Statistics")(
-                statistics=[statistic_type(*item) for item in statistics.items()]
+                statistics=[statistic_type(name=name, value=value) for name, value in statistics.items()]
             )
             message.header.stamp = stamp
             self._full_output.publish(message)

@@ -48,7 +48,7 @@ class HardwareSpawner(ManagerProgram):
                 logger.warning("Hardware Component is not loaded - state can not be changed.")
                 status = 1
                 continue
-            target_state = get_message("lifecycle_msgs/msg/State")(target.state_id, target.label)
+            target_state = get_message("lifecycle_msgs/msg/State")(id=target.state_id, label=target.label)
             response = await self._client.call("set_hardware_component_state", name=name, target_state=target_state)
             if response.ok:
                 logger.info(f"{action} component '{name}'. Hardware now in state: {response.state.label}.")

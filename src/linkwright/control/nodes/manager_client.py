@@ -12,10 +12,9 @@ from typing import Any, NoReturn
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
 from linkwright.graph import Node, Parameter
-from linkwright.messages import get_message, get_service
+from linkwright.messages import Duration, get_service
 from linkwright.nodes.answers import wait_for_future, wait_for_service
 from linkwright.nodes.options import SingleNode
-from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 _LOG_PERIOD = 10.0
 """The seconds between two log lines about a service that is not available."""
@@ -66,7 +65,7 @@ class ManagerClient:
 
     async def switch(self, activate: Sequence[str], deactivate: Sequence[str], timeout: float, *, asap: bool) -> Any:
         """Switch controllers with strictness STRICT, and return the response."""
-        duration = get_message("builtin_interfaces/msg/Duration")(*divmod(round(timeout * 1e9), NANOSECONDS_PER_SECOND))
+        duration = Duration.from_nanoseconds(round(timeout * 1e9))
         return await self.call(
             "switch_controller",
             activate_controllers=list(activate),

@@ -86,6 +86,7 @@ class Publisher(TopicEndpoint[M]):
         Raises:
             TypeError: the message is not of the publisher's type.
             InvalidHandleError: the publisher was destroyed.
+            RclError: a signal has shut down the context.
         """
         if type(msg) is not self._accepted_type:
             self._check(msg)
@@ -229,6 +230,7 @@ class Publisher(TopicEndpoint[M]):
             self._wait_until_acknowledged = wait_until_acknowledged if send is not None else None
 
     def _publish_complete(self, message: Any) -> None:
+        self.node.check_valid()
         if self._copies_messages and type(message) is not bytes:
             if (
                 not self._receivers

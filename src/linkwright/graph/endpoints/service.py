@@ -359,6 +359,7 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
         Raises:
             TypeError: the request is not of the service's type.
             InvalidHandleError: the client was destroyed.
+            RclError: a signal has shut down the context.
         """
         self.check_alive()
         self.check_message(request, "Request")

@@ -10,11 +10,13 @@ import re
 import sys
 import threading
 from collections.abc import Callable
+from contextlib import suppress
 from datetime import datetime
 from functools import lru_cache
 from pathlib import PurePath
 from typing import Any, Protocol, TextIO
 
+from linkwright.graph.faults import RclError
 from linkwright.graph.log.logger import Logger, LogLevel, LogRecord
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
@@ -157,13 +159,14 @@ class Rosout:
     def publish(self, record: LogRecord) -> None:
         """Publish a record.
 
-        Records that are logged while one is being published are not published.
+        Records that are logged while one is being published, or after a signal, are not published.
         """
         if self._is_publishing:
             return
         self._is_publishing = True
         try:
-            self._publisher.publish(self._message(record))
+            with suppress(RclError):
+                self._publisher.publish(self._message(record))
         finally:
             self._is_publishing = False
 

@@ -13,7 +13,7 @@ import weakref
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
-from linkwright.graph.faults import InvalidHandleError
+from linkwright.graph.faults import InvalidHandleError, RclError
 from linkwright.graph.log.logger import Logger
 from linkwright.graph.names.rules import NodeIdentity, Remappings, expand_service_name, expand_topic_name
 from linkwright.graph.time.clock import AlarmSetter, Timebase
@@ -250,9 +250,15 @@ class Part(HasHandle):
         self.node.remove(self)
 
     def check_alive(self) -> None:
-        """Raise InvalidHandleError if the part was destroyed."""
+        """Check that the part can be used.
+
+        Raises:
+            InvalidHandleError: the part was destroyed.
+            RclError: a signal has shut down the context.
+        """
         if self.destroyed:
             raise InvalidHandleError
+        self.node.check_valid()
 
     def __enter__(self) -> Self:
         return self
@@ -278,6 +284,8 @@ class NodeHandle(Handle):
         default_callback_group: the group of entities that are in no other group.
         message_filter: called, in any thread, with a subscription of the node and a message that arrives for it;
             returns whether to queue the message for the callback. None queues all messages.
+        is_valid: whether no signal has shut down the context. If one has, the node is not destroyed yet, but as in rcl
+            it can no longer publish, send requests, or create parts.
         strict_callback_groups: whether a response waits until the callback group of the client allows it to run, as in
             rclpy.
     """
@@ -304,6 +312,7 @@ class NodeHandle(Handle):
         self.timebase = graph.timebase
         self.default_callback_group: CallbackGroup = MutuallyExclusiveCallbackGroup()
         self.is_destroyed = False
+        self.is_valid = True
         self.message_filter: Callable[[Any, Any], bool] | None = None
         self.strict_callback_groups = False
         self._parts: dict[Part, None] = {}
@@ -313,6 +322,11 @@ class NodeHandle(Handle):
         """Raise InvalidHandleError if the node was destroyed."""
         if self.is_destroyed:
             raise InvalidHandleError
+
+    def check_valid(self) -> None:
+        """Raise RclError if a signal has shut down the context."""
+        if not self.is_valid:
+            raise RclError("the context is invalid: rclpy shut it down when it received a signal such as Ctrl-C")
 
     def set_dispatcher(self, dispatcher: Dispatcher | None) -> None:
         """Set the dispatcher that runs the node's callbacks, or None for no dispatcher.
@@ -331,8 +345,10 @@ class NodeHandle(Handle):
 
         Raises:
             InvalidHandleError: the node was destroyed.
+            RclError: a signal has shut down the context.
         """
         self.check_alive()
+        self.check_valid()
         self._parts[part] = None
         part.begin()
         return part

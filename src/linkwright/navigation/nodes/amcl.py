@@ -18,7 +18,7 @@ from linkwright.geometry.single import Transform, compose, invert, quaternion_fr
 from linkwright.graph import LATCHED_QOS, SENSOR_DATA_QOS, TF_QOS, TransformException
 from linkwright.graph.transforms.core import BufferCore
 from linkwright.graph.transforms.listener import TransformListener
-from linkwright.messages import TFMessage, TransformBatch, get_message, get_service
+from linkwright.messages import TFMessage, Time, TransformBatch, get_message, get_service
 from linkwright.navigation.grids.occupancy import BadGridError, grid_from_message
 from linkwright.navigation.localization.beams import Beams, beams_of_scan
 from linkwright.navigation.localization.motion_models import Pose, wrap_angle
@@ -26,7 +26,6 @@ from linkwright.navigation.localization.particle_filter import Estimate, Particl
 from linkwright.navigation.localization.sensor_models import MapLikelihoods
 from linkwright.navigation.nodes.amcl_parameters import declare_parameters, read_parameters
 from linkwright.navigation.nodes.managed import ManagedNode, ManagedServer
-from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 _POSE_TYPE = "geometry_msgs/msg/PoseWithCovarianceStamped"
 _MAX_QUEUED_SCANS = 10
@@ -262,7 +261,7 @@ class AmclNode(ManagedNode):
         self._map_to_odom = compose(_spatial_pose(estimate.pose), invert(robot_in_odom))
         message = get_message(_POSE_TYPE)()
         message.header.frame_id = self._settings.global_frame
-        message.header.stamp = _stamp(stamp_ns)
+        message.header.stamp = Time.from_nanoseconds(stamp_ns)
         _write_pose(message.pose.pose, estimate.pose)
         covariance = np.zeros((6, 6))
         covariance[:2, :2] = estimate.covariance[:2, :2]
@@ -290,7 +289,7 @@ class AmclNode(ManagedNode):
             return
         message = get_message("nav2_msgs/msg/ParticleCloud")()
         message.header.frame_id = self._settings.global_frame
-        message.header.stamp = _stamp(stamp_ns)
+        message.header.stamp = Time.from_nanoseconds(stamp_ns)
         kind = get_message("nav2_msgs/msg/Particle")
         for (x, y, yaw), weight in zip(self._filter.particles.tolist(), self._filter.weights.tolist(), strict=True):
             particle = kind(weight=weight)
@@ -393,10 +392,6 @@ def _planar_pose(pose: Transform) -> Pose:
 
 def _spatial_pose(pose: Pose) -> Transform:
     return (pose[0], pose[1], 0.0, *quaternion_from_rpy((0.0, 0.0, pose[2])))
-
-
-def _stamp(time_ns: int) -> Any:
-    return get_message("builtin_interfaces/msg/Time")(*divmod(time_ns, NANOSECONDS_PER_SECOND))
 
 
 def _write_pose(message: Any, pose: Pose) -> None:

@@ -52,7 +52,7 @@ class OldRobot:
 
     def publish(self, text: str) -> None:
         """Publish a description. Call `publish_poses` to publish the poses of its links."""
-        self._text.publish(String(text))
+        self._text.publish(String(data=text))
 
     def publish_poses(self, old: Robot, new: Robot, comparison: Comparison) -> None:
         """Publish the poses of the old robot's links, now and at each joint state of the new robot.

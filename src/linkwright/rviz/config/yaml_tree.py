@@ -16,7 +16,6 @@ from typing import Any
 import yaml
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, SourceText, Span, foreign, phrase
-from linkwright.files.yaml_documents import yaml_hint
 
 _Loader: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 _Resolver: Any = yaml.resolver.Resolver
@@ -415,6 +414,8 @@ def _yaml_diagnostic(error: yaml.YAMLError, source: SourceText) -> Diagnostic:
     span = None
     if mark is not None:
         span = source.span(source.offset(mark.line + 1, mark.column + 1))
+    from linkwright.files.yaml_documents import yaml_hint  # few files are malformed
+
     hint = None if span is None else yaml_hint(source, span.line)
     return Diagnostic(
         "RVIZ102",

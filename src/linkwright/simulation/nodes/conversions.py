@@ -44,12 +44,12 @@ _PAYLOADS = {
 
 def _transform_to_pose(transform: Any) -> Any:
     translation = transform.transform.translation
-    point = get_message("geometry_msgs/msg/Point")(translation.x, translation.y, translation.z)
-    return get_message("geometry_msgs/msg/Pose")(point, transform.transform.rotation)
+    point = get_message("geometry_msgs/msg/Point")(x=translation.x, y=translation.y, z=translation.z)
+    return get_message("geometry_msgs/msg/Pose")(position=point, orientation=transform.transform.rotation)
 
 
 def _transform_to_pose_stamped(transform: Any) -> Any:
-    return get_message("geometry_msgs/msg/PoseStamped")(transform.header, _transform_to_pose(transform))
+    return get_message("geometry_msgs/msg/PoseStamped")(header=transform.header, pose=_transform_to_pose(transform))
 
 
 def _transforms_to_poses(message: Any) -> Any:

@@ -22,7 +22,7 @@ from msgspec.structs import replace
 from linkwright.descriptions import examine, examine_world, is_world
 from linkwright.diagnostics import LinkwrightError, phrase
 from linkwright.graph import LATCHED_QOS, EndpointKind
-from linkwright.messages import get_message
+from linkwright.messages import from_values, get_message
 from linkwright.page.audience import Page
 from linkwright.page.protocol.message import ServerMessage
 from linkwright.page.protocol.simulation import (
@@ -287,10 +287,10 @@ class SimulationFeature(PageFeature):
         if not (_is_vector(message.point) and _is_vector(message.force)):
             return
         wrench = get_message("geometry_msgs/msg/Wrench")()
-        point = get_message("geometry_msgs/msg/Point")(*message.point)
+        point = from_values(get_message("geometry_msgs/msg/Point"), message.point)
         wrench.force.x, wrench.force.y, wrench.force.z = message.force
         fields = {"link_name": message.link, "reference_frame": "world", "reference_point": point, "wrench": wrench}
-        fields["duration"] = get_message("builtin_interfaces/msg/Duration")(0, _PUSH_NS)
+        fields["duration"] = get_message("builtin_interfaces/msg/Duration")(sec=0, nanosec=_PUSH_NS)
         self._services.call_service(page, "gazebo_msgs/srv/ApplyLinkWrench", "/apply_link_wrench", fields)
 
 

@@ -231,7 +231,7 @@ class ClassicDiffDrive(_DiffDrive[ClassicParameters]):
                 invert(self.simulation.link_pose(scene_joint.parent)), self.simulation.link_pose(scene_joint.child)
             )
             parent, child = (link.rpartition(SEPARATOR)[2] for link in (scene_joint.parent, scene_joint.child))
-            output.publish(transform_message(Header(self.stamp(), parent), child, pose))
+            output.publish(transform_message(Header(stamp=self.stamp(), frame_id=parent), child, pose))
 
     def reset(self) -> None:
         """Stop the robot, and reset the odometry to its origin."""

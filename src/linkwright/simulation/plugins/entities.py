@@ -11,7 +11,7 @@ from typing import Any
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, did_you_mean, phrase
 from linkwright.geometry.single import IDENTITY, Transform, compose, invert, normalized, rotate
-from linkwright.messages import Header, Quaternion, Time, Vector3, get_message
+from linkwright.messages import Header, Quaternion, Time, Vector3, from_values, get_message
 from linkwright.sdf.poses import SEPARATOR, WORLD
 from linkwright.simulation.simulation import Simulation
 
@@ -91,8 +91,8 @@ class Entities:
         to_reference = invert(self.frame_pose(reference))
         message = get_message("gazebo_msgs/msg/EntityState")(name=name, reference_frame=reference or WORLD)
         message.pose = pose_message(compose(to_reference, pose))
-        message.twist.linear = Vector3(*rotate(to_reference[3:], tuple(linear.tolist())))
-        message.twist.angular = Vector3(*rotate(to_reference[3:], tuple(angular.tolist())))
+        message.twist.linear = from_values(Vector3, rotate(to_reference[3:], tuple(linear.tolist())))
+        message.twist.angular = from_values(Vector3, rotate(to_reference[3:], tuple(angular.tolist())))
         return message
 
     def set_state(self, state: Any) -> None:
@@ -113,7 +113,9 @@ class Entities:
 
         `log`, such as a logger's method, receives the reason for a failure.
         """
-        response.header = Header(Time.from_nanoseconds(self._simulation.time), request.reference_frame or WORLD)
+        response.header = Header(
+            stamp=Time.from_nanoseconds(self._simulation.time), frame_id=request.reference_frame or WORLD
+        )
 
         def fill_state() -> None:
             response.state = self.state(request.name, request.reference_frame)
@@ -186,8 +188,8 @@ def finding_line(finding: Diagnostic) -> str:
 
 def pose_message(pose: Transform) -> Any:
     """Return a pose as a message ``geometry_msgs/msg/Pose``."""
-    point = get_message("geometry_msgs/msg/Point")(*pose[:3])
-    return get_message("geometry_msgs/msg/Pose")(point, Quaternion(*pose[3:]))
+    point = from_values(get_message("geometry_msgs/msg/Point"), pose[:3])
+    return get_message("geometry_msgs/msg/Pose")(position=point, orientation=from_values(Quaternion, pose[3:]))
 
 
 def transform_from_message(message: Any) -> Transform:

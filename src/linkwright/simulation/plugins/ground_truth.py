@@ -22,7 +22,7 @@ from linkwright.geometry.single import (
     quaternion_multiply,
     rotate,
 )
-from linkwright.messages import Header, Quaternion, get_message
+from linkwright.messages import Header, Quaternion, from_values, get_message
 from linkwright.messages import Vector3 as VectorMessage
 from linkwright.simulation.plugins.parameters import parameter
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
@@ -99,7 +99,7 @@ class ClassicPose(SimulatedPlugin[ClassicPoseParameters]):
         x, y, z = (a + b for a, b in zip(pose[:3], parameters.xyz_offset, strict=True))
         offset_pose = (x, y, z, *quaternion_multiply(self._rotation_offset, pose[3:]))
         linear, angular = _add_noise(self._random, parameters.gaussian_noise, linear, angular)
-        header = Header(self.stamp(), parameters.frame_name)
+        header = Header(stamp=self.stamp(), frame_id=parameters.frame_name)
         message = _odometry(header, parameters.body_name, offset_pose, linear, angular, parameters.gaussian_noise**2)
         self._output.publish(message)
 
@@ -145,7 +145,7 @@ class GzOdometry(SimulatedPlugin[GzOdometryParameters]):
             linear, angular = np.array((forward, sideways, 0.0)), np.array((0.0, 0.0, yaw_rate))
             pose = (pose[0], pose[1], 0.0, *pose[3:])
         linear, angular = _add_noise(self._random, parameters.gaussian_noise, linear, angular)
-        header = Header(self.stamp(), self._frame)
+        header = Header(stamp=self.stamp(), frame_id=self._frame)
         self._odometry.publish(_odometry(header, self._child_frame, pose, linear, angular, 0.0))
         self._covariance_odometry.publish(
             _odometry(header, self._child_frame, pose, linear, angular, parameters.gaussian_noise**2)
@@ -178,9 +178,9 @@ def _odometry(header: Header, child: str, pose: Transform, linear: Array, angula
     message = get_message("nav_msgs/msg/Odometry")(header=header, child_frame_id=child)
     x, y, z, *rotation = pose
     message.pose.pose.position.x, message.pose.pose.position.y, message.pose.pose.position.z = x, y, z
-    message.pose.pose.orientation = Quaternion(*rotation)
-    message.twist.twist.linear = VectorMessage(*linear.tolist())
-    message.twist.twist.angular = VectorMessage(*angular.tolist())
+    message.pose.pose.orientation = from_values(Quaternion, rotation)
+    message.twist.twist.linear = from_values(VectorMessage, linear.tolist())
+    message.twist.twist.angular = from_values(VectorMessage, angular.tolist())
     for estimate in (message.pose, message.twist):
         estimate.covariance[::7] = [variance] * 6
     return message

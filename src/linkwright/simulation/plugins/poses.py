@@ -89,7 +89,7 @@ class GzPoses(SimulatedPlugin[PoseParameters]):
         stamp, messages = self.stamp(), list[Any]()
         for part in parts:
             parent, child = (name.replace(SEPARATOR, "/") for name in (part.parent, part.name))
-            messages.append(transform_stamped(Header(stamp, parent), child, part.pose()))
+            messages.append(transform_stamped(Header(stamp=stamp, frame_id=parent), child, part.pose()))
         if self.parameters.use_pose_vector_msg:
             output.publish(get_message("tf2_msgs/msg/TFMessage")(transforms=messages))
             return

@@ -15,7 +15,7 @@ import numpy as np
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 from linkwright.geometry.validity import TOLERANCE, is_positive_definite, triangle_excess
-from linkwright.messages import Vector3
+from linkwright.messages import Vector3, from_values
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.sdf.poses import SEPARATOR
 from linkwright.sdf.worlds import physics_of
@@ -147,7 +147,7 @@ class ClassicProperties(SimulatedPlugin[NoParameters]):
         self.simulation.refresh()
         response.time_step = self.simulation.step / NANOSECONDS_PER_SECOND
         response.max_update_rate = physics_of(self.context.world).real_time_update_rate
-        response.gravity = Vector3(*np.asarray(self.simulation.model.opt.gravity).tolist())
+        response.gravity = from_values(Vector3, np.asarray(self.simulation.model.opt.gravity).tolist())
         response.success, response.status_message = True, "GetPhysicsProperties: got properties"
         return response
 

@@ -50,7 +50,9 @@ class ClassicState(SimulatedPlugin[StateParameters]):
 
     def _message(self, kind: str, names: list[str]) -> Any:
         states = [self._entities.state(name) for name in names]
-        return get_message(kind)(names, [state.pose for state in states], [state.twist for state in states])
+        return get_message(kind)(
+            name=names, pose=[state.pose for state in states], twist=[state.twist for state in states]
+        )
 
     def _get(self, request: Any, response: Any) -> Any:
         return self._entities.fill_get_response("get_entity_state", request, response, self.node.logger.error)

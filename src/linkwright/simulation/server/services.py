@@ -176,7 +176,7 @@ class Services:
         return fill_response(response, delete)
 
     def _list_models(self, _: Any, response: Any) -> Any:
-        response.header = Header(Time.from_nanoseconds(self._server.simulation.time), WORLD)
+        response.header = Header(stamp=Time.from_nanoseconds(self._server.simulation.time), frame_id=WORLD)
         response.model_names = list(self._server.simulation.scene.models)
         response.success = True
         return response

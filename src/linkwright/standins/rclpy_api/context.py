@@ -155,29 +155,39 @@ class Context:
         """Shut the context down: executors stop spinning, and the nodes leave the graph.
 
         Raises:
-            RclError: the context was not initialized, or was already shut down, unless a signal did this.
+            RclError: the context was not initialized, or was already shut down, by a signal too.
         """
         if not self._initialized:
             raise RclError("Context must be initialized before it can be shutdown")
-        if not self._ok and not self._was_ended_by_signal:
-            raise RclError("Context must be initialized before it can be shutdown: it was shut down already")
-        self._was_ended_by_signal = False
-        self._complete_shutdown()
+        was_ok = self._ok
+        self.try_shutdown()
+        if not was_ok:
+            raise RclError(
+                "failed to shutdown: rcl_shutdown already called on the given context. A signal such as Ctrl-C does "
+                "this as well; rclpy.try_shutdown() then raises no error"
+            )
 
     def try_shutdown(self) -> None:
-        """Shut the context down, unless it is not initialized or already shut down."""
-        if self._initialized and (self._ok or self._was_ended_by_signal):
-            self.shutdown()
+        """Shut the context down, unless it is not initialized or already shut down.
+
+        After a signal, this completes the shutdown: the nodes leave the graph.
+        """
+        if self._ok or self._was_ended_by_signal:
+            self._was_ended_by_signal = False
+            self._complete_shutdown()
 
     def shutdown_by_signal(self) -> None:
         """Stop the executors from a signal handler.
 
-        `shutdown` must complete the shutdown later. A signal can arrive at any point of the program, so this method
+        `try_shutdown` must complete the shutdown later. A signal can arrive at any point of the program, so this method
         does only what is safe in a signal handler.
         """
         if self._ok:
             self._was_ended_by_signal = True
             self._ok = False
+            if self._graph is not None:
+                for node in self._graph.nodes():
+                    node.is_valid = False
             self._notify()
 
     def destroy(self) -> None:

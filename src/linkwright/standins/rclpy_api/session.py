@@ -69,6 +69,8 @@ def init(
     if signal_handler_options is None:
         signal_handler_options = SignalHandlerOptions.ALL if context is None else SignalHandlerOptions.NO
     install_signal_handlers(signal_handler_options)
+    state = current_state()
+    state.signal_options = SignalHandlerOptions(state.signal_options | signal_handler_options)
     target_context.init(args, domain_id=domain_id)
     return InitContextManager(target_context)
 

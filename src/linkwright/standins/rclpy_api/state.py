@@ -11,6 +11,8 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
+from linkwright.standins.rclpy_api.signals import SignalHandlerOptions
+
 if TYPE_CHECKING:
     from linkwright.graph import Graph
 
@@ -20,6 +22,9 @@ class RclpyState:
 
     Args:
         create_graph: creates the graph of a context; None for a graph that joins the network.
+
+    Attributes:
+        signal_options: the signals that shut contexts down, as calls of ``rclpy.init`` have asked for.
     """
 
     def __init__(self, create_graph: Callable[[], Graph] | None = None) -> None:
@@ -27,6 +32,7 @@ class RclpyState:
         self.default_context: Any = None
         self.executor: Any = None
         self.open_contexts: weakref.WeakSet[Any] = weakref.WeakSet()
+        self.signal_options = SignalHandlerOptions.NO
 
 
 class _Current:

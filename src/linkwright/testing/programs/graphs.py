@@ -36,6 +36,10 @@ class ProgramGraph:
         self._identities.append(identity)
         return handle
 
+    def nodes(self) -> tuple[NodeHandle, ...]:
+        """Return the nodes of the program."""
+        return tuple(self._handles)
+
     @property
     def node_names(self) -> list[tuple[str, str]]:
         """The name and the namespace of each node."""

@@ -8,6 +8,7 @@ import random
 import signal
 import sys
 import threading
+import traceback
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from functools import partial
@@ -16,7 +17,8 @@ from types import ModuleType
 from typing import Any, cast
 
 from linkwright.graph import Graph
-from linkwright.graph.faults import ExternalShutdownException
+from linkwright.graph.faults import ExternalShutdownException, RclError
+from linkwright.standins.rclpy_api.signals import SignalHandlerOptions
 from linkwright.standins.rclpy_api.state import RclpyState, use_state
 from linkwright.testing.programs.graphs import ProgramGraph
 from linkwright.testing.programs.threads import EndedByTest, LockstepThread, Turns
@@ -66,10 +68,14 @@ class Program:
         return [names for graph in self._graphs for names in graph.node_names]
 
     def interrupt(self) -> None:
-        """Send the program Ctrl-C, as ``ros2 run`` does: rclpy shuts down, and the main thread is interrupted."""
+        """Send the program Ctrl-C, as ``ros2 run`` does: rclpy shuts down, and the main thread is interrupted.
+
+        rclpy stays open if the program asked for this (``signal_handler_options`` of ``rclpy.init``).
+        """
         self.is_interrupted = True
-        for context in tuple(self._state.open_contexts):
-            context.shutdown_by_signal()
+        if self._state.signal_options & SignalHandlerOptions.SIGINT:
+            for context in tuple(self._state.open_contexts):
+                context.shutdown_by_signal()
         handler = self._signal_handlers[signal.SIGINT]
         if callable(handler):
             self._main_thread.interrupt(partial(handler, signal.SIGINT, None))
@@ -142,9 +148,12 @@ class Program:
         except SystemExit as end:
             self.exit_code = end.code if isinstance(end.code, int) else int(end.code is not None)
         except BaseException as error:  # noqa: BLE001  # the test raises it
-            is_expected = self.is_interrupted and isinstance(error, (KeyboardInterrupt, ExternalShutdownException))
-            self.exit_code = -signal.SIGINT if is_expected else 1
-            self.error = None if is_expected else error
+            is_interruption = self.is_interrupted and isinstance(error, (KeyboardInterrupt, ExternalShutdownException))
+            self.exit_code = -signal.SIGINT if is_interruption else 1
+            if self.is_interrupted and isinstance(error, RclError):  # rclpy was used after Ctrl-C, by which a test ends
+                traceback.print_exception(error)
+            elif not is_interruption:
+                self.error = error
 
     def _end_if_done(self) -> None:
         """End what a process ends when its last thread that is not a daemon has ended."""

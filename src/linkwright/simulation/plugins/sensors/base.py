@@ -129,4 +129,4 @@ class OneTopic(SensorPlugin[P], Generic[P]):
 def vector_message(values: Array) -> Vector3:
     """Return three numbers as a ``geometry_msgs/msg/Vector3``."""
     x, y, z = values.tolist()
-    return Vector3(x, y, z)
+    return Vector3(x=x, y=y, z=z)

@@ -11,7 +11,7 @@ from typing import Any, Generic, TypeVar
 
 from linkwright.geometry import single
 from linkwright.geometry.single import compose, quaternion_from_rpy
-from linkwright.messages import Header, Quaternion, Vector3, get_message
+from linkwright.messages import Header, Quaternion, Vector3, from_values, get_message
 from linkwright.sdf.noise import Noise, NoiseXyz
 from linkwright.sdf.sensors import Imu
 from linkwright.simulation.plugins.parameters import NoParameters, parameter
@@ -41,11 +41,11 @@ class _ImuPlugin(OneTopic[P], Generic[P]):
         """Measure, and publish orientation, angular velocity and linear acceleration."""
         measurement = self.imu.measure()
         message = _message_class()(
-            header=Header(self.stamp(), self.frame),
-            orientation=Quaternion(*measurement.orientation),
-            angular_velocity=Vector3(*measurement.angular_velocity),
+            header=Header(stamp=self.stamp(), frame_id=self.frame),
+            orientation=from_values(Quaternion, measurement.orientation),
+            angular_velocity=from_values(Vector3, measurement.angular_velocity),
             angular_velocity_covariance=self.imu.angular_velocity_noise.covariance,
-            linear_acceleration=Vector3(*measurement.linear_acceleration),
+            linear_acceleration=from_values(Vector3, measurement.linear_acceleration),
             linear_acceleration_covariance=self.imu.acceleration_noise.covariance,
         )
         self.output.publish(message)

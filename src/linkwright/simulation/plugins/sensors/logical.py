@@ -37,7 +37,7 @@ class GzLogicalCamera(OneTopic[NoParameters]):
         for name in self.simulation.scene.models:
             pose = compose(world_to_camera, self.simulation.model_pose(name))
             if is_in_view(self._view, pose):
-                message.model.append(get_message(_MODEL_TYPE)(name, pose_message(pose)))
+                message.model.append(get_message(_MODEL_TYPE)(name=name, pose=pose_message(pose)))
         self.output.publish(message)
 
 
