@@ -167,7 +167,8 @@ def test_texts_are_whole_and_only_what_is_typed_can_be_copied(start, open_page, 
     page.locator(".outline-step", has_text="发布").first.click()
     until(page, "lw.panels.lesson.step === '05-nodes/publish'")
     tops = page.evaluate(
-        """() => [...document.querySelectorAll('.lesson-text p > code')].filter(
+        """() => document.querySelectorAll('.lesson-text').forEach(text => (text.style.width = '288px')) ??
+        [...document.querySelectorAll('.lesson-text p > code')].filter(
             code => /^[：，。；、]/.test(code.nextSibling?.textContent ?? '')
         ).map(code => {
             const mark = document.createRange();

@@ -132,6 +132,7 @@ def test_tabs_have_or_find_the_terminal_of_the_program_started_again(start, cont
     second.goto(program.url)
     until(second, f"{TERMINAL}.notice?.includes('another page')")
     assert program.interrupt() == 130
+    until(first, f"{TERMINAL}.notice.includes('cannot be reached')")
     start(*words, "--port", port)
     for page in (first, second):
         is_back(page)
@@ -164,6 +165,7 @@ def test_a_page_whose_connection_was_lost_without_a_word_has_its_terminal_back(s
     sockets[0].close()
     page.locator(".notice[data-state=reconnecting]").wait_for()
     is_back(page)
+    until(page, f"{TERMINAL}.notice === ''")
     assert len(sockets) == 2
     runs(page, "echo again=$((6*7))")
     shows(page, "again=42")

@@ -19,6 +19,8 @@ export class TerminalsState {
   readonly availabilityChanged = new Signal();
   /** The connection is new, so that earlier requests get no answers; emitted with whether the program is the same run. */
   readonly connected = new Signal<boolean>();
+  /** The connection was lost or is back. */
+  readonly connectionChanged = new Signal();
   readonly output = new Signal<TerminalOutput>();
   /** Emitted with the number of a terminal whose program does not read its input. */
   readonly inputLost = new Signal<number>();
@@ -54,6 +56,7 @@ export class TerminalsState {
       this.isUnknown = false;
     });
     connection.on("program_pages", ({ pages }) => this.setPrograms(pages));
+    connection.stateChanged.on(() => this.connectionChanged.emit());
     connection.on("terminal_output", (message) => this.output.emit(message));
     connection.on("terminal_input_lost", ({ terminal }) => this.inputLost.emit(terminal));
   }
@@ -61,6 +64,10 @@ export class TerminalsState {
   /** Whether the program was started with terminals in the page. */
   get isAvailable(): boolean {
     return this.isAvailableNow;
+  }
+
+  get isConnected(): boolean {
+    return this.connection.state === "connected";
   }
 
   find(id: number): TerminalItem | undefined {

@@ -347,6 +347,7 @@ export class SourceEditor implements Documents {
     const words = strings.sourceEditor;
     this.notice.hidden = !shown || (shown.conflict === null && shown.whyNot === "" && !shown.isNew);
     if (!shown || this.notice.hidden) return;
+    this.notice.classList.toggle("plain", shown.isNew);
     if (shown.conflict === null) {
       this.notice.replaceChildren(shown.whyNot || words.isNew);
       return;

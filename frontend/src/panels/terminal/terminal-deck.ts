@@ -62,6 +62,7 @@ export class TerminalDeck {
     this.tabs.addEventListener("keydown", (event) => this.onTabKey(event));
     new ResizeObserver(() => this.screen?.fit()).observe(this.place);
     state.changed.on(() => this.update());
+    state.connectionChanged.on(() => this.showNotice());
     state.connected.on((isSameRun) => {
       this.requested = null;
       if (!isSameRun) this.discard(() => true);
@@ -227,7 +228,7 @@ export class TerminalDeck {
   private showNotice(): void {
     const words = strings.terminal;
     const { item } = this;
-    let [text, action] = [this.state.whyNot, ""];
+    let [text, action] = [this.state.isConnected ? this.state.whyNot : words.disconnected, ""];
     if (text === "" && item?.shown === "elsewhere") [text, action] = [words.elsewhere, words.showHere];
     else if (text === "" && item && item.status !== null) [text, action] = [words.endedWith(item.status), words.restart];
     else if (text === "" && this.lostInput === this.current && item) text = words.inputLost;

@@ -22,6 +22,7 @@ export const terminal = {
   endedWith: (status: number): string =>
     status < 0 ? `The shell was ended by signal ${-status}.` : `The shell has ended with exit status ${status}.`,
   restart: "Start again",
+  disconnected: "The program cannot be reached, so what you type is lost.",
   elsewhere: "This terminal is shown in another page.",
   showHere: "Show it here",
   program: "Program",

@@ -23,6 +23,7 @@ export const terminal: typeof english = {
   ended: (name) => `${name}（已结束）`,
   endedWith: (status) => (status < 0 ? `shell 被信号 ${-status} 结束。` : `shell 已结束，退出状态为 ${status}。`),
   restart: "重新启动",
+  disconnected: "程序无法连接，输入的内容会丢失。",
   elsewhere: "此终端正显示在另一个页面中。",
   showHere: "在这里显示",
   program: "程序",

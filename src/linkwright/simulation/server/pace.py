@@ -45,10 +45,10 @@ class PaceWatch:
 
 def _finding(factor: float) -> Diagnostic:
     message = phrase(
-        "the world runs at {factor} of real time, because this computer cannot hold more", factor=f"{factor:.1g}"
+        "the world runs at {factor} of real time: this computer cannot simulate it faster", factor=f"{factor:.1g}"
     )
     hint = phrase(
-        "nothing is wrong: nodes follow the simulated time, and all only takes longer; for a lighter world, switch off "
-        "displays of images, give cameras fewer pixels and lower rates, close other programs and pages"
+        "nodes follow the simulated time, so nothing is wrong, but everything takes longer; for a lighter world, switch "
+        "off displays of images, give cameras fewer pixels and lower rates, and close other programs and pages"
     )
     return Diagnostic("SIM146", message, severity=Severity.WARNING, hint=hint)
