@@ -284,19 +284,25 @@ def test_odd_folders_have_a_line_each(folder, capsys):
     (write_student(folder, "yaml", "print(42)") / "learn.yaml").write_text(bomb)
     (write_student(folder, "without", "print(42)") / "learn.yaml").unlink()
     (students / "file.txt").write_text("")
+    (students / "file.zip").write_text("")
+    (students / "packed").mkdir()
+    (students / "packed/workspace.tar.gz").write_text("")
     status, found, _ = grade(folder, "--html", "out.html")
     assert status == 1
-    assert Path("out.html").read_text(encoding="utf-8").count("not graded") == 2
+    assert Path("out.html").read_text(encoding="utf-8").count("not graded") == 6
     notes = {name: " / ".join(note["en"] for note in student["notes"]) for name, student in found.items()}
     assert notes["nested"] == "the workspace is the folder 'inner' in it"
     assert notes["links"] == "1 link was left out / 1 pipe, socket or device was left out"
     assert notes["other"] == "learn.yaml is of the course 'robot', and was not used"
     assert "does not contain the progress" in notes["yaml"]
     assert notes["without"] == "there is no learn.yaml, so there are no answers"
-    assert notes["file.txt"] == "the folder cannot be read: Not a directory"
+    assert notes["file.txt"] == "it is a file and not the folder of a student"
+    assert notes["file.zip"] == "it is an archive; unpack it first"
+    assert notes["packed"] == "there is only the archive 'workspace.tar.gz'; unpack it first"
     points = {name: student["points"] for name, student in found.items()}
-    assert points == {"nested": 4, "links": 0, "other": 4, "yaml": 4, "without": 4, "file.txt": 0}
-    assert "the folder cannot be read" in capsys.readouterr().out
+    not_graded = {"file.txt": 0, "file.zip": 0, "packed": 0}
+    assert points == {"nested": 4, "links": 0, "other": 4, "yaml": 4, "without": 4, **not_graded}
+    assert "unpack it first" in capsys.readouterr().out
 
 
 def test_an_interrupted_run_continues(folder, monkeypatch):

@@ -197,7 +197,8 @@ def _print_table(students: Sequence[StudentMarks]) -> None:
         name = student.submission.student
         signs = "".join(_sign(mark) for mark in student.marks.values())
         padding = " " * (width - shown_width(name))
-        print(f"{name}{padding}  {f'{student.total:g}/{student.possible:g}':>9}  {signs}")
+        points = f"{student.total:g}/{student.possible:g}" if student.submission.is_readable else "–"
+        print(f"{name}{padding}  {points:>9}  {signs}".rstrip())
         for note in student.submission.notes:
             print(f"    {note.get(lang)}")
         for step, mark in student.marks.items():

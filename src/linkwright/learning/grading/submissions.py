@@ -16,6 +16,7 @@ from linkwright.learning.course import Course
 from linkwright.learning.local_text import LocalText
 from linkwright.learning.progress import PROGRESS_FILE, Progress, read_progress
 
+_ARCHIVES = {".zip", ".tar", ".gz", ".tgz", ".bz2", ".xz", ".7z", ".rar"}
 _SKIPPED = {".git", "__pycache__", "__MACOSX"}
 _LONGEST_PROGRESS = 1 << 20
 _MOST_FILES = 20_000
@@ -67,9 +68,20 @@ def _open(student: str, place: Path, course: Course) -> Submission:
     submission = Submission(student, place, Progress(course.id, {}))
     try:
         submission.folder = _find_workspace(place)
+    except NotADirectoryError:
+        submission.is_readable = False
+        if place.suffix.lower() in _ARCHIVES:
+            submission.note(phrase("it is an archive; unpack it first"))
+        else:
+            submission.note(phrase("it is a file and not the folder of a student"))
+        return submission
     except OSError as error:
         submission.is_readable = False
         submission.note(phrase("the folder cannot be read: {error}", error=foreign(error.strerror or error)))
+        return submission
+    if (archive := _find_archive(submission.folder)) is not None:
+        submission.is_readable = False
+        submission.note(phrase("there is only the archive '{name}'; unpack it first", name=_readable(archive.name)))
         return submission
     if submission.folder != place:
         submission.note(phrase("the workspace is the folder '{name}' in it", name=_readable(submission.folder.name)))
@@ -85,6 +97,13 @@ def _find_workspace(place: Path) -> Path:
     inside = [path for path in entries if path.is_dir() and not path.is_symlink() and path.name not in _SKIPPED]
     visible = [path for path in inside if not path.name.startswith(".")]
     return visible[0] if len(visible) == 1 and _is_workspace(visible[0]) else place
+
+
+def _find_archive(folder: Path) -> Path | None:
+    """Return an archive in a folder that is not a workspace, as downloads of a class contain it."""
+    if _is_workspace(folder):
+        return None
+    return next((path for path in sorted(folder.iterdir()) if path.suffix.lower() in _ARCHIVES), None)
 
 
 def _is_workspace(folder: Path) -> bool:
