@@ -179,7 +179,10 @@ class CheckProcess:
 def _end_group(process: subprocess.Popen[str]) -> None:
     """End the process and all processes of its session."""
     if sys.platform == "win32":
-        process.kill()
+        if process.poll() is None:  # Windows finds the children of a running process only
+            command = ["taskkill", "/T", "/F", "/PID", str(process.pid)]
+            subprocess.run(command, capture_output=True, check=False)  # noqa: S603 - the ID of our own process
+            process.kill()
         return
     with suppress(ProcessLookupError, PermissionError):
         os.killpg(process.pid, signal.SIGKILL)
