@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import re
 import subprocess
 import sys
@@ -107,7 +108,13 @@ def _run_setup(folder: Path) -> str:
     clock = PatientClock()
     command = [sys.executable, "-c", _RUNNER]
     with subprocess.Popen(  # noqa: S603 - the learner's own file
-        command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, encoding="utf-8"
+        command,
+        cwd=folder,
+        env={**os.environ, "PYTHONIOENCODING": "utf-8"},  # Windows has other encodings
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        encoding="utf-8",
+        errors="replace",
     ) as process:
         while (outputs := _read_outputs(process)) is None:
             if clock.read() > _TIMEOUT_SECONDS:

@@ -243,7 +243,10 @@ def _last_bytes() -> Iterator[tuple[bytearray, int]]:
 def _end_group(process: Program) -> None:
     """End the process and all processes of its session."""
     if sys.platform == "win32":
-        process.kill()
+        if process.poll() is None:  # Windows finds the children of a running process only
+            command = ["taskkill", "/T", "/F", "/PID", str(process.pid)]
+            subprocess.run(command, capture_output=True, check=False)  # noqa: S603 - the ID of our own process
+            process.kill()
         return
     with suppress(ProcessLookupError, PermissionError):
         os.killpg(process.pid, signal.SIGKILL)
