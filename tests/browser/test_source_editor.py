@@ -125,6 +125,7 @@ def test_an_edit_of_the_robot_and_a_saved_text_have_one_history(start, open_page
     text.press("Control+s")
     becomes(leg.read_text, LEG)
 
+    page.mouse.move(0, 0)  # the explanation of the element below the pointer can cover the tab
     page.locator(".panel-tab", has_text="Edit robot").first.click()
     undo = page.get_by_role("button", name="Undo the last written edit")
     undo.click()
