@@ -6,8 +6,12 @@ import sys
 from pathlib import PurePosixPath
 from types import SimpleNamespace
 
+import pytest
+
 from linkwright.learning.checks import running
 from linkwright.learning.checks.installed import files_of_setup
+from linkwright.learning.course import load_course
+from linkwright.learning.new_course import create_course
 
 
 def test_on_windows_a_process_is_ended_with_its_children(monkeypatch):
@@ -20,6 +24,22 @@ def test_on_windows_a_process_is_ended_with_its_children(monkeypatch):
         assert process.wait() != 0
         running._end_group(process)
     assert len(commands) == 1
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no niceness")
+def test_checks_of_the_page_leave_the_processor_to_other_programs(tmp_path):
+    course = tmp_path / "course"
+    create_course(course)
+    (course / "01-one-link" / "checks.py").write_text(
+        "import os\nfrom linkwright.learning import check\n\n"
+        '@check("mass", en="It is said.", zh="说。")\n'
+        "def tell(work):\n"
+        "    (work.folder / 'niceness').write_text(str(os.nice(0)))\n",
+        encoding="utf-8",
+    )
+    step = load_course(course).find_step("mass")
+    assert running.CheckProcess(step, tmp_path, niceness=5).run().passed
+    assert int((tmp_path / "niceness").read_text()) == min(os.nice(0) + 5, 19)
 
 
 def test_a_setup_file_may_print_what_the_encoding_of_the_system_lacks(tmp_path, monkeypatch):

@@ -39,6 +39,8 @@ PYTHON = [sys.executable]
 DOMAIN_VARIABLE = "LINKWRIGHT_CHECK_DOMAIN"
 """The variable with the ROS domain of a check, for callers that run several at a time in one network."""
 
+_NICENESS_VARIABLE = "LINKWRIGHT_CHECK_NICENESS"
+
 MODULE = "linkwright.learning.checks"
 
 _IMPORTED = (
@@ -158,6 +160,7 @@ class CheckProcess:
         answer: the number that the learner answered, as text.
         time_limit: the seconds after which the process is ended.
         server: starts the process; see `new_check_server`. None for a process that imports by itself.
+        niceness: by how much the priority of the process is lower than that of this one, 0 to 19. Windows ignores it.
     """
 
     def __init__(
@@ -168,11 +171,13 @@ class CheckProcess:
         answer: str | None = None,
         time_limit: float = TIME_LIMIT,
         server: ForkServer | None = None,
+        niceness: int = 0,
     ) -> None:
         self._step = step
         self._workspace = workspace
         self._answer = answer
         self._time_limit = time_limit
+        self._niceness = niceness
         self._start = partial(start_fresh, PYTHON) if server is None else server.start
         self._process: Program | None = None
         self._is_canceled = False
@@ -201,7 +206,8 @@ class CheckProcess:
         """Run the program of the checks, and return why it ended early, or None."""
         with Path(os.devnull).open("r+b") as nothing, _last_bytes() as (errors, descriptor):
             streams = nothing.fileno(), nothing.fileno(), descriptor
-            process = self._start(MODULE, words, cwd=self._workspace, env=os.environ, streams=streams)
+            environment = {**os.environ, _NICENESS_VARIABLE: str(self._niceness)}
+            process = self._start(MODULE, words, cwd=self._workspace, env=environment, streams=streams)
             self._process = process
             if self._is_canceled:
                 _end_group(process)
@@ -264,6 +270,8 @@ def main(words: Sequence[str]) -> int:
 
     The output exists, and is empty, from the beginning of the first check on.
     """
+    if sys.platform != "win32":
+        os.nice(int(os.environ.get(_NICENESS_VARIABLE, "0")))
     os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
     os.environ["ROS_DOMAIN_ID"] = os.environ.get(DOMAIN_VARIABLE) or str(hold_domain())
     lesson_folder, step_id, workspace, output, *answers = words

@@ -10,6 +10,9 @@ from linkwright.learning.checks.results import StepResult
 from linkwright.learning.checks.running import CheckProcess, new_check_server
 from linkwright.learning.course import Step
 
+_NICENESS = 5
+"""The niceness of checks. The page, and a world that the learner watches beside it, get the processor first."""
+
 
 class CheckRunner:
     """A runner of checks on the event loop.
@@ -56,7 +59,7 @@ class CheckRunner:
             step, answer = self._requested
             self._requested = None
             server = self._server if self._server.is_ready else None
-            self._process = CheckProcess(step, self._workspace, answer=answer, server=server)
+            self._process = CheckProcess(step, self._workspace, answer=answer, server=server, niceness=_NICENESS)
             result = await asyncio.to_thread(self._process.run)
             self._process = None
             self._server.prepare()  # for the next checks; beside the first one, it would delay that
