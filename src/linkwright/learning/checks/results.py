@@ -17,25 +17,30 @@ class CheckResult:
         title: what the check expects.
         passed: whether the check is satisfied.
         message: what is not yet so; None if the check is satisfied.
-        is_lack: whether the check could not be carried out, for a reason that is not in the learner's files.
+        is_machine_fault: whether the check could not be carried out, for a reason that is not in the learner's files.
     """
 
     title: LocalText
     passed: bool
     message: LocalText | None = None
-    is_lack: bool = False
+    is_machine_fault: bool = False
 
     def to_data(self) -> dict[str, Any]:
         """Return the result as JSON values."""
         message = None if self.message is None else self.message.texts
-        return {"title": self.title.texts, "passed": self.passed, "message": message, "lack": self.is_lack}
+        return {
+            "title": self.title.texts,
+            "passed": self.passed,
+            "message": message,
+            "machine_fault": self.is_machine_fault,
+        }
 
     @classmethod
     def from_data(cls, data: Mapping[str, Any]) -> CheckResult:
         """Return the result that `to_data` wrote."""
         message = data["message"]
         text = None if message is None else LocalText(message)
-        return cls(LocalText(data["title"]), bool(data["passed"]), text, bool(data.get("lack", False)))
+        return cls(LocalText(data["title"]), bool(data["passed"]), text, bool(data.get("machine_fault", False)))
 
 
 @dataclass(frozen=True)
@@ -58,9 +63,9 @@ class StepResult:
         return all(result.passed for result in self.checks)
 
     @property
-    def has_lack(self) -> bool:
+    def has_machine_fault(self) -> bool:
         """Whether a check could not be carried out."""
-        return any(result.is_lack for result in self.checks)
+        return any(result.is_machine_fault for result in self.checks)
 
     def to_data(self) -> dict[str, Any]:
         """Return the results as JSON values."""

@@ -21,7 +21,7 @@ from linkwright.files.scratch_folders import ScratchFolder
 from linkwright.learning.checks.declaring import Check, load_checks
 from linkwright.learning.checks.domains import hold_domain
 from linkwright.learning.checks.findings import describe_finding
-from linkwright.learning.checks.lacks import is_lack
+from linkwright.learning.checks.machine_faults import is_machine_fault
 from linkwright.learning.checks.not_yet import NotYet
 from linkwright.learning.checks.programs import describe_failure
 from linkwright.learning.checks.results import CheckResult, StepResult
@@ -104,7 +104,9 @@ def _run(check: Check, work: Work) -> CheckResult:
     except Exception as error:  # noqa: BLE001 - the learner's files can be anything
         message = describe_failure(error, work.folder.resolve())
         text = LocalText.from_phrase(message)
-        return CheckResult(check.title, passed=False, message=text, is_lack=is_lack(error, work.folder.resolve()))
+        return CheckResult(
+            check.title, passed=False, message=text, is_machine_fault=is_machine_fault(error, work.folder.resolve())
+        )
     return CheckResult(check.title, passed=True)
 
 
@@ -282,7 +284,7 @@ def main(words: Sequence[str]) -> int:
         result = check_step(step, Path(workspace), answer=answer, begin_checks=Path(output).touch)
     except LinkwrightError as error:
         texts = [LocalText.from_phrase(describe_finding(finding)) for finding in error.diagnostics]
-        failed = [CheckResult(step.title, passed=False, message=text, is_lack=True) for text in texts]
+        failed = [CheckResult(step.title, passed=False, message=text, is_machine_fault=True) for text in texts]
         result = StepResult(step.address, failed)
     Path(output).write_text(json.dumps(result.to_data(), ensure_ascii=False), encoding="utf-8")
     return 0

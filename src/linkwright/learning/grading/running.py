@@ -103,8 +103,8 @@ def _run(job: Job) -> Mark:
         seconds=outcome.seconds,
         protections=protections,
         is_repeated=job.is_repeated,
-        is_graded=not result.has_lack,
-        may_differ=result.has_lack or (not result.passed and outcome.seconds > _SLOW_SECONDS),
+        is_graded=not result.has_machine_fault,
+        may_differ=result.has_machine_fault or (not result.passed and outcome.seconds > _SLOW_SECONDS),
     )
 
 

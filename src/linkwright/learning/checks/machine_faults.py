@@ -1,4 +1,4 @@
-"""Checks that fail for want of something that is not the learner's: memory, disk space, processes, libraries."""
+"""Checks that could not be carried out because the machine has no memory, disk space, processes or libraries left."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _RESOURCES = {
 }
 
 
-def is_lack(error: Exception, workspace: Path) -> bool:
+def is_machine_fault(error: Exception, workspace: Path) -> bool:
     """Return whether a check could not be carried out, for a reason that is not in the learner's files."""
     frames = traceback.extract_tb(error.__traceback__)
     if any(Path(frame.filename).is_relative_to(workspace) for frame in frames):
