@@ -153,7 +153,7 @@ def test_texts_are_whole_and_only_what_is_typed_can_be_copied(start, open_page, 
     until(page, f"{CHECKS}?.checked_at")
     assert page.locator(".source-heading").first.is_hidden()
     place = page.locator(".lesson-place")
-    assert "0 of 81 steps passed" in place.inner_text()
+    assert "0 of 80 steps passed" in place.inner_text()
     assert place.evaluate("element => element.scrollWidth <= element.clientWidth")
     page.get_by_role("button", name="Steps").click()
     page.locator(".outline-step", has_text="A package for nodes").click()

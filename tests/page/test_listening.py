@@ -5,8 +5,8 @@ import socket
 import pytest
 
 from linkwright.diagnostics import LinkwrightError
-from linkwright.page import listening
-from linkwright.page.listening import listen, url_of
+from linkwright.page.page_server import listen
+from linkwright.page.server import url_of
 
 
 @pytest.fixture
@@ -27,7 +27,7 @@ def test_a_port_in_use_is_named_with_a_way_out(taken):
 
 
 def test_without_a_port_the_next_free_one_is_taken(taken, monkeypatch):
-    monkeypatch.setattr(listening, "DEFAULT_PORT", taken)
+    monkeypatch.setattr(page_server, "DEFAULT_PORT", taken)
     with listen("127.0.0.1", None) as listener:
         assert listener.getsockname()[1] > taken
 

@@ -13,8 +13,9 @@ from urllib.parse import urlsplit
 import aiohttp
 import pytest
 
+from linkwright.page.access import PROGRAM_PAGES_VARIABLE as VARIABLE
 from linkwright.page.page_server import PageServer
-from linkwright.page.program_pages import VARIABLE, Embedder
+from linkwright.page.program_pages import Embedder
 from linkwright.panels.terminal.feature import TerminalFeature
 from tests.viewer.scene import World, page
 from tests.waiting import SECONDS

@@ -19,8 +19,8 @@ from linkwright.nodes import NodeOptions
 from linkwright.nodes.joint_state_publisher_gui import JointStatePublisherGui
 from linkwright.nodes.robot_state_publisher import RobotStatePublisher
 from linkwright.packages import PackageFinder
-from linkwright.page import listening, server
-from linkwright.page.listening import listen
+from linkwright.page import page_server, server
+from linkwright.page.page_server import listen
 from linkwright.page.protocol.message import PROTOCOL_VERSION
 from linkwright.panels.joints import JointsFeature
 from linkwright.rviz import RvizConfig
@@ -306,7 +306,7 @@ async def test_a_taken_port_leaves_no_node_behind():
 @pytest.mark.parametrize("steps", range(1, 6))
 async def test_a_start_that_is_broken_off_leaves_no_node_and_no_socket_behind(steps, times, monkeypatch):
     listeners = []
-    monkeypatch.setattr(listening, "listen", lambda host, port: listeners.append(listen(host, port)) or listeners[0])
+    monkeypatch.setattr(page_server, "listen", lambda host, port: listeners.append(listen(host, port)) or listeners[0])
     made = World()
     start = asyncio.ensure_future(made.viewer.start())
     for _ in range(steps):
@@ -328,7 +328,7 @@ async def test_it_listens_no_longer_where_a_part_of_it_cannot_be_started(monkeyp
         raise OSError("the disk is full")
 
     listeners = []
-    monkeypatch.setattr(listening, "listen", lambda host, port: listeners.append(listen(host, port)) or listeners[0])
+    monkeypatch.setattr(page_server, "listen", lambda host, port: listeners.append(listen(host, port)) or listeners[0])
     monkeypatch.setattr(JointsFeature, "start", fail)
     made = World()
     with pytest.raises(OSError, match="the disk is full"):

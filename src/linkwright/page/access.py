@@ -44,6 +44,12 @@ IPAddress: TypeAlias = ipaddress.IPv4Address | ipaddress.IPv6Address
 Endpoint: TypeAlias = tuple[IPAddress, int]
 """An address and a TCP port."""
 
+PROGRAM_PAGES_VARIABLE = "LINKWRIGHT_PROGRAM_PAGES"
+"""The environment variable with the address to which programs in a terminal of a page send the addresses of theirs."""
+
+PROGRAM_PAGES_PATH = "/programs/"
+"""The path of this address."""
+
 _LIFETIME = 7 * 24 * 3600.0
 """The time for which a stored token is valid, in seconds."""
 

@@ -2,20 +2,29 @@
 
 from __future__ import annotations
 
+import errno
+import ipaddress
+import os
+import socket
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
-from linkwright.page.access import Gate, PortToken, load_token, new_token, store_pages_wait
+from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
+from linkwright.page.access import PROGRAM_PAGES_VARIABLE, Gate, PortToken, load_token, new_token, store_pages_wait
 from linkwright.page.files import Downloads, MeshFolders
-from linkwright.page.program_pages import Embedder, ProgramPages
 
 if TYPE_CHECKING:
     from asyncio import StreamWriter
 
     from linkwright.page.audience import Audience
+    from linkwright.page.program_pages import ProgramPages
     from linkwright.page.server import WebServer
     from linkwright.page.uploads import Guests
+
+DEFAULT_PORT = 7448
+"""The port after 7447, on which Zenoh routers listen (decision 0066)."""
+
+_PORT_COUNT = 10
 
 
 class PageServer:
@@ -49,7 +58,7 @@ class PageServer:
         self._only_loopback = only_loopback
         self._needs_terminal = needs_terminal
         self._port_token: tuple[int, PortToken] | None = None
-        self.program_pages = ProgramPages() if only_loopback else None
+        self.program_pages = _new_program_pages() if only_loopback else None
         self._embedding: StreamWriter | None = None
 
     async def open(self) -> None:
@@ -61,7 +70,6 @@ class PageServer:
             LinkwrightError: VIEW101 to VIEW103, the server cannot listen at the address; VIEW104, other machines could
                 reach it.
         """
-        from linkwright.page.listening import is_open_to_others, listen
         from linkwright.page.server import WebServer
 
         listener = listen(self.host, self._port)
@@ -98,6 +106,10 @@ class PageServer:
         Returns:
             Whether the page is shown there.
         """
+        if PROGRAM_PAGES_VARIABLE not in environment:
+            return False
+        from linkwright.page.program_pages import Embedder  # few programs run in a terminal of a page
+
         embedder = Embedder.of(environment)
         if self.web is None or embedder is None or self.program_pages is not None or self.is_open_to_others:
             return False
@@ -129,6 +141,75 @@ class PageServer:
         web, self.web = self.web, None
         if web is not None:
             await web.close()
+
+
+def listen(host: str, port: int | None) -> socket.socket:
+    """Return a listening socket.
+
+    Args:
+        host: a name or address of this machine.
+        port: the port; 0 for any free port; None for `DEFAULT_PORT` or the next free port.
+
+    Raises:
+        LinkwrightError: VIEW101, the requested port is in use; VIEW102, it is not possible to listen on the port;
+            VIEW103, the host is unknown.
+    """
+    try:
+        family, _, _, _, address = socket.getaddrinfo(host, 0, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE)[0]
+    except (OSError, UnicodeError):
+        hint = phrase("use 127.0.0.1, or 0.0.0.0 to accept connections from other machines")
+        message = phrase("'{host}' is not a name or address of this machine", host=host)
+        raise LinkwrightError(Diagnostic("VIEW103", message, hint=hint)) from None
+    candidates = [port] if port is not None else [*range(DEFAULT_PORT, DEFAULT_PORT + _PORT_COUNT), 0]
+    for candidate in candidates:
+        try:
+            return _listen_at(family, (address[0], candidate))
+        except OSError as error:  # noqa: PERF203 - few ports, and each may be in use
+            if candidate == candidates[-1] or error.errno != errno.EADDRINUSE:
+                raise LinkwrightError(_cannot_listen(host, candidate, error)) from None
+    raise AssertionError("the last port listens or raises")
+
+
+def is_open_to_others(listener: socket.socket) -> bool:
+    """Return whether other machines can reach a listening socket."""
+    return not ipaddress.ip_address(listener.getsockname()[0].partition("%")[0]).is_loopback
+
+
+def _listen_at(family: int, address: tuple[str | int, int]) -> socket.socket:
+    listener = socket.socket(family, socket.SOCK_STREAM)
+    try:
+        if os.name == "posix":
+            listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        listener.bind(address)
+        listener.listen(64)  # several programs may bind a port, but `listen` fails for all except one
+        listener.setblocking(False)
+    except (OSError, OverflowError) as error:
+        listener.close()
+        if isinstance(error, OverflowError):
+            raise OSError(errno.EINVAL, phrase("the port must be from 0 to 65535")) from None
+        raise
+    return listener
+
+
+def _cannot_listen(host: str, port: int, error: OSError) -> Diagnostic:
+    if error.errno == errno.EADDRINUSE:
+        hint = phrase("choose another port with '--port', or omit '--port' to use the next free one")
+        return Diagnostic("VIEW101", phrase("port {port} of '{host}' is in use", port=port, host=host), hint=hint)
+    return Diagnostic(
+        "VIEW102",
+        phrase(
+            "cannot listen on port {port} of '{host}': {strerror}",
+            port=port,
+            host=host,
+            strerror=foreign(error.strerror or error),
+        ),
+    )
+
+
+def _new_program_pages() -> ProgramPages:
+    from linkwright.page.program_pages import ProgramPages  # most pages have no terminal
+
+    return ProgramPages()
 
 
 def _open_to_others(host: str, *, needs_terminal: bool) -> Diagnostic:

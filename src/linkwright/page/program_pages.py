@@ -20,20 +20,14 @@ from itertools import count
 from typing import TYPE_CHECKING
 from urllib.parse import urlsplit
 
+from linkwright.page.access import PROGRAM_PAGES_PATH, PROGRAM_PAGES_VARIABLE
+
 if TYPE_CHECKING:
     from linkwright.page.http_server import web
     from linkwright.page.protocol.terminal import ProgramPage
 
-VARIABLE = "LINKWRIGHT_PROGRAM_PAGES"
-"""The environment variable with the address to which programs send the addresses of their pages."""
-
-PATH = "/programs/"
-
-FRAME_SOURCES = "http://127.0.0.1:* http://localhost:*"
-"""The pages that may be shown in frames, as a source list of a content security policy."""
-
 _PAGE_ADDRESS = re.compile(r"http://(127\.0\.0\.1|localhost):\d{1,5}/\?token=[\w-]+")
-_SERVER_ADDRESS = re.compile(rf"http://(127\.0\.0\.1|localhost|\[::1\]):\d{{1,5}}{PATH}[\w-]+")
+_SERVER_ADDRESS = re.compile(rf"http://(127\.0\.0\.1|localhost|\[::1\]):\d{{1,5}}{PROGRAM_PAGES_PATH}[\w-]+")
 _MAX_TITLE_LENGTH = 200
 _TIMEOUT = 3.0
 """Seconds to wait for a program's address, and for the server's answer to it."""
@@ -62,7 +56,7 @@ class ProgramPages:
 
     def variables(self, origin: str) -> dict[str, str]:
         """Return the environment variables for programs whose pages are shown in a page of an origin."""
-        return {VARIABLE: f"{origin}{PATH}{self._key}"}
+        return {PROGRAM_PAGES_VARIABLE: f"{origin}{PROGRAM_PAGES_PATH}{self._key}"}
 
     def is_key(self, key: str) -> bool:
         """Return whether a key is that of the address in `variables`."""
@@ -130,11 +124,11 @@ class Embedder:
     @classmethod
     def of(cls, environment: Mapping[str, str]) -> Embedder | None:
         """Return the page that the environment variables name, or None if there is none on this machine."""
-        address = environment.get(VARIABLE, "")
+        address = environment.get(PROGRAM_PAGES_VARIABLE, "")
         if not _SERVER_ADDRESS.fullmatch(address):
             return None
-        origin, _, key = address.rpartition(PATH)
-        return cls(origin, PATH + key)
+        origin, _, key = address.rpartition(PROGRAM_PAGES_PATH)
+        return cls(origin, PROGRAM_PAGES_PATH + key)
 
     async def show(self, url: str, title: str) -> asyncio.StreamWriter | None:
         """Let the page show a page of this program in a frame.

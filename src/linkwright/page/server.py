@@ -14,12 +14,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, cast
 from urllib.parse import quote
 
-from linkwright.page.access import TOKEN_PARAMETER, Admission, Gate, is_from_here, security_headers
+from linkwright.page.access import PROGRAM_PAGES_PATH, TOKEN_PARAMETER, Admission, Gate, is_from_here, security_headers
 from linkwright.page.files import CONTENT_TYPES, IMAGE_TYPES, Downloads, FileRefusedError, MeshFolders
 from linkwright.page.http_server import SERVER_LOGGER, web
-from linkwright.page.listening import url_of
 from linkwright.page.peers import may_be_own_user
-from linkwright.page.program_pages import FRAME_SOURCES, PATH
 
 if TYPE_CHECKING:
     from collections.abc import Awaitable, Callable, Mapping
@@ -38,6 +36,11 @@ _OWN_CONFIGURATION_KEY = re.compile(r"[0-9A-Za-z-]{8,64}")
 _HEARTBEAT = 15.0
 _IDLE_TIMEOUT = 30.0
 """Seconds for which a connection may stay open without a request."""
+
+_FRAME_SOURCES = "http://127.0.0.1:* http://localhost:*"
+"""The pages that a page with a terminal may show in frames, as a source list of a content security policy."""
+
+_WILDCARDS = {"0.0.0.0": "127.0.0.1", "::": "::1"}  # noqa: S104 - not bound here, only replaced in URLs
 
 _BACKLOG = 128
 _BLOCK_SIZE = 256 * 1024
@@ -149,7 +152,9 @@ class WebServer:
             "/export/{key}/{name}", self._require_token(partial(self._upload, self._show_own_recording))
         )
         if self._program_pages is not None:
-            application.router.add_post(f"{PATH}{{key}}", partial(self._show_program, self._program_pages))
+            application.router.add_post(
+                f"{PROGRAM_PAGES_PATH}{{key}}", partial(self._show_program, self._program_pages)
+            )
         application.router.add_get("/{path:.+}", self._page_file)
         self._runner = web.AppRunner(
             application,
@@ -223,7 +228,7 @@ class WebServer:
 
     async def _add_headers(self, request: web.Request, response: web.StreamResponse) -> None:
         host = request.host if self._gate.knows(request.host) else "localhost"
-        frames = "'none'" if self._program_pages is None else FRAME_SOURCES
+        frames = "'none'" if self._program_pages is None else _FRAME_SOURCES
         response.headers.update(security_headers(host, frames=frames, frame_ancestors=self.frame_ancestor or "'none'"))
         response.headers.setdefault("Cache-Control", _NO_STORE)
 
@@ -542,3 +547,10 @@ def limit_buffers(transport: asyncio.Transport) -> None:
     connection = transport.get_extra_info("socket")
     if connection is not None and _NOT_SENT_LOW_WATER is not None:
         connection.setsockopt(socket.IPPROTO_TCP, _NOT_SENT_LOW_WATER, MAX_UNSENT_BYTES)
+
+
+def url_of(listener: socket.socket) -> str:
+    """Return the URL with which a browser on this machine reaches a listening socket."""
+    host, port = listener.getsockname()[:2]
+    host = _WILDCARDS.get(host, host)
+    return f"http://[{host}]:{port}/" if ":" in host else f"http://{host}:{port}/"

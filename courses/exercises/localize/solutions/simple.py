@@ -46,7 +46,7 @@ class Localize(Node):
 
     def localize(self, ranges, angles):
         if self.start is None:
-            poses = random_poses(np.random.default_rng(1), 2200)
+            poses = random_poses(np.random.default_rng(1), 3000)
             errors = np.minimum(np.abs(expected_ranges(poses, angles) - ranges), 1.0).sum(axis=1)
             self.start = poses[errors.argmin()]
             self.begin = self.odometry
