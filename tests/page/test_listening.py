@@ -5,6 +5,7 @@ import socket
 import pytest
 
 from linkwright.diagnostics import LinkwrightError
+from linkwright.page import page_server
 from linkwright.page.page_server import listen
 from linkwright.page.server import url_of
 
