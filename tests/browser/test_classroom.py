@@ -106,7 +106,7 @@ def test_a_learner_walks_through_two_steps(start, open_page, workspace, language
 def test_the_solution_is_taken_after_a_question(start, open_page, workspace):
     page = open_classroom(start, open_page, workspace)
     page.get_by_role("button", name="Solution").click()
-    assert page.locator("dialog li").all_inner_texts() == ["robot.urdf"]
+    becomes(page.locator("dialog li").all_inner_texts, ["robot.urdf"])
     page.get_by_role("button", name="Take the solution").click()
     until(page, is_passed("one-link"))
     assert (workspace / "robot.urdf").read_text() == ROBOT.read_text()
@@ -119,7 +119,7 @@ def test_a_learner_who_jumps_to_a_later_step_catches_up(start, open_page, worksp
     assert page.locator(".checks-offer").is_hidden()
     page.keyboard.press("Alt+PageDown")
     page.get_by_role("button", name="Catch up").click()
-    assert page.locator("dialog li").all_inner_texts() == ["robot.urdf"]
+    becomes(page.locator("dialog li").all_inner_texts, ["robot.urdf"])
     page.get_by_role("button", name="Take over").click()
     page.locator(".checks-offer").wait_for(state="hidden")
     becomes((workspace / "robot.urdf").read_text, ROBOT.read_text())

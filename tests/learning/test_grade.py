@@ -14,6 +14,7 @@ import pytest
 
 from linkwright.cli import main
 from linkwright.diagnostics import Diagnostic, LinkwrightError
+from linkwright.learning.checks import running
 from linkwright.learning.course import find_course
 from linkwright.learning.grading import grading, workers
 from linkwright.learning.grading import running as grading_running
@@ -62,6 +63,7 @@ def folder(class_folder, monkeypatch):  # noqa: F811
     students = class_folder / "students"
     students.mkdir()
     monkeypatch.chdir(class_folder)
+    monkeypatch.setattr(running, "PYTHON", [sys.executable])  # the settings of coverage are not readable in the sandbox
     return class_folder
 
 
